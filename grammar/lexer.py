@@ -1,0 +1,195 @@
+"""The lexer, derived from the lexer rules of the grammar as ANTLR reads them.
+
+Longest match first, then the order of the rules; what no rule matches is an ``ERROR`` token of one
+character. Two steps keep plain Python fast: one compiled pattern cuts the text into lexemes at C
+speed, and each distinct lexeme is classified once and remembered.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from grammar.chars import automaton_of, both_cases, class_of, first_characters, overlap, pattern_of
+from grammar.g4 import (
+    CharSet,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+)
+
+__all__ = ["EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of"]
+
+#: Kinds below zero are not tokens of the grammar.
+SKIPPED = -1
+ERROR = -2
+#: The end of the file, in every lexer.
+EOF = 0
+
+# Memory stays flat on corpora of any size: long lexemes (strings) are not remembered, and the
+# memory starts afresh when point tables have filled it with numbers.
+_LONGEST_REMEMBERED = 48
+_MOST_REMEMBERED = 400_000
+
+
+class _Kinds(dict[str, int]):
+    """Kind by lexeme, filled as lexemes are met."""
+
+    __slots__ = ("literals", "others", "other_kinds")
+
+    def __init__(
+        self, literals: dict[str, int], others: re.Pattern[str], other_kinds: Sequence[int]
+    ) -> None:
+        self.literals = literals
+        self.others = others
+        self.other_kinds = other_kinds
+
+    def __missing__(self, lexeme: str) -> int:
+        kind = self._classify(lexeme)
+        if len(lexeme) <= _LONGEST_REMEMBERED:
+            if len(self) >= _MOST_REMEMBERED:
+                self.clear()
+            self[lexeme] = kind
+        return kind
+
+    def _classify(self, lexeme: str) -> int:
+        if not lexeme:
+            return SKIPPED
+        found = self.others.fullmatch(lexeme)
+        other = self.other_kinds[found.lastindex - 1] if found and found.lastindex else None
+        # literals are ASCII or exact: str.upper would also fold letters that ANTLR keeps apart
+        literal = self.literals.get(lexeme.upper() if lexeme.isascii() else lexeme)
+        if literal is None:
+            return ERROR if other is None else other
+        if other is None or other == SKIPPED:
+            return literal
+        return min(literal, other)
+
+
+class Lexer:
+    """Cuts text into tokens.
+
+    ``names[kind]`` is the name of a token; kind 0 is ``EOF``. ``display[kind]`` is what a person
+    reads in an expected set: the quoted text of punctuation and keywords, else the name.
+    """
+
+    def __init__(self, grammar: Grammar) -> None:
+        rules = [r for r in grammar.rules if r.is_lexer and not r.is_fragment]
+        self.names: tuple[str, ...] = ("EOF", *(r.name for r in rules))
+        self.kind_of = {name: kind for kind, name in enumerate(self.names)}
+        texts = {name: text for text, name in grammar.literal_tokens.items()}
+        self.display = tuple(
+            texts.get(name, name)
+            for name in self.names
+        )
+        self._keywords = frozenset(
+            self.kind_of[name] for name, text in texts.items() if text[0].isalpha()
+        )
+        literals = {
+            text: SKIPPED if grammar.by_name[name].is_skipped else self.kind_of[name]
+            for text, name in grammar.literal_tokens.items()
+        }
+        names_of_literals = set(grammar.literal_tokens.values())
+        others = [r for r in rules if r.name not in names_of_literals]
+        classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
+        other_kinds = [SKIPPED if r.is_skipped else self.kind_of[r.name] for r in others]
+        self.kinds = _Kinds(literals, classify, other_kinds)
+        # A literal that another rule matches whole (a keyword that could be a name) adds nothing
+        # to where tokens end, and leaving it out keeps the automaton small.
+        cutting = [
+            r
+            for r in rules
+            if r.name not in names_of_literals or not classify.fullmatch(_only_literal(r))
+        ]
+        self._automaton = automaton_of(grammar, cutting)
+        self._pattern = self._pattern_for(grammar, cutting)
+
+    def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | None:
+        """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do."""
+        skipped = [r for r in rules if r.is_skipped]
+        tokens = [r for r in rules if not r.is_skipped]
+        if skipped and tokens:
+            skip, token = automaton_of(grammar, skipped), automaton_of(grammar, tokens)
+            if not overlap(first_characters(skip), first_characters(token)):
+                skip_pattern, token_pattern = pattern_of(skip), pattern_of(token)
+                if skip_pattern and token_pattern:
+                    return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
+        everything = pattern_of(self._automaton)
+        return re.compile(f"({everything}|[\\s\\S])") if everything else None
+
+    def is_keyword(self, kind: int) -> bool:
+        """Whether the token is one word that the grammar reserves."""
+        return kind in self._keywords
+
+    def lexemes(self, text: str) -> list[str]:
+        """The texts of the tokens in order; skipped ones may be among them, and empty ones."""
+        if self._pattern is None:
+            return [text[start:end] for start, end in self._spans(text)]
+        return self._pattern.findall(text)
+
+    def offsets(self, text: str) -> Iterator[int]:
+        """Where each of the `lexemes` begins in ``text``."""
+        if self._pattern is None:
+            return (start for start, _ in self._spans(text))
+        return (found.start(1) for found in self._pattern.finditer(text))
+
+    def _spans(self, text: str) -> Iterator[tuple[int, int]]:
+        """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
+        start = 0
+        while start < len(text):
+            end = max(self._automaton.longest(text, start), start + 1)
+            yield start, end
+            start = end
+
+
+def _only_literal(rule: Rule) -> str:
+    element = rule.alternatives[0].elements[0]
+    assert isinstance(element, Literal)
+    return element.text
+
+
+def _translate(grammar: Grammar, rule: Rule) -> str:
+    """A pattern for ``re`` with the language of a lexer rule; used only to match whole lexemes."""
+
+    def sequence(elements: tuple[Element, ...]) -> str:
+        return "".join(map(element, elements))
+
+    def element(node: Element) -> str:
+        match node:
+            case Literal(text=text):
+                return "".join(character(((ord(c), ord(c)),)) for c in text)
+            case CharSet(ranges=ranges):
+                return character(ranges)
+            case Reference(name=name):
+                inner = grammar.by_name[name].alternatives
+                return f"(?:{'|'.join(sequence(a.elements) for a in inner)})"
+            case Group(alternatives=alternatives):
+                return f"(?:{'|'.join(sequence(a.elements) for a in alternatives)})"
+            case Repeat(item=item, operator=operator):
+                return f"(?:{element(item)}){operator}"
+
+    def character(ranges: tuple[tuple[int, int], ...]) -> str:
+        return class_of(both_cases(ranges) if grammar.case_insensitive else ranges)
+
+    return "|".join(sequence(a.elements) for a in rule.alternatives)
+
+
+_lexers: dict[tuple[str, ...], Lexer] = {}
+
+
+def lexer_of(grammar: Grammar) -> Lexer:
+    """The lexer of a grammar; grammars with the same lexer rules share one."""
+    key = (
+        str(grammar.case_insensitive),
+        *(r.text for r in grammar.rules if r.is_lexer),
+    )
+    lexer = _lexers.get(key)
+    if lexer is None:
+        if len(_lexers) >= 64:
+            _lexers.clear()
+        lexer = _lexers[key] = Lexer(grammar)
+    return lexer

@@ -1,0 +1,210 @@
+"""Parser rules as a transition network: one deterministic automaton a rule.
+
+A *position* is a state of one rule's automaton. From it the network reads a token, calls a rule and
+returns to another position of the same rule, or leaves the rule. Positions are small integers; the
+automaton of a rule is built once for its text and shared by every grammar that has that rule, so
+that a candidate edit costs one rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from grammar.g4 import Element, Grammar, Group, Literal, Reference, Repeat, Rule
+from grammar.lexer import Lexer, lexer_of
+
+__all__ = ["Network", "network_of"]
+
+Symbol = str  # the name of a token or a rule
+
+
+@dataclass(frozen=True, slots=True)
+class RuleAutomaton:
+    """States of one rule; 0 is its start. ``edges[state]`` maps a symbol to the next state."""
+
+    edges: tuple[Mapping[Symbol, int], ...]
+    final: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """The whole grammar, positions numbered across rules.
+
+    ``shifts[p]`` maps a token kind to the next position, ``calls[p]`` lists (first position of the
+    called rule, position to return to), ``final[p]`` says whether the rule may end at ``p``, and
+    ``rule[p]`` names the rule ``p`` lies in.
+    """
+
+    lexer: Lexer
+    shifts: tuple[Mapping[int, int], ...]
+    calls: tuple[tuple[tuple[int, int], ...], ...]
+    final: tuple[bool, ...]
+    rule: tuple[str, ...]
+    entry: Mapping[str, int]
+    start: int
+
+
+def network_of(grammar: Grammar) -> Network:
+    """Link the automata of all parser rules."""
+    lexer = lexer_of(grammar)
+    automata = {r.name: rule_automaton(grammar, r) for r in grammar.rules if not r.is_lexer}
+    entry: dict[str, int] = {}
+    size = 0
+    for name, automaton in automata.items():
+        entry[name] = size
+        size += len(automaton.edges)
+    shifts: list[Mapping[int, int]] = []
+    calls: list[tuple[tuple[int, int], ...]] = []
+    final: list[bool] = []
+    rule: list[str] = []
+    for name, automaton in automata.items():
+        base = entry[name]
+        for state, edges in enumerate(automaton.edges):
+            shifts.append(
+                {lexer.kind_of[s]: base + t for s, t in edges.items() if s not in entry}
+            )
+            calls.append(tuple((entry[s], base + t) for s, t in edges.items() if s in entry))
+            final.append(state in automaton.final)
+            rule.append(name)
+    return Network(
+        lexer,
+        tuple(shifts),
+        tuple(calls),
+        tuple(final),
+        tuple(rule),
+        entry,
+        entry[grammar.start],
+    )
+
+
+_automata: dict[tuple[str, tuple[tuple[str, str], ...]], RuleAutomaton] = {}
+
+
+def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
+    """The minimal automaton of one parser rule over the names of tokens and rules."""
+    quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
+    names = {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
+    key = (rule.text, tuple(sorted(names.items())))
+    found = _automata.get(key)
+    if found is None:
+        if len(_automata) >= 20_000:
+            _automata.clear()
+        found = _automata[key] = _build(rule, names)
+    return found
+
+
+def _elements(rule: Rule) -> Iterable[Element]:
+    stack: list[Element] = [e for a in rule.alternatives for e in a.elements]
+    while stack:
+        element = stack.pop()
+        yield element
+        if isinstance(element, Group):
+            stack += [e for a in element.alternatives for e in a.elements]
+        elif isinstance(element, Repeat):
+            stack.append(element.item)
+
+
+class _Fragments:
+    """Thompson's construction over symbols; ``None`` is an empty step."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        self.names = names
+        self.edges: list[list[tuple[Symbol | None, int]]] = [[]]
+
+    def state(self) -> int:
+        self.edges.append([])
+        return len(self.edges) - 1
+
+    def choice(self, sequences: Iterable[tuple[Element, ...]], start: int) -> int:
+        end = self.state()
+        for elements in sequences:
+            last = start
+            for element in elements:
+                last = self.element(element, last)
+            self.edges[last].append((None, end))
+        return end
+
+    def element(self, element: Element, start: int) -> int:
+        match element:
+            case Reference(name=name):
+                return self.step(name, start)
+            case Literal(text=text):
+                return self.step(self.names[text], start)
+            case Group(alternatives=alternatives):
+                return self.choice((a.elements for a in alternatives), start)
+            case Repeat(item=item, operator=operator):
+                before, after = self.state(), self.state()
+                self.edges[start].append((None, before))
+                end = self.element(item, before)
+                self.edges[end].append((None, after))
+                if operator != "+":
+                    self.edges[before].append((None, after))
+                if operator != "?":
+                    self.edges[end].append((None, before))
+                return after
+            case _:
+                raise AssertionError("sets of characters do not occur in parser rules")
+
+    def step(self, symbol: Symbol, start: int) -> int:
+        end = self.state()
+        self.edges[start].append((symbol, end))
+        return end
+
+
+def _build(rule: Rule, names: Mapping[str, str]) -> RuleAutomaton:
+    fragments = _Fragments(names)
+    end = fragments.choice((a.elements for a in rule.alternatives), 0)
+
+    def closure(states: Iterable[int]) -> frozenset[int]:
+        seen = set(states)
+        todo = list(seen)
+        while todo:
+            for symbol, target in fragments.edges[todo.pop()]:
+                if symbol is None and target not in seen:
+                    seen.add(target)
+                    todo.append(target)
+        return frozenset(seen)
+
+    index = {closure([0]): 0}
+    order = list(index)
+    table: list[dict[Symbol, int]] = []
+    for states in order:  # grows while it is walked
+        targets: dict[Symbol, set[int]] = {}
+        for state in sorted(states):
+            for symbol, target in fragments.edges[state]:
+                if symbol is not None:
+                    targets.setdefault(symbol, set()).add(target)
+        row: dict[Symbol, int] = {}
+        for symbol, raw in targets.items():
+            closed = closure(raw)
+            if closed not in index:
+                index[closed] = len(order)
+                order.append(closed)
+            row[symbol] = index[closed]
+        table.append(row)
+    return _minimal(table, [end in states for states in order])
+
+
+def _minimal(table: list[dict[Symbol, int]], final: list[bool]) -> RuleAutomaton:
+    block = [int(f) for f in final]
+    while True:
+        keys: dict[object, int] = {}
+        refined = [
+            keys.setdefault(
+                (block[s], frozenset((symbol, block[t]) for symbol, t in row.items())), len(keys)
+            )
+            for s, row in enumerate(table)
+        ]
+        if len(keys) == len(set(block)):
+            break
+        block = refined
+    number: dict[int, int] = {}
+    for b in block:  # states keep the order in which they are met; the start stays 0
+        number.setdefault(b, len(number))
+    edges: list[dict[Symbol, int]] = [{} for _ in number]
+    for s, row in enumerate(table):
+        edges[number[block[s]]] = {symbol: number[block[t]] for symbol, t in row.items()}
+    return RuleAutomaton(
+        tuple(edges), frozenset(number[block[s]] for s, f in enumerate(final) if f)
+    )

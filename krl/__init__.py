@@ -1,0 +1,3 @@
+"""The door: the `krl` command. It reads arguments, calls the rooms below and prints."""
+
+__all__: list[str] = []

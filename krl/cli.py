@@ -1,0 +1,48 @@
+"""The `krl` command: which commands there are. What each does stands in `krl.commands`."""
+
+from collections.abc import Sequence
+from importlib import metadata
+from typing import Annotated
+
+import typer
+
+from krl import door
+from krl.commands import corpus, recover
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+app.command("recover")(recover.recover)
+app.add_typer(corpus.app, name="corpus")
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"krl {metadata.version('krl-workbench')}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _krl(
+    context: typer.Context,
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Recover the grammar of the KUKA Robot Language from real controller source.
+
+    Exit status: 0 fine, 1 findings, 2 wrong usage or unreadable input.
+    """
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
+    return door.run(app, arguments)

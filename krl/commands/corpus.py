@@ -1,0 +1,130 @@
+"""`krl corpus`: the programs that the survey reads, our own and other people's."""
+
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.door import FINDINGS, FINE, Unusable
+
+if TYPE_CHECKING:
+    from recovery.sources import PublicSource
+
+__all__ = ["app"]
+
+CORPUS = Path("corpus")
+"""In the working folder: the corpus is data of a checkout and does not travel with the package."""
+
+app = typer.Typer(help="List the programs of the corpus, and fetch the public ones.")
+
+
+@app.command("list")
+def show() -> int:
+    """Show our own cells and the public repositories, and how much of them is here."""
+    from recovery.sources import absent
+
+    sources = _sources()
+    typer.echo(f"Own programs in {CORPUS / 'programs'}")
+    cells = list(_own_cells(CORPUS / "programs"))
+    _print_table([(name, _files(files), _kilobytes(size)) for name, files, size in cells])
+    typer.echo("\nPublic repositories, which belong to their authors")
+    rows = []
+    for source in sources:
+        missing = len(absent(source, CORPUS / "open"))
+        here = f"{len(source.files) - missing} here" if missing else "all here"
+        count = _files(len(source.files))
+        rows.append((*_heading(source), source.generation, count, _kilobytes(source.size), here))
+    _print_table(rows)
+    return FINE
+
+
+@app.command("fetch")
+def fetch(
+    mirror: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Take the repositories from git mirrors in this folder (OWNER/NAME, OWNER__NAME "
+            "or OWNER+NAME), and nothing from the network.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where the files go, one folder a repository.")
+    ] = CORPUS / "open",
+) -> int:
+    """Fetch the KRL files of the public repositories, each verified by its checksum.
+
+    The files belong to other people. Exit status 1 when some could not be had.
+    """
+    from krl.progress import progress_bar
+    from recovery import sources as room
+
+    sources = _sources()
+    if shutil.which("git") is None:
+        raise Unusable("fetching needs git, and there is none on the PATH")
+    if mirror is not None and not mirror.is_dir():
+        raise Unusable(f"{mirror}: no such folder of mirrors")
+    if out.exists() and not out.is_dir():
+        raise Unusable(f"{out}: not a folder")
+    typer.echo(
+        "These files belong to their authors, under the licence named here. Where none is stated,\n"
+        "all rights are theirs: read and measure the files, and do not pass them on."
+    )
+    wanted = sum(len(source.files) for source in sources)
+    with progress_bar("Fetching", wanted) as advance:
+        results = [room.fetch(source, out, mirror, advance) for source in sources]
+    rows = []
+    for result in results:
+        share = f"{result.written + result.kept} of {_files(len(result.source.files))}"
+        rows.append((*_heading(result.source), share))
+    _print_table(rows)
+    problems = [problem for result in results for problem in result.problems]
+    for problem in problems:
+        typer.echo(f"missing: {problem}", err=True)
+    written = sum(result.written for result in results)
+    had = written + sum(result.kept for result in results)
+    typer.echo(f"{had} of {wanted} files in {out}, {written} of them new")
+    return FINDINGS if problems else FINE
+
+
+def _sources() -> "tuple[PublicSource, ...]":
+    from recovery.sources import SourceListError, read_sources
+
+    if not CORPUS.is_dir():
+        raise Unusable(f"no {CORPUS} folder here: run this in a checkout of the workbench")
+    try:
+        return read_sources(CORPUS)
+    except SourceListError as error:
+        raise Unusable(str(error)) from error
+
+
+def _own_cells(programs: Path) -> Iterator[tuple[str, int, int]]:
+    """Yield name, number of files and bytes of each cell, which is a folder or an archive."""
+    for cell in sorted(programs.iterdir()) if programs.is_dir() else ():
+        files = [path for path in cell.rglob("*") if path.is_file()] if cell.is_dir() else [cell]
+        yield cell.name, len(files), sum(path.stat().st_size for path in files)
+
+
+def _heading(source: "PublicSource") -> tuple[str, str]:
+    licence = "no licence stated" if source.licence == "none" else source.licence
+    return source.repository, licence
+
+
+def _files(count: int) -> str:
+    return f"{count} file" if count == 1 else f"{count} files"
+
+
+def _kilobytes(size: int) -> str:
+    return f"{size / 1000:,.0f} kB"
+
+
+def _print_table(rows: Sequence[tuple[str, ...]]) -> None:
+    """Print in columns as wide as their text, so that pipes and logs get each row on one line."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        typer.echo(f"  {'  '.join(cells)}".rstrip())
+    if not rows:
+        typer.echo("  none")

@@ -1,0 +1,138 @@
+"""The one place where an expected error becomes one line on stderr and an exit status.
+
+Commands return their status, or raise `Unusable` with a sentence for the person at the keyboard.
+Nothing that reaches this door leaves it as a traceback. Somebody who hunts a defect in krl itself
+sets the environment variable KRL_TRACEBACK to any value and gets the traceback of it.
+"""
+
+import errno
+import glob
+import os
+import sys
+from collections.abc import Sequence
+from typing import Final
+
+import typer
+
+__all__ = [
+    "FINDINGS",
+    "FINE",
+    "INTERRUPTED",
+    "READER_GONE",
+    "UNUSABLE",
+    "Unusable",
+    "one_line",
+    "run",
+]
+
+FINE: Final = 0
+FINDINGS: Final = 1
+UNUSABLE: Final = 2
+INTERRUPTED: Final = 130
+"""As a shell reports a program that Ctrl-C ended."""
+READER_GONE: Final = 141
+"""As a shell reports a program whose reader, such as `head`, went away: no result to trust."""
+
+
+class Unusable(Exception):
+    """Wrong usage or unreadable input; its text is the line that the person reads."""
+
+
+def one_line(text: str) -> str:
+    """`text` on one line: blanks folded, anything that could steer a terminal spelt out."""
+    folded = " ".join(text.split())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in folded)
+
+
+def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
+    """Run the command line `arguments` (those of the process by default); return the status.
+
+    A command may return its status, or nothing for 0. The status is 2, after one line on stderr,
+    for wrong usage, unreadable input, and a defect of ours.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if os.name == "nt":  # shells there leave wildcards to the program
+        given = _expanded(given)
+    _print_anything()
+    try:
+        status = _invoke(app, given)
+        sys.stdout.flush()
+        return status
+    except KeyboardInterrupt:
+        return _refuse("interrupted", INTERRUPTED)
+    except Unusable as error:
+        return _refuse(str(error))
+    except typer.TyperException as error:
+        return _refuse(_usage(error), name="")
+    except OSError as error:
+        if _reader_gone(error):
+            return _leave_quietly()
+        return _refuse(_about(error))
+    except Exception as error:  # a defect of ours, and still one line
+        if os.environ.get("KRL_TRACEBACK"):
+            raise
+        return _refuse(
+            f"a defect in krl itself, {type(error).__name__}: {error} "
+            "(set KRL_TRACEBACK=1 to see where, and please report it)"
+        )
+
+
+def _invoke(app: typer.Typer, arguments: list[str]) -> int:
+    # Not `command.main`: it ends the process by itself when the reader of our output goes away.
+    command = typer.main.get_command(app)
+    try:
+        with command.make_context("krl", arguments) as context:
+            result = command.invoke(context)
+    except typer.Exit as leave:  # --help, --version
+        return leave.exit_code
+    return result if isinstance(result, int) else FINE
+
+
+def _refuse(message: str, status: int = UNUSABLE, name: str = "krl: ") -> int:
+    sys.stderr.write(f"{name}{one_line(message)}\n")
+    return status
+
+
+def _usage(error: typer.TyperException) -> str:
+    """What is wrong with the command line, and where to read how it goes."""
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "krl"
+    said = error.format_message().rstrip(".")
+    return f"{command}: {said}{'' if said.endswith('?') else '.'} See {command} --help"
+
+
+def _about(error: OSError) -> str:
+    reason = error.strerror or str(error) or type(error).__name__
+    return f"{error.filename}: {reason}" if error.filename is not None else reason
+
+
+def _expanded(arguments: Sequence[str]) -> list[str]:
+    """`arguments` with every wildcard that fits something replaced by what it fits."""
+    expanded: list[str] = []
+    for argument in arguments:
+        wild = "*" in argument or "?" in argument
+        found = sorted(glob.glob(argument)) if wild else []  # noqa: PTH207  it may be absolute
+        expanded += found or [argument]
+    return expanded
+
+
+def _print_anything() -> None:
+    """Let a file name that the console cannot show be printed as escapes."""
+    for stream in (sys.stdout, sys.stderr):
+        if reconfigure := getattr(stream, "reconfigure", None):
+            reconfigure(errors="backslashreplace")
+
+
+def _reader_gone(error: OSError) -> bool:
+    # Windows reports a closed pipe as an invalid argument of no file.
+    return error.errno == errno.EPIPE or (
+        os.name == "nt" and error.errno == errno.EINVAL and error.filename is None
+    )
+
+
+def _leave_quietly() -> int:
+    # What is still buffered would fail once more when Python closes the stream.
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+    return READER_GONE

@@ -1,0 +1,172 @@
+"""The record of a survey: the JSON that `krl recover` writes and the page reads.
+
+Its fields are a contract (docs/architecture.md): others read it from outside.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import Any
+
+from grammar.failures import FailureFinder
+from grammar.lexer import ERROR
+from grammar.recognizer import Recognizer
+from recovery.cluster import Cluster, Clusters, Member
+from recovery.survey import Survey, SurveyedFile
+
+__all__ = ["record_of"]
+
+_EXAMPLES = 5
+_CONTEXT_LINES = 3
+_WIDEST_LINE = 1_000
+_FILES_NAMED = 200
+
+
+def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> dict[str, Any]:
+    """Everything a survey found, as plain data.
+
+    Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
+    name the first place of a content, ``copies`` the others.
+    """
+    recognizer = Recognizer(found.grammar)
+    files = found.files
+    parsed = [f for f in files if not f.failures]
+    return {
+        "grammar": grammar_name,
+        "grammar_sha256": found.grammar.sha256,
+        "files": _places(files),
+        "distinct": len(files),
+        "parsed": _places(parsed),
+        "bytes": _bytes(files),
+        "parsed_bytes": _bytes(parsed),
+        "seconds": round(found.seconds, 3),
+        "skipped": [
+            {"path": s.path, "reason": s.reason, "origin": s.origin} for s in found.skipped
+        ],
+        "origins": _origins(files),
+        "copies": [
+            {"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]
+        ],
+        "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
+        "clusters": [_cluster(c) for c in clusters.ranked],
+        "failures": _failures(found, clusters, recognizer),
+    }
+
+
+def _places(files: Iterable[SurveyedFile]) -> int:
+    return sum(len(f.places) for f in files)
+
+
+def _bytes(files: Iterable[SurveyedFile]) -> int:
+    return sum(f.size * len(f.places) for f in files)
+
+
+def _origins(files: Iterable[SurveyedFile]) -> list[dict[str, Any]]:
+    counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
+    for file in files:
+        for _, origin in file.places:
+            counts[origin][bool(file.failures)] += 1
+    return [
+        {"name": name, "files": good + bad, "parsed": good, "failed": bad}
+        for name, (good, bad) in sorted(counts.items())
+    ]
+
+
+def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[dict[str, Any]]:
+    finder = FailureFinder(recognizer)
+    contexts = []
+    kinds = []
+    for form in found.forms:
+        state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[: form.index])
+        contexts.append(finder.context(state))
+        kind = form.kinds[form.index]
+        kinds.append("unknown character" if kind == ERROR else recognizer.lexer.names[kind])
+    return [
+        {
+            "path": file.path,
+            "line": failed.line,
+            "column": failed.column,
+            "token": failed.token,
+            "kind": kinds[failed.form],
+            "text": failed.source,
+            "expected": list(contexts[failed.form].expected),
+            "rule": contexts[failed.form].rule,
+            "cluster": clusters.cluster_of[file.digest, index],
+            "follows": failed.follows,
+        }
+        for file in found.files
+        for index, failed in enumerate(file.failures)
+    ]
+
+
+def _cluster(cluster: Cluster) -> dict[str, Any]:
+    files = cluster.files
+    example = cluster.example
+    return {
+        "id": cluster.id,
+        "title": cluster.title,
+        "failures": len(cluster.members),
+        "lines": len(cluster.members),
+        "follows": sum(m.failed.follows for m in cluster.members),
+        "files": _places(files),
+        "distinct": len(files),
+        "origins": len({origin for f in files for _, origin in f.places}),
+        "unlocks": cluster.unlocks,
+        "rule": cluster.context.rule,
+        "rule_stack": list(cluster.context.rules),
+        "expected": list(cluster.context.expected),
+        "token": example.failed.token,
+        "example": _example(example),
+        "examples": [_example(m) for m in _examples(cluster)],
+        "files_by_origin": _files_by_origin(cluster),
+        "reproducer": None,
+        "proposals": [],
+    }
+
+
+def _example(member: Member) -> dict[str, Any]:
+    failed = member.failed
+    return {
+        "path": member.file.path,
+        "line": failed.line,
+        "column": failed.column,
+        "token": failed.token,
+        "text": failed.source,
+        "context": _surroundings(member),
+    }
+
+
+def _examples(cluster: Cluster) -> list[Member]:
+    """Further examples, from as many files as there are."""
+    first = cluster.example
+    by_file: dict[str, Member] = {}
+    for member in sorted(cluster.members, key=lambda m: (m.failed.follows, len(m.failed.source))):
+        if member is not first:
+            by_file.setdefault(member.file.digest, member)
+    return list(by_file.values())[:_EXAMPLES]
+
+
+def _files_by_origin(cluster: Cluster) -> list[dict[str, Any]]:
+    places: dict[str, dict[str, int]] = defaultdict(dict)
+    for member in cluster.members:
+        for path, origin in member.file.places:
+            places[origin].setdefault(path, member.failed.line)
+    out = []
+    for origin in sorted(places, key=lambda o: (-len(places[o]), o)):
+        listed = list(places[origin].items())
+        entry: dict[str, Any] = {
+            "origin": origin,
+            "files": [{"path": path, "line": line} for path, line in listed[:_FILES_NAMED]],
+        }
+        if len(listed) > _FILES_NAMED:
+            entry["more"] = len(listed) - _FILES_NAMED
+        out.append(entry)
+    return out
+
+
+def _surroundings(member: Member) -> list[dict[str, Any]]:
+    """The numbered lines around a failure."""
+    lines, line = member.file.lines(), member.failed.line
+    first, last = max(1, line - _CONTEXT_LINES), min(len(lines), line + _CONTEXT_LINES)
+    return [{"line": n, "text": lines[n - 1][:_WIDEST_LINE]} for n in range(first, last + 1)]
