@@ -73,7 +73,7 @@ def fetch(
         "all rights are theirs: read and measure the files, and do not pass them on."
     )
     wanted = sum(len(source.files) for source in sources)
-    with progress_bar("Fetching", wanted) as advance:
+    with progress_bar("fetching", wanted) as advance:
         results = [room.fetch(source, out, mirror, advance) for source in sources]
     rows = []
     for result in results:

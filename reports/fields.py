@@ -1,0 +1,60 @@
+"""Typed reading of a record that came from JSON.
+
+Fields may be absent, and a count may be given as the list of what was counted. Reading is lenient
+on purpose: the record of an older or newer release still gives a page.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+Record = Mapping[str, Any]
+
+
+def count(record: Record, key: str) -> int:
+    """The number at ``key``; the length where a list stands there; 0 where nothing fits."""
+    value = record.get(key)
+    if isinstance(value, int | float):
+        return int(value) if math.isfinite(value) else 0
+    return len(value) if isinstance(value, list | tuple) else 0
+
+
+def optional_count(record: Record, key: str) -> int | None:
+    """As `count`, but None where the field is absent, so that "unknown" is not shown as 0."""
+    return None if record.get(key) is None else count(record, key)
+
+
+def number(record: Record, key: str) -> float:
+    """The finite number at ``key``, else 0.0."""
+    value = record.get(key)
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
+
+
+def text(record: Record, key: str) -> str:
+    """The text at ``key``; numbers are spelled out; the empty text where nothing fits."""
+    value = record.get(key)
+    if isinstance(value, str):
+        return value
+    return "" if value is None or isinstance(value, list | tuple | Mapping) else str(value)
+
+
+def texts(record: Record, key: str) -> list[str]:
+    """The texts listed at ``key``; anything else in the list is left out."""
+    value = record.get(key)
+    if not isinstance(value, list | tuple):
+        return []
+    return [item for item in value if isinstance(item, str)]
+
+
+def records(record: Record, key: str) -> list[Record]:
+    """The records listed at ``key``; anything else in the list is left out."""
+    value = record.get(key)
+    if not isinstance(value, list | tuple):
+        return []
+    return [item for item in value if isinstance(item, Mapping)]
+
+
+def nested(record: Record, key: str) -> Record:
+    """The record at ``key``, empty where there is none."""
+    value = record.get(key)
+    return value if isinstance(value, Mapping) else {}

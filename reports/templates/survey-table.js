@@ -1,0 +1,198 @@
+// The table of clusters: open, sort, search, filter; and the links into it.
+
+const rows = [...document.querySelectorAll("#rows > .row")];
+const indexOf = new Map(clusters.map((cluster, i) => [cluster.id, i]));
+const places = new Map(data.mending.map(([id, , place]) => [id, place]));
+const cards = new Map();
+const state = { cluster: "", q: "", sort: "" };
+
+function setOpen(i, open) {
+  const row = rows[i];
+  const opener = row.querySelector(".open");
+  if (open && !cards.has(i)) {
+    const cell = el("td", "", card(clusters[i]));
+    cell.colSpan = row.cells.length;
+    const cardRow = el("tr", "card", cell);
+    cardRow.id = `card-${i}`;
+    opener.setAttribute("aria-controls", cardRow.id);
+    cards.set(i, cardRow);
+    row.after(cardRow);
+    settle(cardRow);
+  }
+  if (cards.has(i)) cards.get(i).hidden = !open || row.hidden;
+  row.classList.toggle("opened", open);
+  opener.setAttribute("aria-expanded", String(open));
+}
+const isOpen = (i) => rows[i].classList.contains("opened");
+
+function toggle(i) {
+  setOpen(i, !isOpen(i));
+  if (isOpen(i)) state.cluster = clusters[i].id;
+  else if (state.cluster === clusters[i].id) state.cluster = "";
+  writeHash();
+}
+
+function goTo(id) {
+  const i = indexOf.get(id);
+  if (i === undefined) {
+    byId("status").textContent = "No such cluster in this survey";
+    return;
+  }
+  if (rows[i].hidden) clearFilters();
+  setOpen(i, true);
+  state.cluster = id;
+  writeHash();
+  rows[i].scrollIntoView({ block: "start" });
+  rows[i].querySelector(".open").focus({ preventScroll: true });
+}
+
+const sortValue = {
+  place: (i) => places.get(clusters[i].id) ?? Infinity,
+  title: (i) => clusters[i].title.toLowerCase(),
+  rule: (i) => clusters[i].rule.toLowerCase(),
+  unlocks: (i) => clusters[i].unlocks,
+  files: (i) => clusters[i].files,
+  origins: (i) => clusters[i].origins,
+  failures: (i) => clusters[i].failures,
+};
+const ascendingFirst = new Set(["place", "title", "rule"]);
+
+let shownOrder = rows.map((_, i) => i);
+/** Orders the rows by `sort`: a key, with "-" before it for descending, or "" for the survey's order. */
+function order(sort) {
+  const down = sort.startsWith("-");
+  const key = sort.replace(/^-/, "");
+  const value = Object.hasOwn(sortValue, key) ? sortValue[key] : null;
+  const indices = rows.map((_, i) => i);
+  if (value) {
+    // The survey's order decides between equals, in both directions.
+    const compare = (a, b) => (value(a) < value(b) ? -1 : value(a) > value(b) ? 1 : 0);
+    indices.sort((a, b) => (down ? compare(b, a) : compare(a, b)) || a - b);
+  }
+  state.sort = value ? sort : "";
+  const unmoved = indices.every((i, n) => i === shownOrder[n]);
+  shownOrder = indices;
+  if (!unmoved) byId("rows").append(...indices.flatMap((i) => (cards.has(i) ? [rows[i], cards.get(i)] : [rows[i]])));
+  for (const head of document.querySelectorAll("#table > thead th")) {
+    if (value && head.dataset.key === key) head.setAttribute("aria-sort", down ? "descending" : "ascending");
+    else head.removeAttribute("aria-sort");
+  }
+}
+
+function nextSort(key) {
+  const first = ascendingFirst.has(key) ? key : `-${key}`;
+  const second = ascendingFirst.has(key) ? `-${key}` : key;
+  return state.sort === first ? second : state.sort === second ? "" : first;
+}
+
+const haystacks = [];
+function haystack(i) {
+  if (haystacks[i] === undefined) {
+    const cluster = clusters[i];
+    haystacks[i] = [
+      cluster.id, cluster.title, cluster.rule, cluster.token,
+      ...[...cluster.stack, ...cluster.expected, ...cluster.originNames].map((n) => strings[n]),
+      ...cluster.examples.flatMap((item) => [strings[item.path], ...item.lines.map(([, text]) => text)]),
+      ...cluster.byOrigin.flatMap(([, , files]) => files.map(([path]) => strings[path])),
+      cluster.reproducer ? cluster.reproducer.text : "",
+    ].join("\n").toLowerCase();
+  }
+  return haystacks[i];
+}
+
+function filter() {
+  const words = state.q.toLowerCase().split(/\s+/).filter(Boolean);
+  const origin = byId("origin").value;
+  let visibleRows = 0;
+  rows.forEach((row, i) => {
+    const cluster = clusters[i];
+    const keep = (!origin || cluster.originNames.some((n) => strings[n] === origin))
+      && (!byId("unlocking").checked || cluster.unlocks > 0)
+      && (!byId("direct").checked || cluster.failures === 0 || cluster.follows < cluster.failures)
+      && words.every((word) => haystack(i).includes(word));
+    row.hidden = !keep;
+    if (cards.has(i)) cards.get(i).hidden = !keep || !isOpen(i);
+    visibleRows += keep;
+  });
+  const filtered = visibleRows < rows.length;
+  byId("status").textContent = filtered ? `${number(visibleRows)} of ${counted(rows.length, "cluster")}` : counted(rows.length, "cluster");
+  byId("clear").hidden = !(state.q || origin || byId("unlocking").checked || byId("direct").checked);
+  byId("none").hidden = visibleRows > 0;
+}
+
+function search(text) {
+  state.q = text;
+  if (byId("search").value !== text) byId("search").value = text;
+  filter();
+}
+
+function clearFilters() {
+  byId("origin").value = "";
+  byId("unlocking").checked = byId("direct").checked = false;
+  search("");
+}
+
+// Links: #cluster=ID, #q=TEXT, #sort=-files
+
+function writeHash() {
+  const set = Object.entries(state).filter(([, value]) => value);
+  const hash = set.length ? `#${new URLSearchParams(set)}` : location.pathname + location.search;
+  try { history.replaceState(null, "", hash); } catch { /* some browsers refuse it for local files */ }
+}
+
+function readHash() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  order(given.get("sort") ?? "");
+  search(given.get("q") ?? "");
+  if (given.has("cluster")) goTo(given.get("cluster"));
+}
+
+function connect() {
+  const names = [...new Set(clusters.flatMap((cluster) => cluster.originNames.map((n) => strings[n])))].sort();
+  byId("origin").hidden = names.length < 2;
+  byId("origin").append(...names.map((name) => {
+    const option = el("option", "", name);
+    option.value = name;
+    return option;
+  }));
+  byId("unlocking").parentElement.hidden = !clusters.some((cluster) => cluster.unlocks > 0);
+  byId("direct").parentElement.hidden = !clusters.some((cluster) => cluster.follows > 0);
+
+  byId("rows").addEventListener("click", (event) => {
+    const row = event.target.closest(".row");
+    const marking = !getSelection().isCollapsed && getSelection().containsNode(row ?? document.body, true);
+    if (row && (!marking || event.target.closest(".open"))) toggle(Number(row.dataset.i));
+  });
+  byId("rows").addEventListener("keydown", (event) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (!step || !event.target.classList.contains("open")) return;
+    event.preventDefault();
+    let row = event.target.closest("tr");
+    do row = step > 0 ? row.nextElementSibling : row.previousElementSibling;
+    while (row && (row.hidden || !row.classList.contains("row")));
+    if (row) row.querySelector(".open").focus();
+  });
+  for (const head of document.querySelectorAll("#table > thead th")) {
+    head.querySelector("button").addEventListener("click", () => {
+      order(nextSort(head.dataset.key));
+      writeHash();
+    });
+  }
+  byId("search").addEventListener("input", () => {
+    search(byId("search").value);
+    writeHash();
+  });
+  for (const id of ["origin", "unlocking", "direct"]) byId(id).addEventListener("change", filter);
+  byId("clear").addEventListener("click", () => {
+    clearFilters();
+    writeHash();
+    byId("search").focus();
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "/" && !/^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) {
+      event.preventDefault();
+      byId("search").focus();
+    }
+  });
+  addEventListener("hashchange", readHash);
+}

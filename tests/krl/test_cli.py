@@ -1,0 +1,45 @@
+"""The command line as a whole."""
+
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+
+
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    """`krl --version` prints the installed version."""
+    assert 0 == main(["--version"])
+    assert f"krl {metadata.version('krl-workbench')}\n" == capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [[], ["-h"], ["--help"]])
+def test_help_lists_the_commands(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """`krl` alone and `krl --help` list the commands on stdout."""
+    assert 0 == main(arguments)
+    said = capsys.readouterr().out
+    assert all(f"\n  {command} " in said for command in ("recover", "corpus"))
+
+
+def test_module_runs_as_the_command(tmp_path: Path) -> None:
+    """`python -m krl` is `krl`, in any folder."""
+    command = [sys.executable, "-m", "krl", "corpus", "list"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert 2 == done.returncode
+    assert "krl: no corpus folder here: run this in a checkout of the workbench\n" == done.stderr
+
+
+def test_start_is_quick() -> None:
+    """Asking for help loads none of the rooms nor their parsers."""
+    program = (
+        "import sys; from krl.cli import main; main(['--help']);"
+        "print([room for room in ('antlr4', 'lark', 'pandas', 'jinja2', 'recovery.survey')"
+        " if room in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert "[]\n" == done.stderr

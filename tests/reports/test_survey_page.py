@@ -1,0 +1,155 @@
+"""The survey page as a file."""
+
+import json
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports import write_survey_page
+
+RecordBuilder = Callable[[str], dict[str, Any]]
+LOADING_ATTRIBUTES = {"src", "srcset", "href", "data", "action", "formaction", "poster"}
+
+
+class _Elements(HTMLParser):
+    """Every start tag of a page, and the text of its scripts and style sheets."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.raw: list[str] = []
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        if self.tags and self.tags[-1][0] in {"script", "style"}:
+            self.raw.append(data)
+
+
+def _page(record: dict[str, Any], folder: Path) -> str:
+    return write_survey_page(record, folder).read_text(encoding="utf-8")
+
+
+def test_the_page_is_index_html_in_a_folder_made_for_it(tmp_path: Path) -> None:
+    """Missing parents are made, and nothing but the page is left in the folder."""
+    folder = tmp_path / "reports" / "out"
+    assert folder / "index.html" == write_survey_page({}, folder)
+    assert [path.name for path in folder.iterdir()] == ["index.html"]
+
+
+def test_the_page_loads_nothing(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """No element names a resource, no style sheet imports one; links stay inside the page."""
+    page = _page(survey_record("believable"), tmp_path)
+    elements = _Elements(page)
+    loaded = [
+        value
+        for _, attributes in elements.tags
+        for name, value in attributes.items()
+        if name in LOADING_ATTRIBUTES and not (value or "").startswith("#cluster=")
+    ]
+    assert loaded == []
+    assert [tag for tag, _ in elements.tags if tag in {"link", "iframe", "object", "base"}] == []
+    assert re.findall(r"@import|url\(", page) == []
+    assert set(re.findall(r"\w+://[^\"'\s<]*", page)) == {"http://www.w3.org/2000/svg"}
+
+
+def test_only_our_script_may_run(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """The policy of the page forbids every source and allows scripts by hash alone."""
+    tags = _Elements(_page(survey_record("believable"), tmp_path)).tags
+    (policy,) = [a["content"] for t, a in tags if t == "meta" and "http-equiv" in a]
+    assert policy is not None
+    assert policy.startswith("default-src 'none'; ")
+    assert re.search(r"script-src 'sha256-[A-Za-z0-9+/=]{44}';", policy)
+
+
+def test_the_same_record_gives_the_same_bytes(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """Neither the clock nor the place of the folder is in the page."""
+    pages = [write_survey_page(survey_record("large"), tmp_path / name) for name in ("a", "b")]
+    assert pages[0].read_bytes() == pages[1].read_bytes()
+
+
+def test_hostile_text_adds_no_element(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """A record full of markup gives the same elements as one without."""
+    plain = _Elements(_page(survey_record("believable"), tmp_path / "plain"))
+    hostile = _Elements(_page(survey_record("hostile"), tmp_path / "hostile"))
+    assert [tag for tag, _ in plain.tags] == [tag for tag, _ in hostile.tags]
+
+
+def test_hostile_text_leaves_no_control_character(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """Terminal escapes cannot reach someone who prints the page to a terminal."""
+    page = _page(survey_record("hostile"), tmp_path)
+    assert re.findall("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e\u2028]", page) == []
+
+
+def test_template_marks_in_a_record_are_not_evaluated(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """Text that looks like a template expression is text."""
+    assert "{{ 7*7 }}" in _page(survey_record("hostile"), tmp_path)
+
+
+def test_the_page_does_not_hold_the_failures(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """A survey may have a million failures; the page shows clusters."""
+    assert "only-in-failures" not in _page(survey_record("believable"), tmp_path)
+
+
+def test_the_page_of_500_clusters_stays_below_5_mb(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """Large surveys remain something to send by mail."""
+    assert write_survey_page(survey_record("large"), tmp_path).stat().st_size < 5_000_000
+
+
+def test_a_record_far_too_large_is_shown_with_less_detail(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """Endless lines and very many files cost detail, not clusters."""
+    record = survey_record("large")
+    for cluster in record["clusters"]:
+        cluster["example"]["text"] += "x" * 5000
+        for example in (cluster["example"], *cluster["examples"]):
+            for line in example["context"]:
+                line["text"] += "y" * 5000
+    page = write_survey_page(record, tmp_path)
+    assert page.stat().st_size < 5_000_000
+    assert page.read_text(encoding="utf-8").count('<tr class="row"') == 500
+
+
+def test_a_record_with_nothing_in_it_gives_a_page(tmp_path: Path) -> None:
+    """All fields may be absent."""
+    assert "No KRL found" in _page({}, tmp_path)
+
+
+def test_a_record_read_from_json_gives_the_same_page(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """The page can be made again from the JSON that was written beside it."""
+    record = survey_record("believable")
+    again = json.loads(json.dumps(record))
+    assert _page(record, tmp_path / "a") == _page(again, tmp_path / "b")
+
+
+def test_a_page_that_cannot_be_put_in_place_leaves_the_old_one(
+    survey_record: RecordBuilder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A failure half way leaves neither a torn page nor a draft."""
+    page = write_survey_page({}, tmp_path)
+    before = page.read_bytes()
+
+    def refuse(*_: object) -> None:
+        raise PermissionError("held open")
+
+    monkeypatch.setattr(Path, "replace", refuse)
+    with pytest.raises(PermissionError):
+        write_survey_page(survey_record("believable"), tmp_path)
+    assert before == page.read_bytes()
+    assert [path.name for path in tmp_path.iterdir()] == ["index.html"]

@@ -1,0 +1,162 @@
+"""The house stands as it is drawn, and what its documents say of it is so."""
+
+import importlib
+import re
+import shutil
+import subprocess
+import tomllib
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from krl.cli import app
+
+ROOT = Path(__file__).parents[1]
+PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PACKAGES = ["krl", "grammar", "recovery", "interp", "conformance", "reports"]
+
+TOP_LEVEL = {
+    *(".ci", ".editorconfig", ".gitattributes", ".gitignore"),
+    *("CHANGELOG.md", "CMakeLists.txt", "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md"),
+    *("pyproject.toml", "corpus", "docs", "tests"),
+    *PACKAGES,
+}
+NOT_YET = {"CMakeLists.txt"}
+MAKE_TARGETS = set("setup recover conformance nightly test check grammar bench".split())
+
+needs_git = pytest.mark.skipif(
+    shutil.which("git") is None or not (ROOT / ".git").exists(), reason="not a git checkout"
+)
+
+
+def _documents() -> list[Path]:
+    return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def _git(*arguments: str) -> str:
+    done = subprocess.run(
+        ["git", *arguments], cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=True
+    )
+    return done.stdout
+
+
+def _make_targets() -> set[str]:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    rules = re.findall(r"^([a-z][a-z ]*):(?!=)", makefile, re.MULTILINE)
+    return {target for rule in rules for target in rule.split()}
+
+
+@needs_git
+def test_top_level_is_as_designed() -> None:
+    """Nothing lies at the top level but what the house has a place for."""
+    files = _git("ls-files", "--cached", "--others", "--exclude-standard").splitlines()
+    found = {name.strip('"').partition("/")[0] for name in files}
+    assert set() == found - TOP_LEVEL
+    assert set() == TOP_LEVEL - NOT_YET - found
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_package_says_what_it_is(name: str) -> None:
+    """Every package has a docstring and names its public surface."""
+    package = importlib.import_module(name)
+    assert package.__doc__
+    assert isinstance(package.__all__, list)
+    assert all(hasattr(package, public) for public in package.__all__)
+
+
+def test_packages_are_named_alike_everywhere() -> None:
+    """What is packed, what is typed and what has layers are the same packages."""
+    tools = PROJECT["tool"]
+    assert PACKAGES == tools["scikit-build"]["wheel"]["packages"]
+    assert PACKAGES == tools["importlinter"]["root_packages"]
+    assert [*PACKAGES, "tests"] == tools["mypy"]["files"]
+
+
+def test_no_module_has_a_name_that_says_nothing() -> None:
+    """There are no utils, helpers or managers."""
+    modules = {path.stem for package in PACKAGES for path in (ROOT / package).rglob("*.py")}
+    assert set() == modules & {"util", "utils", "helper", "helpers", "manager", "managers"}
+
+
+def test_tests_are_folders_without_init() -> None:
+    """Test folders are not packages, and each is named after the package that it tests."""
+    folders = {path.name for path in (ROOT / "tests").iterdir() if path.is_dir()}
+    assert set() == folders - {*PACKAGES, "__pycache__"}
+    assert [] == list((ROOT / "tests").rglob("__init__.py"))
+
+
+def test_version_stands_in_one_place() -> None:
+    """The version of pyproject.toml is the installed one, and no module repeats it."""
+    version = PROJECT["project"]["version"]
+    assert version == metadata.version("krl-workbench")
+    modules = (path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    repeated = [path for path in modules if f'"{version}"' in path.read_text(encoding="utf-8")]
+    assert [] == repeated
+
+
+def test_python_version_is_the_same_everywhere() -> None:
+    """Package, ruff, mypy, Makefile and README ask for the same Python."""
+    assert ">=3.11" == PROJECT["project"]["requires-python"]
+    assert "py311" == PROJECT["tool"]["ruff"]["target-version"]
+    assert "3.11" == PROJECT["tool"]["mypy"]["python_version"]
+    assert "sys.version_info < (3, 11)" in (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert "Python 3.11 or later" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_make_has_the_agreed_targets() -> None:
+    """The Makefile has every agreed target, and `make help` names them all."""
+    targets = _make_targets()
+    assert set() == MAKE_TARGETS - targets
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert set() == {target for target in targets - {"help"} if f"make {target}" not in makefile}
+
+
+@pytest.mark.parametrize("document", _documents(), ids=lambda path: str(path.name))
+def test_documents_name_what_there_is(document: Path) -> None:
+    """A `make` target or `krl` command that a document names exists, and so does a linked file."""
+    text = document.read_text(encoding="utf-8")
+    code = "\n".join(
+        re.findall(r"```.*?\n(.*?)```", text, re.DOTALL) + re.findall(r"`(.+?)`", text)
+    )
+    assert set() == set(re.findall(r"^make ([a-z]+)", code, re.MULTILINE)) - _make_targets()
+    commands = set(typer.main.get_command(app).commands)  # type: ignore[attr-defined]
+    assert set() == set(re.findall(r"^(?:\S+\\)?krl ([a-z]+)", code, re.MULTILINE)) - commands
+    links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
+    assert set() == {link for link in links if not (document.parent / link).exists()}
+
+
+@needs_git
+@pytest.mark.parametrize("name", ["main.src", "MAIN.SRC", "$config.dat", "sps.sub", "cell.zip"])
+def test_git_leaves_krl_alone(name: str) -> None:
+    """Git changes no line end of KRL files and archives, on any system."""
+    (line,) = _git("check-attr", "text", "--", f"corpus/programs/cell/{name}").splitlines()
+    assert line.endswith(": text: unset")
+
+
+@needs_git
+@pytest.mark.parametrize("name", ["corpus/open/a__b/main.src", "reports/out/recover/index.html"])
+def test_git_ignores_what_is_not_ours(name: str) -> None:
+    """Fetched files and written pages cannot be committed by accident."""
+    assert name == _git("check-ignore", "--", name).strip()
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make here")
+@pytest.mark.parametrize("target", ["conformance", "nightly", "bench"])
+def test_unbuilt_targets_say_so(target: str) -> None:
+    """A target whose part is not built yet says so in one line and fails."""
+    done = subprocess.run(
+        ["make", "--no-print-directory", target], cwd=ROOT, capture_output=True, check=False
+    )
+    assert 2 == done.returncode
+    assert done.stderr.startswith(f"make {target}: not built yet".encode())
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")
+def test_ci_script_is_well_formed() -> None:
+    """The script of continuous integration parses and stops at the first error."""
+    script = ROOT / ".ci" / "run"
+    subprocess.run(["bash", "-n", script.as_posix()], check=True)
+    assert "\nset -euo pipefail\n" in script.read_text(encoding="utf-8")
