@@ -8,7 +8,8 @@ speed, and each distinct lexeme is classified once and remembered.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 
 from grammar.chars import automaton_of, both_cases, class_of, first_characters, overlap, pattern_of
 from grammar.g4 import (
@@ -39,14 +40,19 @@ _MOST_REMEMBERED = 400_000
 class _Kinds(dict[str, int]):
     """Kind by lexeme, filled as lexemes are met."""
 
-    __slots__ = ("literals", "others", "other_kinds")
+    __slots__ = ("literals", "others", "other_kinds", "rank")
 
     def __init__(
-        self, literals: dict[str, int], others: re.Pattern[str], other_kinds: Sequence[int]
+        self,
+        literals: Mapping[str, int],
+        others: re.Pattern[str],
+        other_kinds: Sequence[int],
+        rank: Mapping[int, int],
     ) -> None:
         self.literals = literals
         self.others = others
         self.other_kinds = other_kinds
+        self.rank = rank  # of two rules that match the same text the first one wins
 
     def __missing__(self, lexeme: str) -> int:
         kind = self._classify(lexeme)
@@ -67,7 +73,7 @@ class _Kinds(dict[str, int]):
             return ERROR if other is None else other
         if other is None or other == SKIPPED:
             return literal
-        return min(literal, other)
+        return min(literal, other, key=self.rank.__getitem__)
 
 
 class Lexer:
@@ -97,7 +103,8 @@ class Lexer:
         others = [r for r in rules if r.name not in names_of_literals]
         classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
         other_kinds = [SKIPPED if r.is_skipped else self.kind_of[r.name] for r in others]
-        self.kinds = _Kinds(literals, classify, other_kinds)
+        rank = {kind: kind for kind in self.kind_of.values()}
+        self.kinds = _Kinds(literals, classify, other_kinds, rank)
         # A literal that another rule matches whole (a keyword that could be a name) adds nothing
         # to where tokens end, and leaving it out keeps the automaton small.
         cutting = [
@@ -120,6 +127,23 @@ class Lexer:
                     return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
         everything = pattern_of(self._automaton)
         return re.compile(f"({everything}|[\\s\\S])") if everything else None
+
+    def with_keyword(self, word: str) -> Lexer:
+        """The lexer of the same rules plus a keyword; kinds keep their numbers.
+
+        ``word`` has to be a name to this lexer, so that reserving it moves no token's end.
+        """
+        wider = copy(self)
+        kind = len(self.names)
+        wider.names = (*self.names, word)
+        wider.display = (*self.display, word)
+        wider.kind_of = {**self.kind_of, word: kind}
+        wider._keywords = self._keywords | {kind}
+        old = self.kinds
+        wider.kinds = _Kinds(
+            {**old.literals, word: kind}, old.others, old.other_kinds, {**old.rank, kind: 0}
+        )
+        return wider
 
     def is_keyword(self, kind: int) -> bool:
         """Whether the token is one word that the grammar reserves."""

@@ -21,10 +21,15 @@ Symbol = str  # the name of a token or a rule
 
 @dataclass(frozen=True, slots=True)
 class RuleAutomaton:
-    """States of one rule; 0 is its start. ``edges[state]`` maps a symbol to the next state."""
+    """States of one rule; 0 is its start. ``edges[state]`` maps a symbol to the next state.
+
+    ``places[state]`` are the addresses (`grammar.edits`) of the elements before which the rule may
+    stand in that state; one past the last element stands for the end of a sequence.
+    """
 
     edges: tuple[Mapping[Symbol, int], ...]
     final: frozenset[int]
+    places: tuple[frozenset[tuple[int, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +42,7 @@ class Network:
     """
 
     lexer: Lexer
+    automata: Mapping[str, RuleAutomaton]
     shifts: tuple[Mapping[int, int], ...]
     calls: tuple[tuple[tuple[int, int], ...], ...]
     final: tuple[bool, ...]
@@ -45,9 +51,9 @@ class Network:
     start: int
 
 
-def network_of(grammar: Grammar) -> Network:
-    """Link the automata of all parser rules."""
-    lexer = lexer_of(grammar)
+def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
+    """Link the automata of all parser rules; ``lexer`` saves deriving it from the grammar."""
+    lexer = lexer or lexer_of(grammar)
     automata = {r.name: rule_automaton(grammar, r) for r in grammar.rules if not r.is_lexer}
     entry: dict[str, int] = {}
     size = 0
@@ -69,6 +75,7 @@ def network_of(grammar: Grammar) -> Network:
             rule.append(name)
     return Network(
         lexer,
+        automata,
         tuple(shifts),
         tuple(calls),
         tuple(final),
@@ -111,32 +118,37 @@ class _Fragments:
     def __init__(self, names: Mapping[str, str]) -> None:
         self.names = names
         self.edges: list[list[tuple[Symbol | None, int]]] = [[]]
+        self.places: dict[int, list[tuple[int, ...]]] = {}
 
     def state(self) -> int:
         self.edges.append([])
         return len(self.edges) - 1
 
-    def choice(self, sequences: Iterable[tuple[Element, ...]], start: int) -> int:
+    def choice(
+        self, sequences: Iterable[tuple[Element, ...]], start: int, address: tuple[int, ...] = ()
+    ) -> int:
         end = self.state()
-        for elements in sequences:
+        for number, elements in enumerate(sequences, 1):
             last = start
-            for element in elements:
-                last = self.element(element, last)
+            for place, element in enumerate(elements, 1):
+                self.places.setdefault(last, []).append((*address, number, place))
+                last = self.element(element, last, (*address, number, place))
+            self.places.setdefault(last, []).append((*address, number, len(elements) + 1))
             self.edges[last].append((None, end))
         return end
 
-    def element(self, element: Element, start: int) -> int:
+    def element(self, element: Element, start: int, address: tuple[int, ...]) -> int:
         match element:
             case Reference(name=name):
                 return self.step(name, start)
             case Literal(text=text):
                 return self.step(self.names[text], start)
             case Group(alternatives=alternatives):
-                return self.choice((a.elements for a in alternatives), start)
+                return self.choice((a.elements for a in alternatives), start, address)
             case Repeat(item=item, operator=operator):
                 before, after = self.state(), self.state()
                 self.edges[start].append((None, before))
-                end = self.element(item, before)
+                end = self.element(item, before, address)
                 self.edges[end].append((None, after))
                 if operator != "+":
                     self.edges[before].append((None, after))
@@ -183,10 +195,13 @@ def _build(rule: Rule, names: Mapping[str, str]) -> RuleAutomaton:
                 order.append(closed)
             row[symbol] = index[closed]
         table.append(row)
-    return _minimal(table, [end in states for states in order])
+    places = [{a for s in states for a in fragments.places.get(s, ())} for states in order]
+    return _minimal(table, [end in states for states in order], places)
 
 
-def _minimal(table: list[dict[Symbol, int]], final: list[bool]) -> RuleAutomaton:
+def _minimal(
+    table: list[dict[Symbol, int]], final: list[bool], places: list[set[tuple[int, ...]]]
+) -> RuleAutomaton:
     block = [int(f) for f in final]
     while True:
         keys: dict[object, int] = {}
@@ -203,8 +218,12 @@ def _minimal(table: list[dict[Symbol, int]], final: list[bool]) -> RuleAutomaton
     for b in block:  # states keep the order in which they are met; the start stays 0
         number.setdefault(b, len(number))
     edges: list[dict[Symbol, int]] = [{} for _ in number]
+    merged: list[set[tuple[int, ...]]] = [set() for _ in number]
     for s, row in enumerate(table):
         edges[number[block[s]]] = {symbol: number[block[t]] for symbol, t in row.items()}
+        merged[number[block[s]]] |= places[s]
     return RuleAutomaton(
-        tuple(edges), frozenset(number[block[s]] for s, f in enumerate(final) if f)
+        tuple(edges),
+        frozenset(number[block[s]] for s, f in enumerate(final) if f),
+        tuple(map(frozenset, merged)),
     )

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from grammar.g4 import Grammar
-from grammar.lexer import EOF, SKIPPED
+from grammar.lexer import EOF, SKIPPED, Lexer
 from grammar.network import Network, network_of
 
 __all__ = ["Configuration", "Core", "Frames", "Recognizer", "State", "Tail"]
@@ -94,9 +94,9 @@ class State:
 class Recognizer:
     """Recognises the programs of one grammar; remembers what it has worked out."""
 
-    def __init__(self, grammar: Grammar) -> None:
+    def __init__(self, grammar: Grammar, lexer: Lexer | None = None) -> None:
         self.grammar = grammar
-        self.network: Network = network_of(grammar)
+        self.network: Network = network_of(grammar, lexer)
         self.lexer = self.network.lexer
         self.line_kind = self.lexer.kind_of.get("NEWLINE", -99)
         self._bottom = Stack(-1, None)
@@ -160,6 +160,24 @@ class Recognizer:
         kernel = frozenset((p, self._restack(below, self._bottom)) for p, *below in frames)
         return State(self._core(kernel), ())
 
+    def sites(self, state: State) -> frozenset[Configuration]:
+        """Every configuration the state stands for, calls and returns followed."""
+        core = self._settled(state.core, state.tail)[0]
+        return frozenset(self._close(core))
+
+    def at(self, configuration: Configuration, state: State) -> State:
+        """A state of one configuration, over the frames that lie below ``state`` when settled."""
+        _, tail = self._settled(state.core, state.tail)
+        return State(self._core(frozenset([configuration])), tail)
+
+    def at_rule(self, rule: str) -> State:
+        """The state at the start of a rule, nothing around it."""
+        return State(self._core(frozenset([(self.network.entry[rule], self._bottom)])), ())
+
+    def ends(self, state: State) -> bool:
+        """Whether what was read from ``state`` on can end there, nothing more being needed."""
+        return self._settled(state.core, state.tail)[0].is_open
+
     @property
     def size(self) -> int:
         """How many cores have been built so far."""
@@ -222,7 +240,7 @@ class Recognizer:
             self._close(core)
         return core
 
-    def _close(self, core: Core) -> None:
+    def _close(self, core: Core) -> set[Configuration]:
         """Follow calls and returns from the kernel; note the tokens and how deep returns reach."""
         network, bottom = self.network, self._bottom
         shifts, calls, final = network.shifts, network.calls, network.final
@@ -251,6 +269,7 @@ class Recognizer:
                     seen.add(configuration)
                     todo.append(configuration)
         core.moves, core.is_open, core.floor = moves, is_open, floor
+        return seen
 
     def _cut(self, core: Core) -> tuple[Core, tuple[int, ...]]:
         """The core without the frames that all its stacks share and no return has reached.

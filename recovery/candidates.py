@@ -1,0 +1,224 @@
+"""Candidate edits for a failing line: where in the grammar could its tokens have been let in?
+
+At the offending token the recogniser stands at certain positions of certain rules, and each
+position is a place in the text of a rule (`grammar.network.RuleAutomaton.places`). From there four
+kinds of edit can let the line be read: insert the unexpected tokens, let them stand in place of
+the next element, leave the next elements out, or add an alternative to the rule that comes next.
+An edit is worth a try when what follows the tokens can be read from where it leads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from grammar.edits import (
+    AddAlternative,
+    AddToken,
+    Address,
+    Edit,
+    Insert,
+    MakeOptional,
+    Widen,
+    sequences,
+)
+from grammar.failures import Form
+from grammar.g4 import Alternative, Group, Reference, Repeat
+from grammar.recognizer import Configuration, Recognizer, State
+from recovery.phrases import Phraser, Word, repeated
+
+__all__ = ["Candidate", "CandidateFinder", "Line"]
+
+_MOST_SKIPPED = 3
+_LONGEST_RUN = 24
+_BLOCK_BOUNDARY_RANK = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A failing line: its form, and the names in it that are meant as keywords, by place."""
+
+    form: Form
+    keywords: tuple[tuple[int, str], ...]
+
+    def words(self) -> list[Word]:
+        """The tokens of the line."""
+        meant = dict(self.keywords)
+        return [(kind, meant.get(i)) for i, kind in enumerate(self.form.kinds)]
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """Edits that belong together, and how much they let in: lower is more restrictive."""
+
+    edits: tuple[Edit, ...]
+    breadth: int
+
+
+class CandidateFinder:
+    """Finds candidate edits under one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self.grammar = recognizer.grammar
+        self.phraser = Phraser(recognizer)
+        self._sequences: dict[str, dict[Address, Alternative]] = {}
+
+    def find(self, line: Line) -> list[Candidate]:
+        """Candidates for a line, the most promising first, each once."""
+        found: dict[tuple[Edit, ...], int] = {}
+        for rank, edits in self._find(line):
+            known = found.get(edits)
+            if known is None or rank < known:
+                found[edits] = rank
+        ordered = sorted(found.items(), key=lambda item: (item[1], str(item[0])))
+        return [Candidate(edits, rank) for edits, rank in ordered]
+
+    def _find(self, line: Line) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        recognizer, form = self.recognizer, line.form
+        words = line.words()
+        starts = {form.index}
+        # a would-be keyword was read as a name and failed the line later than it should have
+        starts |= {i for i, _ in line.keywords if i < form.index}
+        for start in sorted(starts):
+            state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[:start])
+            for site in sorted(recognizer.sites(state), key=lambda c: (c[0], c[1].depth)):
+                yield from self._at_site(state, site, words, start)
+
+    def _at_site(
+        self, state: State, site: Configuration, words: list[Word], start: int
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        network = self.recognizer.network
+        position, stack = site
+        rule = network.rule[position]
+        base = network.entry[rule]
+        automaton = network.automata[rule]
+        at_entry = position == base
+        here = self.recognizer.at(site, state)
+        places = sorted(automaton.places[position - base])
+        ends = self._resuming(here, words, start)
+        for place in places:
+            number = place[-1]
+            sequence = self._sequence(rule, place[:-1])
+            # inserting what is missing, to go on where we are
+            if not (at_entry and number == 1):
+                for end in ends:
+                    yield from self._insertions(rule, place, words[start:end])
+            if number > len(sequence.elements):
+                continue
+            # something else in place of the next element
+            element = sequence.elements[number - 1]
+            for after in self._after(site, automaton.places, place, base):
+                beyond = self.recognizer.at((after, stack), state)
+                for end in self._resuming(beyond, words, start):
+                    yield from self._replacements(rule, place, element, words[start:end])
+            yield from self._omissions(state, site, place, words, start)
+
+    def _resuming(self, state: State, words: list[Word], start: int) -> list[int]:
+        """Where the line can be read on from ``state``, to its end or for some tokens at least."""
+        kinds = [kind for kind, _ in words]
+        whole, part = [], []
+        for end in range(start + 1, min(len(kinds), start + _LONGEST_RUN) + 1):
+            if end == len(kinds):
+                break  # the end of the line itself is never part of a phrase
+            if any(keyword for _, keyword in words[end:]):
+                rest = kinds[end : next(i for i in range(end, len(words)) if words[i][1])]
+            else:
+                rest = kinds[end:]
+            _, failed = self.recognizer.run(state, rest)
+            if failed is None:
+                whole.append(end)
+            elif failed > 1:
+                part.append(end)
+        return whole[:3] or part[:1]
+
+    # ------------------------------------------------------------------------- the edits
+
+    def _insertions(
+        self, rule: str, place: Address, words: Sequence[Word]
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        for rank, symbols in enumerate(self.phraser.phrases(words)):
+            unit = repeated(symbols)
+            if unit is None:
+                yield 10 + rank, self._with_tokens(words, Insert(rule, place, _optional(symbols)))
+            looped = unit or symbols
+            if looped[0] == "','" or unit:
+                text = f"({' '.join(looped)})*" if len(looped) > 1 else f"{looped[0]}*"
+                yield 12 + rank, self._with_tokens(words, Insert(rule, place, text))
+
+    def _replacements(
+        self, rule: str, place: Address, element: object, words: Sequence[Word]
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        for rank, symbols in enumerate(self.phraser.phrases(words)):
+            text = " ".join(symbols)
+            if isinstance(element, Reference) and not element.is_token:
+                yield 8 + rank, self._with_tokens(words, AddAlternative(element.name, text))
+            if place == (1, 1) and len(self._sequence(rule, (1,)).elements) == 1:
+                continue  # the same as an alternative of the rule
+            yield 9 + rank, self._with_tokens(words, Widen(rule, place, text))
+
+    def _omissions(
+        self,
+        state: State,
+        site: Configuration,
+        place: Address,
+        words: list[Word],
+        start: int,
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        network = self.recognizer.network
+        position, stack = site
+        rule = network.rule[position]
+        base = network.entry[rule]
+        places = network.automata[rule].places
+        sequence = self._sequence(rule, place[:-1])
+        rest = [kind for kind, _ in words[start:]]
+        for count in range(1, _MOST_SKIPPED + 1):
+            last = (*place[:-1], place[-1] + count)
+            if last[-1] > len(sequence.elements) + 1 or (
+                count == len(sequence.elements) and len(place) == 2
+            ):
+                return
+            if count == 1 and _may_be_left_out(sequence.elements[place[-1] - 1]):
+                continue
+            for target in (base + s for s, at in enumerate(places) if last in at):
+                _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
+                if failed is None or failed > 1:
+                    yield 8 + count, (MakeOptional(rule, place, count),)
+                    break
+
+    def _after(
+        self,
+        site: Configuration,
+        places: tuple[frozenset[Address], ...],
+        place: Address,
+        base: int,
+    ) -> list[int]:
+        """Positions just after the element at ``place``."""
+        following = (*place[:-1], place[-1] + 1)
+        network = self.recognizer.network
+        rule = network.rule[site[0]]
+        element = self._sequence(rule, place[:-1]).elements[place[-1] - 1]
+        if isinstance(element, Reference):
+            state = network.automata[rule].edges[site[0] - base].get(element.name)
+            return [] if state is None else [base + state]
+        return [base + s for s, at in enumerate(places) if following in at]
+
+    def _with_tokens(self, words: Sequence[Word], edit: Edit) -> tuple[Edit, ...]:
+        keywords = sorted({keyword for _, keyword in words if keyword})
+        return (*(AddToken(k) for k in keywords), edit)
+
+    def _sequence(self, rule: str, address: Address) -> Alternative:
+        known = self._sequences.get(rule)
+        if known is None:
+            known = self._sequences[rule] = dict(sequences(self.grammar.by_name[rule]))
+        return known[address]
+
+
+def _optional(symbols: tuple[str, ...]) -> str:
+    return f"({' '.join(symbols)})?" if len(symbols) > 1 else f"{symbols[0]}?"
+
+
+def _may_be_left_out(element: object) -> bool:
+    if isinstance(element, Repeat):
+        return element.operator != "+"
+    return isinstance(element, Group) and any(not a.elements for a in element.alternatives)

@@ -1,0 +1,164 @@
+"""Phrases: from the tokens a grammar did not expect to the words of a rule that would.
+
+The same tokens can be written into a rule as they are (``STEP 2``), or with rules in place of
+operands (``STEP literal``, ``STEP expression``). The first is the most restrictive; which is right
+is for the corpus and the negatives to tell, so all are proposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+from grammar.recognizer import Recognizer, State
+
+__all__ = ["Phraser", "Word"]
+
+#: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
+Word = tuple[int, str | None]
+
+_LONGEST_PHRASE = 24
+_MOST_SYMBOLS = 8
+_MOST_REMEMBERED = 200_000
+
+
+class Phraser:
+    """Writes phrases with the rules of one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self._spans: dict[tuple[int, ...], frozenset[str]] = {}
+
+    @cached_property
+    def _entries(self) -> dict[str, State]:
+        """A state at the start of each rule that stands for part of a line."""
+        network = self.recognizer.network
+        return {
+            rule: self.recognizer.at_rule(rule)
+            for rule in network.entry
+            if rule != self.recognizer.grammar.start
+        }
+
+    @cached_property
+    def _uses(self) -> dict[str, int]:
+        """How often each rule is called: the more, the more general its role."""
+        network = self.recognizer.network
+        counts = dict.fromkeys(network.entry, 0)
+        for calls in network.calls:
+            for entry, _ in calls:
+                counts[network.rule[entry]] += 1
+        return counts
+
+    @cached_property
+    def _wider(self) -> dict[str, frozenset[str]]:
+        """For each rule the rules it stands for alone (``expression`` for ``literal``)."""
+        network = self.recognizer.network
+        direct = {
+            rule: {
+                network.rule[callee]
+                for callee, back in network.calls[entry]
+                if network.final[back]
+            }
+            for rule, entry in network.entry.items()
+        }
+        out: dict[str, frozenset[str]] = {}
+
+        def closed(rule: str) -> frozenset[str]:
+            if rule not in out:
+                out[rule] = frozenset(direct[rule]).union(*(closed(r) for r in direct[rule]))
+            return out[rule]
+
+        for rule in direct:
+            closed(rule)
+        return out
+
+    def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
+        """Rules of which these tokens are a whole sentence."""
+        found = self._spans.get(kinds)
+        if found is None:
+            if len(self._spans) >= _MOST_REMEMBERED:
+                self._spans.clear()
+            run, ends = self.recognizer.run, self.recognizer.ends
+            names = set()
+            for rule, entry in self._entries.items():
+                state, failed = run(entry, kinds)
+                if failed is None and ends(state):
+                    names.add(rule)
+            found = self._spans[kinds] = frozenset(names)
+        return found
+
+    def phrases(self, words: Sequence[Word]) -> Iterator[tuple[str, ...]]:
+        """Symbols for the words, the most restrictive first; none where they are too many."""
+        if not words or len(words) > _LONGEST_PHRASE:
+            return
+        seen: set[tuple[str, ...]] = set()
+        for choose in (None, self._narrowest, self._widest):
+            symbols = self._written(words, choose)
+            if symbols is not None and len(symbols) <= _MOST_SYMBOLS and symbols not in seen:
+                seen.add(symbols)
+                yield symbols
+
+    def _narrowest(self, rules: frozenset[str]) -> str:
+        """Of rules that fit alike the one that stands for least else."""
+        return min(rules, key=lambda r: (len(self._wider[r]), r))
+
+    def _widest(self, rules: frozenset[str]) -> str:
+        """The rule most used of those that stand for all the others."""
+        return max(rules, key=lambda r: (len(self._wider[r] & rules), self._uses[r], r))
+
+    def _written(self, words: Sequence[Word], choose: object) -> tuple[str, ...] | None:
+        """The fewest symbols that cover the words, rules chosen by ``choose``."""
+        count = len(words)
+        best: list[tuple[int, tuple[str, ...]] | None] = [None] * count + [(0, ())]
+        for start in range(count - 1, -1, -1):
+            for end in range(start + 1, count + 1):
+                rest = best[end]
+                symbol = self._symbol(words[start:end], choose)
+                if rest is None or symbol is None:
+                    continue
+                cost = rest[0] + (10 if end - start == 1 or choose is None else 9)
+                known = best[start]
+                if known is None or cost < known[0]:
+                    best[start] = (cost, (symbol, *rest[1]))
+        return best[0][1] if best[0] else None
+
+    def _symbol(self, words: Sequence[Word], choose: object) -> str | None:
+        kinds = tuple(kind for kind, _ in words)
+        if len(words) == 1:
+            kind, keyword = words[0]
+            if keyword is not None:
+                return keyword
+            if kind < 0:
+                return None
+            if choose is None or not self._is_operand(kind):
+                return self.spelled(kind)
+        if choose is None or any(keyword for _, keyword in words):
+            return None
+        rules = self.rules_for(kinds)
+        operands = frozenset(r for r in rules if self._uses[r])
+        if not operands:
+            return self.spelled(kinds[0]) if len(kinds) == 1 else None
+        return choose(operands)  # type: ignore[operator,no-any-return]
+
+    def _is_operand(self, kind: int) -> bool:
+        """Whether a token carries a value of its own: a name, a number, a string."""
+        display = self.recognizer.lexer.display[kind]
+        return display == self.recognizer.lexer.names[kind] and not (
+            self.recognizer.lexer.is_keyword(kind)
+        )
+
+    def spelled(self, kind: int) -> str:
+        """A token as a rule writes it: keywords and kinds by name, signs quoted."""
+        lexer = self.recognizer.lexer
+        if lexer.is_keyword(kind) or lexer.display[kind] == lexer.names[kind]:
+            return lexer.names[kind]
+        return f"'{lexer.display[kind]}'"
+
+
+def repeated(symbols: tuple[str, ...]) -> tuple[str, ...] | None:
+    """The shortest unit that the symbols repeat, where they are more than one of it."""
+    for size in range(1, len(symbols) // 2 + 1):
+        unit = symbols[:size]
+        if len(symbols) % size == 0 and unit * (len(symbols) // size) == symbols:
+            return unit
+    return None
