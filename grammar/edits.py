@@ -9,8 +9,8 @@ element number one past the last means the end of the sequence.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 
 from grammar.g4 import (
     Alternative,
@@ -40,7 +40,9 @@ __all__ = [
     "apply",
     "describe",
     "element_at",
+    "from_data",
     "sequences",
+    "to_data",
 ]
 
 Address = tuple[int, ...]
@@ -282,6 +284,51 @@ def _remove_rule(grammar: Grammar, rule: Rule) -> Grammar:
         rules=(*grammar.rules[:index], *grammar.rules[index + 1 :]),
         gaps=(*grammar.gaps[:index], joined, *grammar.gaps[index + 2 :]),
     )
+
+
+# ------------------------------------------------------------------------- edits as data
+
+_KINDS: dict[str, type[Edit]] = {
+    "insert": Insert,
+    "widen": Widen,
+    "make-optional": MakeOptional,
+    "add-alternative": AddAlternative,
+    "add-rule": AddRule,
+    "add-token": AddToken,
+    "remove-alternative": RemoveAlternative,
+    "remove-element": RemoveElement,
+    "remove-rule": RemoveRule,
+}
+
+
+def to_data(edit: Edit) -> dict[str, str | int | list[int]]:
+    """The edit as JSON or TOML holds it; see `from_data`."""
+    kind = next(name for name, cls in _KINDS.items() if type(edit) is cls)
+    values = {f.name: getattr(edit, f.name) for f in fields(edit)}
+    return {
+        "edit": kind,
+        **{k: list(v) if isinstance(v, tuple) else v for k, v in values.items()},
+    }
+
+
+def from_data(data: Mapping[str, object]) -> Edit:
+    """The edit that `to_data` wrote; raises `GrammarError` where the data is of no edit."""
+    cls = _KINDS.get(str(data.get("edit")))
+    if cls is None:
+        raise GrammarError(f"there is no edit {data.get('edit')!r}; know {', '.join(_KINDS)}")
+    values: dict[str, object] = {}
+    for known in fields(cls):
+        if known.name not in data:
+            continue
+        value = data[known.name]
+        wanted = {"at": list, "count": int, "alternative": int}.get(known.name, str)
+        if not isinstance(value, wanted):
+            raise GrammarError(f"edit {data['edit']}: {known.name} is not as it should be")
+        values[known.name] = tuple(value) if isinstance(value, list) else value
+    try:
+        return cls(**values)  # type: ignore[arg-type]
+    except TypeError:
+        raise GrammarError(f"edit {data['edit']}: something is missing") from None
 
 
 # ------------------------------------------------------------------------------- addresses

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from grammar.g4 import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.lexer import Lexer, lexer_of
 
-__all__ = ["Network", "network_of"]
+__all__ = ["Network", "RuleAutomaton", "is_left_recursive", "network_of"]
 
 Symbol = str  # the name of a token or a rule
 
@@ -227,3 +227,44 @@ def _minimal(
         frozenset(number[block[s]] for s, f in enumerate(final) if f),
         tuple(map(frozenset, merged)),
     )
+
+
+def is_left_recursive(network: Network) -> bool:
+    """Whether a rule can call itself before it has read a token: no simulation would end."""
+    rule, calls, final = network.rule, network.calls, network.final
+    nullable: set[str] = set()
+    leading: dict[str, set[str]] = {}
+    grown = True
+    while grown:  # what may be empty decides what comes first, and the other way round
+        grown = False
+        for name, entry in network.entry.items():
+            callees: set[str] = set()
+            seen, todo = {entry}, [entry]
+            empty = False
+            while todo:
+                position = todo.pop()
+                empty = empty or final[position]
+                for callee, back in calls[position]:
+                    callees.add(rule[callee])
+                    if rule[callee] in nullable and back not in seen:
+                        seen.add(back)
+                        todo.append(back)
+            if empty and name not in nullable:
+                nullable.add(name)
+                grown = True
+            leading[name] = callees
+    return any(_reaches(leading, name) for name in leading)
+
+
+def _reaches(leading: Mapping[str, set[str]], name: str) -> bool:
+    """Whether a name leads back to itself."""
+    seen: set[str] = set()
+    todo = [name]
+    while todo:
+        for callee in leading[todo.pop()]:
+            if callee == name:
+                return True
+            if callee not in seen:
+                seen.add(callee)
+                todo.append(callee)
+    return False

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from grammar.g4 import Grammar
-from grammar.lexer import EOF, SKIPPED, Lexer
+from grammar.lexer import EOF, SKIPPED
 from grammar.network import Network, network_of
 
 __all__ = ["Configuration", "Core", "Frames", "Recognizer", "State", "Tail"]
@@ -94,9 +94,9 @@ class State:
 class Recognizer:
     """Recognises the programs of one grammar; remembers what it has worked out."""
 
-    def __init__(self, grammar: Grammar, lexer: Lexer | None = None) -> None:
+    def __init__(self, grammar: Grammar, network: Network | None = None) -> None:
         self.grammar = grammar
-        self.network: Network = network_of(grammar, lexer)
+        self.network = network or network_of(grammar)
         self.lexer = self.network.lexer
         self.line_kind = self.lexer.kind_of.get("NEWLINE", -99)
         self._bottom = Stack(-1, None)

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from krl import door
-from krl.commands import corpus, recover
+from krl.commands import bench, corpus, recover
 
 __all__ = ["app", "main"]
 
@@ -19,6 +19,7 @@ app = typer.Typer(
 )
 app.command("recover")(recover.recover)
 app.add_typer(corpus.app, name="corpus")
+app.add_typer(bench.app, name="bench")
 
 
 def _print_version(wanted: bool) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from grammar.edits import (
     AddAlternative,
@@ -23,7 +24,7 @@ from grammar.edits import (
     sequences,
 )
 from grammar.failures import Form
-from grammar.g4 import Alternative, Group, Reference, Repeat
+from grammar.g4 import Alternative, Group, Literal, Reference, Repeat
 from grammar.recognizer import Configuration, Recognizer, State
 from recovery.phrases import Phraser, Word, repeated
 
@@ -31,7 +32,9 @@ __all__ = ["Candidate", "CandidateFinder", "Line"]
 
 _MOST_SKIPPED = 3
 _LONGEST_RUN = 24
-_BLOCK_BOUNDARY_RANK = 50
+#: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
+_HUB = 4
+_UNLIKELY = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,7 @@ class CandidateFinder:
         self._sequences: dict[str, dict[Address, Alternative]] = {}
 
     def find(self, line: Line) -> list[Candidate]:
-        """Candidates for a line, the most promising first, each once."""
+        """Candidates for a line, the most restrictive first, each once."""
         found: dict[tuple[Edit, ...], int] = {}
         for rank, edits in self._find(line):
             known = found.get(edits)
@@ -84,6 +87,26 @@ class CandidateFinder:
             state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[:start])
             for site in sorted(recognizer.sites(state), key=lambda c: (c[0], c[1].depth)):
                 yield from self._at_site(state, site, words, start)
+        if form.index and 0 not in starts:
+            yield from self._as_new_line(recognizer.restore(form.before), words)
+
+    def _as_new_line(
+        self, before: State, words: list[Word]
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        """The whole line as an alternative of a rule that can stand there."""
+        last = len(words) - 1
+        end = [words[last][0]]
+        network = self.recognizer.network
+        for position, stack in self.recognizer.sites(before):
+            for entry, back in network.calls[position]:
+                rule = network.rule[entry]
+                if len(self.grammar.by_name[rule].alternatives) < _HUB:
+                    continue
+                beyond = self.recognizer.at((back, stack), before)
+                if self.recognizer.run(beyond, end)[1] is None:
+                    for symbols in self.phraser.phrases(words[:last]):
+                        rank, edits = self._alternative(rule, symbols, words[:last])
+                        yield rank + _UNLIKELY, edits
 
     def _at_site(
         self, state: State, site: Configuration, words: list[Word], start: int
@@ -93,16 +116,15 @@ class CandidateFinder:
         rule = network.rule[position]
         base = network.entry[rule]
         automaton = network.automata[rule]
-        at_entry = position == base
         here = self.recognizer.at(site, state)
-        places = sorted(automaton.places[position - base])
         ends = self._resuming(here, words, start)
-        for place in places:
+        for place in sorted(automaton.places[position - base]):
             number = place[-1]
             sequence = self._sequence(rule, place[:-1])
             # inserting what is missing, to go on where we are
-            if not (at_entry and number == 1):
-                for end in ends:
+            for end in ends:
+                # before the first element of a rule only where that element itself comes next
+                if position != base or words[end][0] in self._first(sequence, number):
                     yield from self._insertions(rule, place, words[start:end])
             if number > len(sequence.elements):
                 continue
@@ -114,18 +136,23 @@ class CandidateFinder:
                     yield from self._replacements(rule, place, element, words[start:end])
             yield from self._omissions(state, site, place, words, start)
 
+    def _first(self, sequence: Alternative, number: int) -> frozenset[int]:
+        """The token a place itself reads next, where the element there is a token."""
+        if number > len(sequence.elements):
+            return frozenset()
+        element = sequence.elements[number - 1]
+        if isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
+            return frozenset([self.recognizer.lexer.kind_of[self.grammar.token_of(element)]])
+        return frozenset()
+
     def _resuming(self, state: State, words: list[Word], start: int) -> list[int]:
         """Where the line can be read on from ``state``, to its end or for some tokens at least."""
         kinds = [kind for kind, _ in words]
         whole, part = [], []
-        for end in range(start + 1, min(len(kinds), start + _LONGEST_RUN) + 1):
-            if end == len(kinds):
-                break  # the end of the line itself is never part of a phrase
-            if any(keyword for _, keyword in words[end:]):
-                rest = kinds[end : next(i for i in range(end, len(words)) if words[i][1])]
-            else:
-                rest = kinds[end:]
-            _, failed = self.recognizer.run(state, rest)
+        # the end of the line itself is never part of a phrase
+        for end in range(start + 1, min(len(kinds), start + _LONGEST_RUN)):
+            unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
+            _, failed = self.recognizer.run(state, kinds[end:unknown])
             if failed is None:
                 whole.append(end)
             elif failed > 1:
@@ -137,25 +164,69 @@ class CandidateFinder:
     def _insertions(
         self, rule: str, place: Address, words: Sequence[Word]
     ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
-        for rank, symbols in enumerate(self.phraser.phrases(words)):
+        width = self._width(rule)
+        if len(self.grammar.by_name[rule].alternatives) >= _HUB and (
+            len(self._sequence(rule, place[:-1]).elements) == 1
+        ):
+            width += _UNLIKELY  # behind one of many statements rather than in it
+        for symbols in self.phraser.phrases(words):
+            rank = width + self.phraser.breadth(symbols)
             unit = repeated(symbols)
             if unit is None:
-                yield 10 + rank, self._with_tokens(words, Insert(rule, place, _optional(symbols)))
+                yield rank + 10, self._with_tokens(words, Insert(rule, place, _optional(symbols)))
             looped = unit or symbols
             if looped[0] == "','" or unit:
                 text = f"({' '.join(looped)})*" if len(looped) > 1 else f"{looped[0]}*"
-                yield 12 + rank, self._with_tokens(words, Insert(rule, place, text))
+                yield rank + 12, self._with_tokens(words, Insert(rule, place, text))
 
     def _replacements(
         self, rule: str, place: Address, element: object, words: Sequence[Word]
     ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
-        for rank, symbols in enumerate(self.phraser.phrases(words)):
-            text = " ".join(symbols)
+        for symbols in self.phraser.phrases(words):
             if isinstance(element, Reference) and not element.is_token:
-                yield 8 + rank, self._with_tokens(words, AddAlternative(element.name, text))
+                yield self._alternative(element.name, symbols, words)
             if place == (1, 1) and len(self._sequence(rule, (1,)).elements) == 1:
                 continue  # the same as an alternative of the rule
-            yield 9 + rank, self._with_tokens(words, Widen(rule, place, text))
+            rank = self._width(rule) + self.phraser.breadth(symbols) + 10
+            if len(words) > 1 and self._is_keyword(element):
+                rank += _UNLIKELY
+            yield rank, self._with_tokens(words, Widen(rule, place, " ".join(symbols)))
+
+    def _is_keyword(self, element: object) -> bool:
+        return isinstance(element, Reference) and (
+            element.is_token
+            and self.recognizer.lexer.is_keyword(self.recognizer.lexer.kind_of[element.name])
+        )
+
+    def _alternative(
+        self, rule: str, symbols: tuple[str, ...], words: Sequence[Word]
+    ) -> tuple[int, tuple[Edit, ...]]:
+        # a rule of many alternatives is made to take more; one of a single form is not
+        hub = max(0, _HUB + 2 - len(self.grammar.by_name[rule].alternatives))
+        rank = self._width(rule) + self.phraser.breadth(symbols) + 8 + hub
+        return rank, self._with_tokens(words, AddAlternative(rule, " ".join(symbols)))
+
+    def _width(self, rule: str) -> int:
+        """How many rules lead to this one: an edit counts wherever they are used."""
+        return self._ancestors[rule]
+
+    @cached_property
+    def _ancestors(self) -> dict[str, int]:
+        network = self.recognizer.network
+        callers: dict[str, set[str]] = {name: set() for name in network.entry}
+        for position, calls in enumerate(network.calls):
+            for entry, _ in calls:
+                callers[network.rule[entry]].add(network.rule[position])
+        out = {}
+        for name in callers:
+            seen: set[str] = set()
+            todo = [name]
+            while todo:
+                for caller in callers[todo.pop()] - seen:
+                    seen.add(caller)
+                    todo.append(caller)
+            out[name] = len(seen)
+        return out
 
     def _omissions(
         self,
@@ -183,7 +254,8 @@ class CandidateFinder:
             for target in (base + s for s, at in enumerate(places) if last in at):
                 _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
                 if failed is None or failed > 1:
-                    yield 8 + count, (MakeOptional(rule, place, count),)
+                    rank = self._width(rule) + 8 + count
+                    yield rank, (MakeOptional(rule, place, count),)
                     break
 
     def _after(

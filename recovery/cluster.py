@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from grammar.failures import Context, FailureFinder, Form
+from grammar.failures import Context, FailureFinder
 from grammar.recognizer import Recognizer
+from recovery.candidates import Line
+from recovery.causes import Cause, Judge, Proposal, find_causes
 from recovery.shapes import Shape, Shaper
 from recovery.survey import Failed, Survey, SurveyedFile
 
@@ -25,19 +27,22 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """Failures with one cause. ``unlocks``: files that would parse if only it were mended."""
+    """Failures with one cause.
+
+    ``unlocks``: files that would parse if only it were mended. ``line`` is the failing line that
+    stands for it and ``example`` a failure of that line; ``restores`` says for each of the
+    ``proposals`` how many files parse with it alone.
+    """
 
     id: str
     title: str
-    shape: Shape
     context: Context
+    line: Line
+    example: Member
     members: tuple[Member, ...]
     unlocks: int
-
-    @property
-    def example(self) -> Member:
-        """The failure to show: direct, and on the shortest line."""
-        return min(self.members, key=lambda m: (m.failed.follows, len(m.failed.source)))
+    proposals: tuple[Proposal, ...]
+    restores: tuple[int, ...]
 
     @property
     def files(self) -> tuple[SurveyedFile, ...]:
@@ -49,130 +54,210 @@ class Cluster:
 class Clusters:
     """All clusters of a survey, what holds back most first, and the greedy order of mending.
 
-    ``order`` lists (cluster, files that parse once it and all before it are mended).
+    ``order`` lists (cluster, files that parse once it and all before it are mended);
+    ``cluster_of`` maps (digest, index of a failure) to the cluster's id.
     """
 
     ranked: tuple[Cluster, ...]
     order: tuple[tuple[Cluster, int], ...]
-    cluster_of: dict[tuple[str, int], str]  # (digest, index of the failure) to the cluster's id
+    cluster_of: dict[tuple[str, int], str]
+    lines: tuple[Line, ...]
 
 
-def cluster(found: Survey) -> Clusters:
-    """Group the failures of a survey."""
-    recognizer = Recognizer(found.grammar)
-    finder = FailureFinder(recognizer)
-    contexts = [_context(recognizer, finder, form) for form in found.forms]
-    shaper = Shaper(
-        recognizer.lexer,
-        (
-            (failed, found.forms[failed.form], contexts[failed.form])
-            for file in found.files
-            for failed in file.failures
-            if not failed.follows
-        ),
-    )
-    groups: dict[Shape, list[Member]] = defaultdict(list)
-    shapes: dict[tuple[str, int], Shape] = {}
-    example_context: dict[Shape, Context] = {}
-    for file in found.files:
-        for index, failed in enumerate(file.failures):
-            context = contexts[failed.form]
-            shape = shaper.shape(failed, found.forms[failed.form], context)
-            groups[shape].append(Member(file, failed))
-            shapes[file.digest, index] = shape
-            example_context.setdefault(shape, context)
-    alone = _unlocked_alone(found.files, shapes)
-    names = _titles(groups)
-    ranked = [
-        Cluster(
-            id=_identity(shape),
-            title=names[shape],
-            shape=shape,
-            context=example_context[shape],
-            members=tuple(members),
-            unlocks=alone[shape],
+def cluster(
+    found: Survey,
+    *,
+    judge: Judge = lambda edits: 0,
+    on_found: Callable[[int], object] = lambda count: None,
+    on_done: Callable[[int], object] = lambda count: None,
+) -> Clusters:
+    """Group the failures of a survey by cause.
+
+    ``judge`` counts the negatives an edit lets in; ``on_found`` and ``on_done`` report progress.
+    """
+    groups = _Lines(found)
+    causes: Sequence[Cause] = ()
+    if groups.lines:
+        on_found(len(groups.by_shape))
+        causes = find_causes(
+            groups.recognizer, groups.lines, groups.weights, groups.by_shape, judge, on_done
         )
-        for shape, members in groups.items()
+    cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
+    return _assembled(found, groups, causes, cause_of)
+
+
+class _Lines:
+    """The failing lines of a survey: distinct ones, and where each occurs."""
+
+    def __init__(self, found: Survey) -> None:
+        self.recognizer = Recognizer(found.grammar)
+        finder = FailureFinder(self.recognizer)
+        self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
+        direct = [
+            (file, index, failed)
+            for file in found.files
+            for index, failed in enumerate(file.failures)
+            if not failed.follows
+        ]
+        self.shaper = Shaper(
+            self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
+        )
+        numbers: dict[Line, int] = {}
+        shapes: list[Shape] = []
+        self.line_of: dict[tuple[str, int], int] = {}
+        files: dict[int, dict[str, int]] = defaultdict(dict)
+        for file, index, failed in direct:
+            form = found.forms[failed.form]
+            line = Line(form, self.shaper.keywords(failed, form))
+            number = numbers.setdefault(line, len(numbers))
+            if number == len(shapes):
+                shapes.append(self.shaper.shape(failed, form, self.contexts[failed.form]))
+            self.line_of[file.digest, index] = number
+            files[number][file.digest] = len(file.places)
+        self.lines = tuple(numbers)
+        self.shapes = shapes
+        self.weights = [sum(files[n].values()) for n in range(len(shapes))]
+        by_shape: dict[Shape, list[int]] = defaultdict(list)
+        for number, shape in enumerate(shapes):
+            by_shape[shape].append(number)
+        self.by_shape = sorted(
+            by_shape.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
+        )
+
+    def _context(
+        self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]
+    ) -> Context:
+        return finder.context(self.recognizer.run(self.recognizer.restore(before), kinds)[0])
+
+
+def _assembled(
+    found: Survey, groups: _Lines, causes: Sequence[Cause], cause_of: dict[int, int]
+) -> Clusters:
+    members: dict[int, list[Member]] = defaultdict(list)
+    needs: list[tuple[SurveyedFile, frozenset[int], frozenset[int]]] = []
+    by_failure: dict[tuple[str, int], int] = {}
+    for file in found.files:
+        direct: set[int] = set()
+        last = None
+        for index, failed in enumerate(file.failures):
+            line = groups.line_of.get((file.digest, index))
+            if line is not None:
+                direct.add(line)
+                last = cause_of[line]
+            assert last is not None  # nothing follows from nothing
+            members[last].append(Member(file, failed))
+            by_failure[file.digest, index] = last
+        if direct:
+            needs.append((file, frozenset(direct), frozenset(cause_of[n] for n in direct)))
+    alone: Counter[int] = Counter()
+    for file, _, wanted in needs:
+        if len(wanted) == 1:
+            alone[next(iter(wanted))] += len(file.places)
+    titles = _titles([_heaviest(cause, groups) for cause in causes], groups.shapes)
+    clusters = [
+        _cluster(number, cause, titles[number], members[number], alone[number], groups, needs)
+        for number, cause in enumerate(causes)
     ]
-    ranked.sort(key=lambda c: (-c.unlocks, -_places(c.files), -len(c.members), c.id))
-    by_shape = {c.shape: c for c in ranked}
+    order = _greedy(found.files, [(f, wanted) for f, _, wanted in needs], clusters)
+    ranked = sorted(clusters, key=lambda c: (-c.unlocks, -_places(c.files), -len(c.members), c.id))
     return Clusters(
         tuple(ranked),
-        tuple(_greedy(found.files, shapes, by_shape)),
-        {key: by_shape[shape].id for key, shape in shapes.items()},
+        tuple(order),
+        {key: clusters[number].id for key, number in by_failure.items()},
+        groups.lines,
     )
 
 
-def _context(recognizer: Recognizer, finder: FailureFinder, form: Form) -> Context:
-    state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[: form.index])
-    return finder.context(state)
+def _heaviest(cause: Cause, groups: _Lines) -> int:
+    return max(cause.lines, key=lambda n: (groups.weights[n], -len(groups.lines[n].form.kinds), -n))
+
+
+def _cluster(
+    number: int,
+    cause: Cause,
+    title: str,
+    members: Sequence[Member],
+    unlocks: int,
+    groups: _Lines,
+    needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
+) -> Cluster:
+    line = groups.lines[_heaviest(cause, groups)]
+    of_line = [
+        m for m in members if not m.failed.follows and _is_of(m.failed, line, groups)
+    ] or members
+    example = min(of_line, key=lambda m: (len(m.failed.source), m.file.path, m.failed.line))
+    return Cluster(
+        id=_identity(title),
+        title=title,
+        context=groups.contexts[example.failed.form],
+        line=line,
+        example=example,
+        members=tuple(members),
+        unlocks=unlocks,
+        proposals=cause.proposals,
+        restores=tuple(
+            sum(len(file.places) for file, direct, _ in needs if direct <= proposal.mended)
+            for proposal in cause.proposals
+        ),
+    )
+
+
+def _is_of(failed: Failed, line: Line, groups: _Lines) -> bool:
+    return groups.contexts[failed.form] is not None and (
+        len(failed.words) >= line.form.index
+        and line.form.index < len(line.form.kinds)
+        and all(
+            place < len(failed.words) and failed.words[place] == word
+            for place, word in line.keywords
+        )
+    )
 
 
 def _places(files: Iterable[SurveyedFile]) -> int:
     return sum(len(file.places) for file in files)
 
 
-def _identity(shape: Shape) -> str:
-    text = "\0".join((shape.rule, shape.lead, shape.bracket, shape.offender))
-    return "c-" + hashlib.sha256(text.encode()).hexdigest()[:8]
+def _identity(title: str) -> str:
+    return "c-" + hashlib.sha256(title.encode()).hexdigest()[:8]
 
 
-def _titles(shapes: Iterable[Shape]) -> dict[Shape, str]:
-    """Titles; where two shapes share one, the rule tells them apart."""
-    shapes = list(shapes)
-    counts = Counter(shape.title for shape in shapes)
-    return {
-        s: s.title if counts[s.title] == 1 else f"{s.title} (in {s.rule})" for s in shapes
-    }
-
-
-def _causes(
-    file: SurveyedFile, shapes: dict[tuple[str, int], Shape]
-) -> frozenset[Shape]:
-    """Shapes that keep a file from parsing; what only follows goes away with its cause."""
-    direct = {
-        shapes[file.digest, i] for i, failed in enumerate(file.failures) if not failed.follows
-    }
-    return frozenset(direct or (shapes[file.digest, i] for i in range(len(file.failures))))
-
-
-def _unlocked_alone(
-    files: Sequence[SurveyedFile], shapes: dict[tuple[str, int], Shape]
-) -> Counter[Shape]:
-    alone: Counter[Shape] = Counter()
-    for file in files:
-        causes = _causes(file, shapes)
-        if len(causes) == 1:
-            alone[next(iter(causes))] += len(file.places)
-    return alone
+def _titles(lines: Sequence[int], shapes: Sequence[Shape]) -> list[str]:
+    """Titles; where two clusters share one, the rule and then a number tell them apart."""
+    plain = Counter(shapes[n].title for n in lines)
+    out: list[str] = []
+    for n in lines:
+        shape = shapes[n]
+        title = shape.title if plain[shape.title] == 1 else f"{shape.title} (in {shape.rule})"
+        same = sum(t == title or t.startswith(f"{title} #") for t in out)
+        out.append(f"{title} #{same + 1}" if same else title)
+    return out
 
 
 def _greedy(
     files: Sequence[SurveyedFile],
-    shapes: dict[tuple[str, int], Shape],
-    by_shape: dict[Shape, Cluster],
-) -> Iterable[tuple[Cluster, int]]:
+    needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
+    clusters: Sequence[Cluster],
+) -> Iterator[tuple[Cluster, int]]:
     """Mend next what lets most files parse, or brings most of them nearest to it."""
     parsed = sum(len(f.places) for f in files if not f.failures)
-    waiting = Counter[frozenset[Shape]]()
-    for file in files:
-        if file.failures:
-            waiting[_causes(file, shapes)] += len(file.places)
+    waiting: Counter[frozenset[int]] = Counter()
+    for file, wanted in needs:
+        waiting[wanted] += len(file.places)
     while waiting:
-        gain: Counter[Shape] = Counter()
-        near: dict[Shape, float] = defaultdict(float)
-        for causes, count in waiting.items():
-            for shape in causes:
-                near[shape] += count / len(causes) ** 2
-                if len(causes) == 1:
-                    gain[shape] += count
-        best = max(near, key=lambda s: (gain[s], near[s], by_shape[s].id))
-        left: Counter[frozenset[Shape]] = Counter()
-        for causes, count in waiting.items():
-            rest = causes - {best}
+        gain: Counter[int] = Counter()
+        near: dict[int, float] = defaultdict(float)
+        for wanted, count in waiting.items():
+            for number in wanted:
+                near[number] += count / len(wanted) ** 2
+                if len(wanted) == 1:
+                    gain[number] += count
+        best = max(near, key=lambda n: (gain[n], near[n], clusters[n].id))
+        left: Counter[frozenset[int]] = Counter()
+        for wanted, count in waiting.items():
+            rest = wanted - {best}
             if rest:
                 left[rest] += count
             else:
                 parsed += count
         waiting = left
-        yield by_shape[best], parsed
+        yield clusters[best], parsed

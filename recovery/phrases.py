@@ -87,6 +87,10 @@ class Phraser:
             found = self._spans[kinds] = frozenset(names)
         return found
 
+    def breadth(self, symbols: Sequence[str]) -> int:
+        """How much a phrase lets in: nothing for tokens, more for rules that stand for more."""
+        return sum(1 + len(self._wider[s]) for s in symbols if s in self._wider)
+
     def phrases(self, words: Sequence[Word]) -> Iterator[tuple[str, ...]]:
         """Symbols for the words, the most restrictive first; none where they are too many."""
         if not words or len(words) > _LONGEST_PHRASE:
@@ -94,17 +98,23 @@ class Phraser:
         seen: set[tuple[str, ...]] = set()
         for choose in (None, self._narrowest, self._widest):
             symbols = self._written(words, choose)
-            if symbols is not None and len(symbols) <= _MOST_SYMBOLS and symbols not in seen:
-                seen.add(symbols)
-                yield symbols
+            if symbols is None:
+                continue
+            for shape in (symbols, as_list(symbols)):
+                if len(shape) <= _MOST_SYMBOLS and shape not in seen:
+                    seen.add(shape)
+                    yield shape
 
     def _narrowest(self, rules: frozenset[str]) -> str:
-        """Of rules that fit alike the one that stands for least else."""
-        return min(rules, key=lambda r: (len(self._wider[r]), r))
+        """Of rules that fit alike the one that stands for least else.
+
+        A rule that nothing uses waits to be used: it comes first.
+        """
+        return min(rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), r))
 
     def _widest(self, rules: frozenset[str]) -> str:
-        """The rule most used of those that stand for all the others."""
-        return max(rules, key=lambda r: (len(self._wider[r] & rules), self._uses[r], r))
+        """The most used rule; of those alike the one that stands for most of the others."""
+        return max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
 
     def _written(self, words: Sequence[Word], choose: object) -> tuple[str, ...] | None:
         """The fewest symbols that cover the words, rules chosen by ``choose``."""
@@ -135,10 +145,9 @@ class Phraser:
         if choose is None or any(keyword for _, keyword in words):
             return None
         rules = self.rules_for(kinds)
-        operands = frozenset(r for r in rules if self._uses[r])
-        if not operands:
+        if not rules:
             return self.spelled(kinds[0]) if len(kinds) == 1 else None
-        return choose(operands)  # type: ignore[operator,no-any-return]
+        return choose(rules)  # type: ignore[operator,no-any-return]
 
     def _is_operand(self, kind: int) -> bool:
         """Whether a token carries a value of its own: a name, a number, a string."""
@@ -162,3 +171,15 @@ def repeated(symbols: tuple[str, ...]) -> tuple[str, ...] | None:
         if len(symbols) % size == 0 and unit * (len(symbols) // size) == symbols:
             return unit
     return None
+
+
+def as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:
+    """``a , a , a`` as ``a (',' a)*``; other symbols as they are."""
+    if "','" not in symbols:
+        return symbols
+    size = symbols.index("','")
+    unit, rest = symbols[:size], symbols[size:]
+    count, left = divmod(len(rest), size + 1)
+    if size and not left and rest == ("','", *unit) * count:
+        return (*unit, f"(',' {' '.join(unit)})*")
+    return symbols

@@ -3,13 +3,14 @@
 Real source has thousands of failing lines and few causes. A shape keeps what tells causes apart
 (the word a line begins with, the token that could not come, the rule at work) and drops what does
 not (names, numbers, the place in the file). Words that the grammar does not know yet are names to
-its lexer; that such a word is meant as a keyword shows in how often it stands in the same spot.
+its lexer; that such a word is meant as a keyword shows in how it stands: beside operands of many
+kinds with no sign between, in several files, and hardly ever as a plain name.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from grammar.failures import Context, Form
@@ -19,10 +20,13 @@ from recovery.survey import Failed
 __all__ = ["Shape", "Shaper"]
 
 _ELLIPSIS = "…"
-# A name is taken for a keyword when the same word stands in the same spot on so many lines, and
-# they are so large a part of the lines with any name in that spot.
-_WORD_LINES = 3
-_WORD_SHARE = 0.02
+# A word is a would-be keyword when it stands so in so many files and beside so many different
+# words on one side (a declared name stands beside its type only), or this often with none …
+_WORD_FILES = 2
+_WORD_NEIGHBOURS = 3
+_WORD_ALONE = 6
+# … and in at least this share of its uses on failing lines.
+_WORD_SHARE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,84 +34,132 @@ class Shape:
     """What tells one kind of failure from another.
 
     ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
-    plain name; ``offender`` the token that could not come: a word, a sign or a kind of token.
+    plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
+    ``bracket`` the bracket that is open before it.
     """
 
     rule: str
     lead: str
-    offender: str
     bracket: str
+    offender: str
 
     @property
     def title(self) -> str:
-        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … , …``, ``SWITCH …``."""
+        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … ,``, ``SWITCH …``."""
         parts = [self.lead] if self.lead else []
         if self.bracket:
             parts += [_ELLIPSIS, self.bracket]
-        if self.offender != self.lead:
-            if not parts or parts[-1] != _ELLIPSIS:
-                parts.append(_ELLIPSIS)
-            parts.append(self.offender)
-        elif len(parts) == 1:
+        if self.offender == self.lead:
+            return f"{self.lead} {_ELLIPSIS}"
+        if not parts or parts[-1] != _ELLIPSIS:
             parts.append(_ELLIPSIS)
-        return " ".join(parts)
+        return " ".join((*parts, self.offender))
 
 
 class Shaper:
-    """Gives failures their shapes; has to see all of them first, to learn the words."""
+    """Gives failures their shapes; sees all of them first, to learn the words."""
 
-    def __init__(self, lexer: Lexer, failures: Iterable[tuple[Failed, Form, Context]]) -> None:
+    def __init__(
+        self, lexer: Lexer, failures: Iterable[tuple[str, Failed, Form]]
+    ) -> None:
+        """``failures`` come with the digest of their file."""
         self.lexer = lexer
         self._name = lexer.kind_of.get("NAME", ERROR)
-        spots: Counter[tuple[str, str]] = Counter()
-        words: Counter[tuple[str, str, str]] = Counter()
-        for failed, form, context in failures:
-            for spot, word in self._names(failed, form):
-                spots[spot, context.rule] += 1
-                words[spot, context.rule, word] += 1
-        self._words = {
-            key
-            for key, count in words.items()
-            if count >= _WORD_LINES and count >= _WORD_SHARE * spots[key[0], key[1]]
-        }
+        self._signs = frozenset(
+            kind
+            for kind, text in enumerate(lexer.display)
+            if text != lexer.names[kind] and not lexer.is_keyword(kind)
+        )
+        beside: Counter[str] = Counter()
+        plain: Counter[str] = Counter()
+        files: dict[str, set[str]] = defaultdict(set)
+        neighbours: dict[tuple[str, int], set[str]] = defaultdict(set)
+        alone: Counter[str] = Counter()
+        for digest, failed, form in failures:
+            for place, word in self._names(failed, form):
+                if not self._stands_alone(form.kinds, place):
+                    plain[word] += 1
+                    continue
+                beside[word] += 1
+                files[word].add(digest)
+                sides = [s for s in (-1, 1) if self._is_operand_at(form.kinds, place + s)]
+                alone[word] += not sides
+                for side in sides:
+                    if place + side < len(failed.words):
+                        neighbours[word, side].add(failed.words[place + side])
+        self._keywords = frozenset(
+            word
+            for word, count in beside.items()
+            if not word.startswith("$")
+            and len(files[word]) >= _WORD_FILES
+            and (
+                max(len(neighbours[word, -1]), len(neighbours[word, 1])) >= _WORD_NEIGHBOURS
+                or alone[word] >= _WORD_ALONE
+            )
+            and count >= _WORD_SHARE * (count + plain[word])
+        )
 
-    def _names(self, failed: Failed, form: Form) -> Iterable[tuple[str, str]]:
-        """Names on the line that may be meant as keywords, with the spot they stand in."""
-        kinds, index = form.kinds, form.index
-        if kinds[0] == self._name and self._is_opener(form):
-            yield "lead", failed.words[0]
-        if 0 < index < len(kinds) and kinds[index] == self._name:
-            yield "offender", failed.words[2]
+    def _names(self, failed: Failed, form: Form) -> Iterator[tuple[int, str]]:
+        """Names on a line that are not inside braces, where names stand beside values anyway."""
+        depth = 0
+        for place, (kind, word) in enumerate(zip(form.kinds, failed.words, strict=False)):
+            if word == "{":
+                depth += 1
+            elif word == "}":
+                depth -= 1
+            elif kind == self._name and not depth:
+                yield place, word
 
-    def _is_opener(self, form: Form) -> bool:
-        """Whether the first name is followed by what never follows a plain name."""
-        following = form.kinds[1] if len(form.kinds) > 1 else ERROR
-        text = self.lexer.display[following] if following > 0 else ""
-        return form.index <= 1 and text not in ("=", "[", "(", ".", ":", ",")
+    def _stands_alone(self, kinds: tuple[int, ...], place: int) -> bool:
+        """Whether the name has no sign on the side where a name in an expression has one.
+
+        A plain name begins a line only before a sign; elsewhere it follows a sign or a keyword. A
+        name that follows an operand, or that an operand follows, is one word too many.
+        """
+        before = kinds[place - 1] if place else None
+        after = kinds[place + 1] if place + 1 < len(kinds) else None
+        if before is None:
+            return after not in self._signs
+        return (
+            self._is_operand(before) or self._is_operand(after) or self._is_sign(before, ":")
+        )
+
+    def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:
+        return 0 <= place < len(kinds) and self._is_operand(kinds[place])
+
+    def _is_operand(self, kind: int | None) -> bool:
+        if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
+            return False
+        text = self.lexer.display[kind]
+        return kind not in self._signs and not self.lexer.is_keyword(kind) or text in "])}"
+
+    def _is_sign(self, kind: int, text: str) -> bool:
+        return kind > 0 and self.lexer.display[kind] == text
+
+    def keywords(self, failed: Failed, form: Form) -> tuple[tuple[int, str], ...]:
+        """Would-be keywords on a failing line, with their places."""
+        return tuple(
+            (place, word)
+            for place, word in self._names(failed, form)
+            if word in self._keywords and self._stands_alone(form.kinds, place)
+        )
 
     def shape(self, failed: Failed, form: Form, context: Context) -> Shape:
         """The shape of a failure."""
         kinds, index = form.kinds, form.index
-        names = dict(self._names(failed, form))
-        lead = ""
-        if self._is_keyword(kinds[0]):
+        meant = dict(self.keywords(failed, form))
+        lead = meant.get(0, "")
+        if self.lexer.is_keyword(kinds[0]):
             lead = self.lexer.display[kinds[0]]
-        elif "lead" in names and ("lead", context.rule, names["lead"]) in self._words:
-            lead = names["lead"]
-        offender = self._display(kinds[index])
-        if "offender" in names and ("offender", context.rule, names["offender"]) in self._words:
-            offender = names["offender"]
-        if lead and index == 1 and not self._is_keyword(kinds[0]):
+        offender = meant.get(index) or self._display(kinds[index])
+        if 0 in meant and index == 1:
             offender = lead  # the line fails after its first word because of that word
-        return Shape(context.rule, lead, offender, self._open_bracket(kinds[:index]))
-
-    def _is_keyword(self, kind: int) -> bool:
-        return kind > 0 and self.lexer.is_keyword(kind)
+        return Shape(context.rule, lead, self._open_bracket(kinds[:index]), offender)
 
     def _display(self, kind: int) -> str:
         if kind == ERROR:
             return "unknown character"
-        return {"NEWLINE": "end of line", "EOF": "end of file"}.get(
+        return {"NEWLINE": "end of line", "EOF": "end of file", "NAME": "name"}.get(
             self.lexer.names[kind], self.lexer.display[kind]
         )
 

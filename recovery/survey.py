@@ -28,6 +28,7 @@ __all__ = ["Failed", "Survey", "SurveyedFile", "survey"]
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64
 _LONGEST_LINE_KEPT = 1_000
+_WORDS_KEPT = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,15 +36,15 @@ class Failed:
     """One failing line of a file.
 
     ``line`` and ``column`` from 1; ``token`` is the offending token as written; ``source`` the line
-    (cut at 1,000 characters); ``words`` are the first token, the one before the offending token and
-    that token, in upper case; ``form`` indexes `Survey.forms`.
+    (cut at 1,000 characters); ``words`` its tokens in upper case, to the offending one and at
+    least 24; ``form`` indexes `Survey.forms`.
     """
 
     line: int
     column: int
     token: str
     source: str
-    words: tuple[str, str, str]
+    words: tuple[str, ...]
     form: int
     follows: bool
 
@@ -153,16 +154,14 @@ def _perform(grammar_text: str, task: _Task) -> _Done:
 
 def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> Failed:
     lexemes, index = failure.lexemes, failure.form.index
-    words = tuple(
-        lexemes[i].upper()[:40] if 0 <= i < len(lexemes) else "" for i in (0, index - 1, index)
-    )
+    words = tuple(lexeme.upper()[:40] for lexeme in lexemes[: max(_WORDS_KEPT, index + 1)])
     source = lines[failure.line - 1] if failure.line <= len(lines) else ""
     return Failed(
         line=failure.line,
         column=failure.column,
         token=failure.text[:200],
         source=source[:_LONGEST_LINE_KEPT],
-        words=words,  # type: ignore[arg-type]
+        words=words,
         form=forms.setdefault(failure.form, len(forms)),
         follows=failure.follows,
     )

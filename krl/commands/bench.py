@@ -1,0 +1,186 @@
+"""`krl bench`: how good and how fast the tools themselves are."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.door import FINE, Unusable
+from krl.progress import progress_bar
+
+__all__ = ["app"]
+
+_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
+_MB = 1_000_000
+_LARGEST = 2_000
+
+app = typer.Typer(help="Measure the tools themselves.")
+
+
+@app.callback()
+def _bench() -> None:
+    """Measure the tools themselves: figures, and never a verdict."""
+
+
+@app.command("recover")
+def recover(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Files, folders, .zip archives to read; default: the programs in corpus/.",
+        ),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    sizes: Annotated[
+        str,
+        typer.Option(
+            metavar="MB,…",
+            help="Sizes of the synthetic corpora that show how cost grows; '' for none.",
+        ),
+    ] = "1,10,100",
+) -> int:
+    """Measure the survey: bytes a second, beside ANTLR, unchanged, and as the corpus grows.
+
+    One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
+    """
+    from grammar import GrammarError, read_file
+    from grammar.generate import GRAMMAR
+    from recovery.ingest import IngestError
+    from recovery.speed import measure, steps
+
+    wanted = _sizes(sizes)
+    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    try:
+        grammar = read_file(GRAMMAR)
+        with progress_bar("measuring", steps(wanted)) as advance:
+            record = measure(roots, grammar, sizes=wanted, on_step=advance)
+    except (GrammarError, IngestError) as error:
+        raise Unusable(str(error)) from error
+    record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
+    if json_file is not None:
+        _write(record, json_file)
+    _print_speed(record)
+    return FINE
+
+
+def _sizes(given: str) -> list[float]:
+    """Sizes in MB from a list with commas."""
+    try:
+        sizes = [float(size) for size in given.split(",") if size.strip()]
+    except ValueError:
+        sizes = [0]
+    if not all(0 < size <= _LARGEST for size in sizes):
+        raise Unusable(f"--sizes {given}: not a list of MB, each above 0 and up to {_LARGEST:,}")
+    return sizes
+
+
+def _write(record: Mapping[str, Any], target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+    target.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+# -- in the terminal -------------------------------------------------------------------------------
+
+
+def _print_speed(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    console.print(
+        f"{record['files']:,} files, {record['bytes'] / _MB:.2f} MB, of which {record['parsed']:,} "
+        f"parse; {record['failures']:,} failures; Python {record['python']}, one process"
+    )
+    console.print(_figures(record))
+    console.print(
+        _table(
+            ("where the time goes", "seconds", "share"),
+            [
+                (phase["name"], f"{phase['seconds']:.3f}", f"{100 * phase['share']:.1f} %")
+                for phase in record["phases"]
+            ],
+        )
+    )
+    console.print(_beside_antlr(record["antlr"]))
+    if record["scaling"]:
+        console.print(_scaling(record))
+
+
+def _figures(record: Mapping[str, Any]) -> Table:
+    kept = "results kept" if record["cached"] else "no results are kept yet: a plain second run"
+    ratio = record["ratio_vs_antlr_python"]
+    return _table(
+        ("figure", "", "aim"),
+        [
+            ("all failures, cold", _rate(record["bytes_per_s"]), "2 MB/s"),
+            ("all failures, warm", _rate(record["warm_bytes_per_s"]), ""),
+            ("accept or reject, cold", _rate(record["recognise_bytes_per_s"]), ""),
+            ("against ANTLR's Python runtime", _times(ratio), "20 times"),
+            (f"unchanged ({kept})", f"{record['unchanged_s_per_mb']:.3f} s/MB", "0.1 s/MB"),
+        ],
+    )
+
+
+def _beside_antlr(antlr: Mapping[str, Any]) -> Table:
+    rows = []
+    for name, label in (("valid", "valid, accept or reject"), ("failing", "failing, all errors")):
+        side = antlr[name]
+        rows.append(
+            (
+                label,
+                f"{side['files']:,}",
+                f"{side['bytes'] / _MB:.2f}",
+                _rate(side["antlr_bytes_per_s"]),
+                _rate(side["our_bytes_per_s"]),
+                _times(side["ratio"]),
+            )
+        )
+    return _table(("beside ANTLR", "files", "MB", "ANTLR", "ours", "ratio"), rows)
+
+
+def _scaling(record: Mapping[str, Any]) -> Table:
+    rows = [
+        (
+            f"{entry['bytes'] / _MB:.1f} MB",
+            f"{entry['files']:,}",
+            f"{entry['seconds']:.1f}",
+            _rate(entry["bytes_per_s"]),
+            "–" if entry["peak_mb"] is None else f"{entry['peak_mb']:,.0f} MB",
+            f"{entry['cores']:,}",
+        )
+        for entry in record["scaling"]
+    ]
+    growth = record["memory_growth_mb"]
+    more = "" if growth is None else f"; {growth:+,.0f} MB of memory from the first to the last"
+    return _table(
+        ("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"),
+        rows,
+        caption=f"Speed of the last to that of the first: {record['linear']:.2f}{more}",
+    )
+
+
+def _table(
+    columns: Sequence[str], rows: Sequence[tuple[str, ...]], caption: str | None = None
+) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, caption=caption, caption_justify="left")
+    for place, heading in enumerate(columns):
+        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def _rate(bytes_per_s: float | None) -> str:
+    return "–" if bytes_per_s is None else f"{bytes_per_s / _MB:.2f} MB/s"
+
+
+def _times(ratio: float | None) -> str:
+    return "–" if ratio is None else f"{ratio:.1f} times"

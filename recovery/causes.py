@@ -1,0 +1,227 @@
+"""Causes: failing lines grouped by the edit that mends them.
+
+Two failures have one cause when the same edit mends both. Shapes give a first grouping; then,
+heaviest group first, candidate edits for some of its lines are tried on all lines still without a
+cause. The best edit takes every line it mends, whatever its shape; lines of the group that it does
+not mend are searched again.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
+from grammar.recognizer import Recognizer
+from recovery.candidates import Candidate, CandidateFinder, Line
+from recovery.trial import Outcome, Trial
+
+__all__ = ["Cause", "Judge", "Proposal", "find_causes"]
+
+# Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
+# that a first trial looks at: what is kept after it is tried on everything.
+_SPECIMENS = 3
+_MOST_TRIED = 90
+_FIRST_TRIAL = 24
+_KEPT = 6
+_ROUNDS = 4
+# An edit that mends nearly as much as the best is preferred when it lets in less.
+_AS_GOOD = 0.97
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """An edit that was tried: the lines it mends, lets be read further, and what it costs.
+
+    ``accepts_negatives`` counts programs that must stay rejected and no longer would be.
+    """
+
+    edits: tuple[Edit, ...]
+    mended: frozenset[int]
+    advanced: frozenset[int]
+    breadth: int
+    accepts_negatives: int
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """Lines with one cause, and what would mend it, the best first."""
+
+    lines: tuple[int, ...]
+    proposals: tuple[Proposal, ...]
+
+
+#: How many negatives an edit would let in.
+Judge = Callable[[Sequence[Edit]], int]
+
+
+def find_causes(
+    recognizer: Recognizer,
+    lines: Sequence[Line],
+    weights: Sequence[int],
+    groups: Sequence[Sequence[int]],
+    judge: Judge,
+    on_done: Callable[[int], object] = lambda count: None,
+) -> list[Cause]:
+    """Group ``lines`` by cause.
+
+    ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
+    heaviest first. ``on_done`` is told of each group dealt with.
+    """
+    search = _Search(recognizer, lines, weights, judge)
+    causes: list[Cause] = []
+    for group in groups:
+        left = [n for n in group if n in search.open]
+        for _ in range(_ROUNDS):
+            if not left:
+                break
+            cause = search.best_for(left)
+            if cause is None:
+                break
+            causes.append(cause)
+            search.open.difference_update(cause.lines)
+            left = [n for n in left if n in search.open]
+        if left:
+            search.open.difference_update(left)
+            causes.append(Cause(tuple(left), ()))
+        on_done(1)
+    return causes
+
+
+class _Search:
+    def __init__(
+        self,
+        recognizer: Recognizer,
+        lines: Sequence[Line],
+        weights: Sequence[int],
+        judge: Judge,
+    ) -> None:
+        self.lines = lines
+        self.weights = weights
+        self.judge = judge
+        self.finder = CandidateFinder(recognizer)
+        self.trial = Trial(recognizer, lines)
+        self.open = set(range(len(lines)))
+
+    def best_for(self, group: Sequence[int]) -> Cause | None:
+        """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
+        proposals = self._proposals(group)
+        if not proposals:
+            return None
+        best = proposals[0]
+        members = set(group)
+        # what an edit lets be read further has its first cause here, and others behind it
+        taken = (best.mended & self.open) | (best.advanced & members)
+        return Cause(tuple(sorted(taken)), tuple(proposals))
+
+    def _proposals(self, group: Sequence[int]) -> list[Proposal]:
+        heavy = sorted(group, key=lambda n: (-self.weights[n], n))
+        specimens = _spread(heavy, _SPECIMENS)
+        tried: dict[tuple[Edit, ...], Candidate] = {}
+        for number in specimens:
+            for candidate in self.finder.find(self.lines[number])[:_MOST_TRIED]:
+                tried.setdefault(candidate.edits, candidate)
+        sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
+        first = [
+            (candidate, self.trial.outcome(candidate.edits, sample))
+            for candidate in tried.values()
+        ]
+        first += [
+            (candidate, self.trial.outcome(candidate.edits, sample))
+            for candidate in _merged([c for c, o in first if o.mended])
+        ]
+        kept = self._best(first, _KEPT)
+        whole = [(c, self.trial.outcome(c.edits, self.open)) for c, _ in kept]
+        proposals = [
+            Proposal(c.edits, o.mended, o.advanced, c.breadth, self.judge(c.edits))
+            for c, o in whole
+            if o.mended or o.advanced
+        ]
+        return self._ranked(proposals, set(group))
+
+    def _gain(self, outcome: Outcome | Proposal) -> float:
+        whole = sum(self.weights[n] for n in outcome.mended)
+        further = sum(self.weights[n] for n in outcome.advanced)
+        return whole + further / 4
+
+    def _best(
+        self, outcomes: list[tuple[Candidate, Outcome]], count: int
+    ) -> list[tuple[Candidate, Outcome]]:
+        """The most gainful candidates, and among equals the most restrictive."""
+        useful = [(c, o) for c, o in outcomes if o.mended or o.advanced]
+        useful.sort(key=lambda co: (-self._gain(co[1]), co[0].breadth, str(co[0].edits)))
+        kept = useful[: count - 2]
+        if useful:
+            enough = _AS_GOOD * self._gain(useful[0][1])
+            narrow = [co for co in useful[count - 2 :] if self._gain(co[1]) >= enough]
+            narrow.sort(key=lambda co: co[0].breadth)
+            kept += narrow[:2] or useful[count - 2 : count]
+        return kept
+
+    def _ranked(self, proposals: list[Proposal], group: set[int]) -> list[Proposal]:
+        """No negatives first; then by gain, those nearly as good by what they let in."""
+        out: list[Proposal] = []
+        left = sorted(proposals, key=lambda p: (-self._gain(p), p.breadth))
+        while left:
+            fewest = min(p.accepts_negatives for p in left)
+            clean = [p for p in left if p.accepts_negatives == fewest]
+            enough = _AS_GOOD * max(map(self._gain, clean))
+            best = min(
+                (p for p in clean if self._gain(p) >= enough),
+                key=lambda p: (p.breadth, -self._gain(p), str(p.edits)),
+            )
+            out.append(best)
+            left.remove(best)
+        return out
+
+
+_T = TypeVar("_T")
+
+
+def _spread(items: Sequence[_T], count: int) -> list[_T]:
+    """The first of ``items``, and others evenly from the rest."""
+    if len(items) <= count:
+        return list(items)
+    return [items[i * len(items) // count] for i in range(count)]
+
+
+def _merged(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates that differ in one word only, as one with a choice of words."""
+    families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
+    for candidate in candidates:
+        edit = candidate.edits[-1]
+        if not isinstance(edit, Insert | Widen | AddAlternative):
+            continue
+        words = edit.text.strip("()?*").split(" ")
+        place = () if isinstance(edit, AddAlternative) else edit.at
+        for i, word in enumerate(words):
+            frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
+            families[*frame, edit.text[-1]][word] = candidate
+    out = []
+    for frame, members in families.items():
+        if len(members) < 2:
+            continue
+        words = sorted(members)
+        left, right = frame[3], frame[4]
+        assert isinstance(left, tuple)
+        assert isinstance(right, tuple)
+        choice = words[0] if len(words) == 1 else f"({' | '.join(words)})"
+        body = " ".join((*left, choice, *right))
+        some = next(iter(members.values()))
+        last = some.edits[-1]
+        if isinstance(last, Insert):
+            text = f"({body}){last.text[-1]}" if left or right else f"{choice}{last.text[-1]}"
+            edit = Insert(last.rule, last.at, text)
+        elif isinstance(last, Widen):
+            edit = Widen(last.rule, last.at, body)
+        else:
+            assert isinstance(last, AddAlternative)
+            edit = AddAlternative(last.rule, body)
+        tokens = sorted(
+            {e.name for c in members.values() for e in c.edits if isinstance(e, AddToken)}
+        )
+        breadth = max(c.breadth for c in members.values()) + 1
+        out.append(Candidate((*(AddToken(t) for t in tokens), edit), breadth))
+    return out

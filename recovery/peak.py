@@ -1,0 +1,46 @@
+"""How much memory this process has had at most."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+__all__ = ["peak_memory"]
+
+if sys.platform == "win32":
+    import ctypes
+    from ctypes import wintypes
+
+    class _Counters(ctypes.Structure):
+        """``PROCESS_MEMORY_COUNTERS`` of the Windows API."""
+
+        _fields_ = (
+            ("size", wintypes.DWORD),
+            ("page_faults", wintypes.DWORD),
+            ("peak_working_set", ctypes.c_size_t),
+            ("others", ctypes.c_size_t * 7),
+        )
+
+    def peak_memory() -> int | None:
+        """The most memory in bytes that this process has had at once; ``None`` if not known."""
+        kernel = ctypes.WinDLL("kernel32")
+        kernel.GetCurrentProcess.restype = wintypes.HANDLE
+        ask = kernel.K32GetProcessMemoryInfo
+        ask.argtypes = (wintypes.HANDLE, ctypes.POINTER(_Counters), wintypes.DWORD)
+        counters = _Counters(size=ctypes.sizeof(_Counters))
+        known = ask(kernel.GetCurrentProcess(), ctypes.byref(counters), counters.size)
+        return int(counters.peak_working_set) if known else None
+
+else:
+    import resource
+
+    def peak_memory() -> int | None:
+        """The most memory in bytes that this process has had at once; ``None`` if not known."""
+        # Linux hands the figure of `getrusage` down from the process that started this one
+        status = Path("/proc/self/status")
+        if status.exists():
+            for line in status.read_text(encoding="ascii", errors="replace").splitlines():
+                if line.startswith("VmHWM:"):
+                    return int(line.split()[1]) * 1024
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        return most if sys.platform == "darwin" else most * 1024

@@ -1,0 +1,123 @@
+"""Trying an edit: which failing lines can be read once the grammar has it?
+
+A line is tried where it failed: the shortest tokens that lead to the state it began in, then the
+line itself. No code is generated and no file is read again, so a candidate costs milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from grammar.edits import AddRule, AddToken, Edit, apply
+from grammar.g4 import GrammarError
+from grammar.network import is_left_recursive, network_of
+from grammar.paths import Paths
+from grammar.recognizer import Frames, Recognizer, State
+from recovery.candidates import Line
+
+__all__ = ["Outcome", "Trial", "edited"]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Indices of the lines an edit lets be read whole, and of those it lets be read further."""
+
+    mended: frozenset[int]
+    advanced: frozenset[int]
+
+
+def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
+    """A recogniser of the edited grammar, or ``None`` where the edits do not fit it.
+
+    Token kinds keep their numbers; keywords the edits reserve are added behind them.
+    """
+    try:
+        grammar = apply(recognizer.grammar, edits)
+        lexer = recognizer.lexer
+        for edit in edits:
+            if isinstance(edit, AddToken):
+                lexer = lexer.with_keyword(edit.name)
+        network = network_of(grammar, lexer)
+    except (GrammarError, KeyError):
+        return None
+    return None if is_left_recursive(network) else Recognizer(grammar, network)
+
+
+class Trial:
+    """Tries edits on failing lines of one grammar."""
+
+    def __init__(self, recognizer: Recognizer, lines: Sequence[Line]) -> None:
+        self.recognizer = recognizer
+        self.lines = lines
+        paths = Paths(recognizer.network)
+        self._prefix: dict[Frames, list[int]] = {}
+        self._by_rule: dict[str, list[int]] = defaultdict(list)
+        self._by_keyword: dict[str, set[int]] = defaultdict(set)
+        for number, line in enumerate(lines):
+            before = line.form.before
+            if before not in self._prefix:
+                self._prefix[before] = min(map(paths.prefix, before), key=len)
+            for rule in self._rules_at_work(line):
+                self._by_rule[rule].append(number)
+            for _, keyword in line.keywords:
+                self._by_keyword[keyword].add(number)
+
+    def _rules_at_work(self, line: Line) -> set[str]:
+        """Rules in which an edit could change how this line is read."""
+        recognizer, form = self.recognizer, line.form
+        rule_of = recognizer.network.rule
+        state = recognizer.restore(form.before)
+        rules = {rule_of[p] for p, _ in recognizer.sites(state)}
+        for kind in form.kinds[: form.index]:
+            following = recognizer.step(state, kind)
+            assert following is not None
+            state = following
+        return rules | {rule_of[p] for p, _ in recognizer.sites(state)}
+
+    def relevant(self, edits: Sequence[Edit]) -> list[int]:
+        """Lines that the edits might mend."""
+        keywords = [e.name for e in edits if isinstance(e, AddToken)]
+        if keywords:
+            found = set.intersection(*(self._by_keyword.get(k, set()) for k in keywords))
+            return sorted(found)
+        if any(isinstance(e, AddRule) for e in edits):
+            return list(range(len(self.lines)))
+        rules = {e.rule for e in edits if not isinstance(e, AddToken | AddRule)}
+        return sorted({n for rule in rules for n in self._by_rule.get(rule, ())})
+
+    def outcome(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> Outcome:
+        """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
+        wider = edited(self.recognizer, edits)
+        if wider is None:
+            return Outcome(frozenset(), frozenset())
+        chosen = self.relevant(edits)
+        if among is not None:
+            wanted = frozenset(among)
+            chosen = [n for n in chosen if n in wanted]
+        new = {
+            e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)
+        }
+        starts: dict[Frames, State | None] = {}
+        mended, advanced = [], []
+        for number in chosen:
+            line = self.lines[number]
+            before = line.form.before
+            if before not in starts:
+                state, failed = wider.run(wider.start, self._prefix[before])
+                starts[before] = state if failed is None else None
+            start = starts[before]
+            if start is None:  # the edits took away what leads to this line
+                continue
+            kinds: Sequence[int] = line.form.kinds
+            if new:
+                kinds = list(kinds)
+                for place, keyword in line.keywords:
+                    kinds[place] = new.get(keyword, kinds[place])
+            _, failed = wider.run(start, kinds)
+            if failed is None:
+                mended.append(number)
+            elif failed > line.form.index:
+                advanced.append(number)
+        return Outcome(frozenset(mended), frozenset(advanced))
