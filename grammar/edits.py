@@ -192,8 +192,10 @@ def _new_text(
             return _with_optional(rule, at, count)
         case RemoveElement(at=at):
             start, end = element_at(rule, at).span
-            while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " ":
+            while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " \r\n)":
                 start -= 1
+            if rule.text[start - 1] == "(" and rule.text[end] == " ":
+                end += 1
             return rule.text[:start] + rule.text[end:]
 
 
@@ -235,6 +237,8 @@ def _without_alternative(rule: Rule, number: int) -> str:
     if not 1 <= number <= len(rule.alternatives) or len(rule.alternatives) == 1:
         raise GrammarError(f"rule {rule.name} cannot lose alternative {number}")
     start, end = rule.alternatives[number - 1].span
+    if start == end:
+        raise GrammarError(f"rule {rule.name}: alternative {number} is empty")
     if number > 1:
         start = rule.text.rindex("|", 0, start)
         start -= len(rule.text[:start]) - len(rule.text[:start].rstrip())
@@ -347,18 +351,21 @@ def _group_of(element: Element) -> Group | None:
 def _sequence_at(rule: Rule, address: Address) -> Alternative:
     """The alternative at an address of odd length."""
     alternatives: tuple[Alternative, ...] = rule.alternatives
-    sequence: Alternative | None = None
-    numbers = list(address)
-    try:
-        while True:
-            sequence = alternatives[numbers.pop(0) - 1]
-            if not numbers:
-                return sequence
-            group = _group_of(sequence.elements[numbers.pop(0) - 1])
-            assert group is not None
+    for place, number in enumerate(address):
+        if place % 2 == 0:
+            if not 1 <= number <= len(alternatives):
+                break
+            sequence = alternatives[number - 1]
+        else:
+            inside = sequence.elements[number - 1 : number] if number > 0 else ()
+            group = _group_of(inside[0]) if inside else None
+            if group is None:
+                break
             alternatives = group.alternatives
-    except (IndexError, AssertionError):
-        raise GrammarError(f"rule {rule.name} has no place {_spelled(address)}") from None
+    else:
+        if len(address) % 2:
+            return sequence
+    raise GrammarError(f"rule {rule.name} has no place {_spelled(address) or 'without a number'}")
 
 
 def element_at(rule: Rule, address: Address) -> Element:

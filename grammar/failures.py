@@ -15,6 +15,7 @@ Lines that can only be read because of guess 3, and the closers of openers that 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -187,7 +188,7 @@ class FailureFinder:
                 state=broken.state,
                 follows=follows,
             )
-            if closes is not None and lead not in ("ELSE", "CASE", "DEFAULT", "SPL"):
+            if closes is not None and (lead.startswith("END") or lead == "UNTIL"):
                 opened.remove(closes)
             elif closes is None and lead in BLOCKS and broken.mended is None:
                 opened.append(BLOCKS[lead])
@@ -305,24 +306,16 @@ class _Places:
     """Line and column by token index; asked in ascending order."""
 
     def __init__(self, text: str, offsets: list[int]) -> None:
-        self._text = text
+        self._end = len(text)
         self._offsets = offsets
         self._line = 1
         self._start = 0  # offset of the current line
-        self._seen = 0
+        self._starts = (found.end() for found in re.finditer(r"\r\n|\r|\n", text))
+        self._next = next(self._starts, self._end + 1)
 
     def __call__(self, index: int) -> tuple[int, int, int]:
-        text = self._text
-        offset = self._offsets[index] if index < len(self._offsets) else len(text)
-        while True:
-            ends = [e for e in (text.find("\n", self._seen, offset), text.find("\r", self._seen, offset)) if e >= 0]
-            if not ends:
-                break
-            end = min(ends)
-            end += 2 if text.startswith("\r\n", end) else 1
-            if end > offset:
-                break
+        offset = self._offsets[index] if index < len(self._offsets) else self._end
+        while self._next <= offset:
             self._line += 1
-            self._start = self._seen = end
-        self._seen = max(self._seen, self._start)
+            self._start, self._next = self._next, next(self._starts, self._end + 1)
         return self._line, offset - self._start + 1, offset

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Literal as OneOf
 
 from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedInput
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 __all__ = [
     "Alternative",
@@ -188,7 +188,10 @@ class Grammar:
     def with_rule(self, rule: Rule) -> Grammar:
         """The same grammar with the rule of that name replaced."""
         index = next(i for i, old in enumerate(self.rules) if old.name == rule.name)
-        return replace(self, rules=(*self.rules[:index], rule, *self.rules[index + 1 :]))
+        changed = replace(self, rules=(*self.rules[:index], rule, *self.rules[index + 1 :]))
+        if not rule.is_lexer:  # the tokens are the same: no need to gather them again
+            changed.__dict__["literal_tokens"] = self.literal_tokens
+        return changed
 
 
 def walk(node: Element | Alternative) -> Iterator[Element]:
@@ -234,7 +237,7 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
         start = node.meta.start_pos
         gaps.append(text[end:start])
         end = node.meta.end_pos
-        rules.append(_rule(node, text[start:end], start))
+        rules.append(_rule(node, text[start:end], start, source))
     gaps.append(text[end:])
     assert isinstance(header, Tree)
     grammar = Grammar(str(header.children[0]), options, tuple(rules), tuple(gaps))
@@ -255,37 +258,42 @@ def read_file(path: Path) -> Grammar:
 
 def read_rule(text: str) -> Rule:
     """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
-    return _rule(_parse(text, "rule", "rule"), text, 0)
+    return _rule(_parse(text, "rule", "rule"), text, 0, "rule")
 
 
 def _parse(text: str, start: str, source: str) -> Tree[Token]:
     try:
         return _reader(start).parse(text)
     except UnexpectedInput as error:
-        found = text[error.pos_in_stream : error.pos_in_stream + 12].split("\n")[0] if (
-            error.pos_in_stream is not None
-        ) else ""
-        what = f"unexpected {found!r}" if found else "unexpected end"
+        ended = isinstance(error, UnexpectedToken) and error.token.type == "$END"
+        start = len(text) if ended or error.pos_in_stream is None else error.pos_in_stream
+        found = text[start : start + 12].splitlines()
+        what = f"unexpected {found[0]!r}" if found else "unexpected end"
         raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
 
 
 # --------------------------------------------------------------------------- tree to data
 
 
-def _rule(node: Tree[Token], text: str, offset: int) -> Rule:
+def _rule(node: Tree[Token], text: str, offset: int, source: str) -> Rule:
     fragment, name, alternatives, *commands = node.children
     assert isinstance(alternatives, Tree)
-    return Rule(
-        name=str(name),
-        alternatives=_alternatives(alternatives, offset),
-        is_fragment=fragment is not None,
-        commands=tuple(_command(c) for c in commands if isinstance(c, Tree)),
-        text=text,
-    )
+    try:
+        return Rule(
+            name=str(name),
+            alternatives=_alternatives(alternatives, offset),
+            is_fragment=fragment is not None,
+            commands=tuple(_command(c) for c in commands if isinstance(c, Tree)),
+            text=text,
+        )
+    except GrammarError as error:
+        raise GrammarError(f"{source}:{node.meta.line}: rule {name}: {error}") from None
 
 
 def _command(node: Tree[Token]) -> str:
     name, argument = node.children
+    if (name, argument is None) not in (("skip", True), ("channel", False)):
+        raise GrammarError(f"the command {name} is not of our style")
     return str(name) if argument is None else f"{name}({argument})"
 
 
@@ -312,6 +320,8 @@ def _element(node: Tree[Token], offset: int) -> Element:
             return CharSet(_ranges(str(first)[1:-1]), span)
         case "range":
             low, high = (_unescape(str(c)[1:-1]) for c in node.children)
+            if len(low) > 1 or len(high) > 1 or low > high:
+                raise GrammarError(f"{low!r}..{high!r} is no range of characters")
             return CharSet(((ord(low), ord(high)),), span)
         case "wildcard":
             return CharSet(((0, MAX_CODE_POINT),), span)
@@ -359,7 +369,10 @@ def _ranges(body: str) -> tuple[CharRange, ...]:
     while i < len(items):
         low = ord(items[i][0])
         if i + 2 < len(items) and items[i + 1] == ("-", False):
-            found.append((low, ord(items[i + 2][0])))
+            high = ord(items[i + 2][0])
+            if low > high:
+                raise GrammarError(f"[{body}] has a range that runs backwards")
+            found.append((low, high))
             i += 3
         else:
             found.append((low, low))
@@ -400,20 +413,32 @@ def normalised(ranges: list[CharRange]) -> tuple[CharRange, ...]:
 
 
 def _verify(grammar: Grammar, source: str) -> None:
-    if len(grammar.by_name) != len(grammar.rules):
-        names = [rule.name for rule in grammar.rules]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise GrammarError(f"{source}: rule {twice} is defined twice")
+    names: set[str] = set()
+    for index, rule in enumerate(grammar.rules):
+        if rule.name in names:
+            line = _line(grammar, index)
+            raise GrammarError(f"{source}:{line}: rule {rule.name} is defined twice")
+        names.add(rule.name)
     if all(rule.is_lexer for rule in grammar.rules):
         raise GrammarError(f"{source}: no parser rule")
-    for rule in grammar.rules:
+    for index, rule in enumerate(grammar.rules):
         for element in (e for a in rule.alternatives for e in walk(a)):
             problem = _problem(grammar, rule, element)
             if problem:
-                raise GrammarError(f"{source}: rule {rule.name}: {problem}")
+                line = _line(grammar, index, element.span[0])
+                raise GrammarError(f"{source}:{line}: rule {rule.name}: {problem}")
     cycle = left_recursion(grammar)
     if cycle:
-        raise GrammarError(f"{source}: left recursion through {' → '.join(cycle)}")
+        what = "recursive tokens" if cycle[0][0].isupper() else "left recursion"
+        line = _line(grammar, [rule.name for rule in grammar.rules].index(cycle[0]))
+        raise GrammarError(f"{source}:{line}: {what} through {' → '.join(cycle)}")
+
+
+def _line(grammar: Grammar, index: int, offset: int = 0) -> int:
+    """The line on which a rule, or what stands at ``offset`` in its text, begins."""
+    pairs = zip(grammar.gaps[: index + 1], grammar.rules[: index + 1], strict=True)
+    ahead = sum(gap.count("\n") + rule.text.count("\n") for gap, rule in pairs)
+    return 1 + ahead - grammar.rules[index].text.count("\n", offset)
 
 
 def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
@@ -464,7 +489,10 @@ def nullable_rules(grammar: Grammar) -> frozenset[str]:
 
 
 def left_recursion(grammar: Grammar) -> list[str] | None:
-    """Names of rules on a left-recursive cycle, the first one repeated at the end, or ``None``."""
+    """Names of rules on a left-recursive cycle, the first one repeated at the end, or ``None``.
+
+    Lexer rules may not be recursive at all.
+    """
     nullable = nullable_rules(grammar)
 
     def leading(elements: tuple[Element, ...]) -> Iterator[str]:
@@ -487,7 +515,11 @@ def left_recursion(grammar: Grammar) -> list[str] | None:
                     return
 
     edges = {
-        rule.name: {name for a in rule.alternatives for name in leading(a.elements)}
+        rule.name: {
+            name
+            for a in rule.alternatives
+            for name in (_referred(a) if rule.is_lexer else leading(a.elements))
+        }
         for rule in grammar.rules
     }
     done: set[str] = set()
@@ -508,6 +540,10 @@ def left_recursion(grammar: Grammar) -> list[str] | None:
                 stack.append((step, iter(edges[step])))
                 path.append(step)
     return None
+
+
+def _referred(alternative: Alternative) -> Iterator[str]:
+    return (e.name for e in walk(alternative) if isinstance(e, Reference))
 
 
 def _may_be_empty(elements: tuple[Element, ...], nullable: frozenset[str]) -> bool:

@@ -8,7 +8,7 @@ speed, and each distinct lexeme is classified once and remembered.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 
 from grammar.chars import automaton_of, both_cases, class_of, first_characters, overlap, pattern_of
@@ -40,7 +40,7 @@ _MOST_REMEMBERED = 400_000
 class _Kinds(dict[str, int]):
     """Kind by lexeme, filled as lexemes are met."""
 
-    __slots__ = ("literals", "others", "other_kinds", "rank")
+    __slots__ = ("fold", "literals", "others", "other_kinds", "rank")
 
     def __init__(
         self,
@@ -48,10 +48,12 @@ class _Kinds(dict[str, int]):
         others: re.Pattern[str],
         other_kinds: Sequence[int],
         rank: Mapping[int, int],
+        fold: Callable[[str], str],
     ) -> None:
         self.literals = literals
         self.others = others
         self.other_kinds = other_kinds
+        self.fold = fold
         self.rank = rank  # of two rules that match the same text the first one wins
 
     def __missing__(self, lexeme: str) -> int:
@@ -68,7 +70,7 @@ class _Kinds(dict[str, int]):
         found = self.others.fullmatch(lexeme)
         other = self.other_kinds[found.lastindex - 1] if found and found.lastindex else None
         # literals are ASCII or exact: str.upper would also fold letters that ANTLR keeps apart
-        literal = self.literals.get(lexeme.upper() if lexeme.isascii() else lexeme)
+        literal = self.literals.get(self.fold(lexeme) if lexeme.isascii() else lexeme)
         if literal is None:
             return ERROR if other is None else other
         if other is None or other == SKIPPED:
@@ -92,6 +94,7 @@ class Lexer:
             texts.get(name, name)
             for name in self.names
         )
+        self._wider: dict[str, Lexer] = {}
         self._keywords = frozenset(
             self.kind_of[name] for name, text in texts.items() if text[0].isalpha()
         )
@@ -104,7 +107,8 @@ class Lexer:
         classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
         other_kinds = [SKIPPED if r.is_skipped else self.kind_of[r.name] for r in others]
         rank = {kind: kind for kind in self.kind_of.values()}
-        self.kinds = _Kinds(literals, classify, other_kinds, rank)
+        fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
+        self.kinds = _Kinds(literals, classify, other_kinds, rank, fold)
         # A literal that another rule matches whole (a keyword that could be a name) adds nothing
         # to where tokens end, and leaving it out keeps the automaton small.
         cutting = [
@@ -133,7 +137,11 @@ class Lexer:
 
         ``word`` has to be a name to this lexer, so that reserving it moves no token's end.
         """
-        wider = copy(self)
+        known = self._wider.get(word)
+        if known is not None:
+            return known
+        wider = self._wider[word] = copy(self)
+        wider._wider = {}
         kind = len(self.names)
         wider.names = (*self.names, word)
         wider.display = (*self.display, word)
@@ -141,7 +149,11 @@ class Lexer:
         wider._keywords = self._keywords | {kind}
         old = self.kinds
         wider.kinds = _Kinds(
-            {**old.literals, word: kind}, old.others, old.other_kinds, {**old.rank, kind: 0}
+            {**old.literals, word: kind},
+            old.others,
+            old.other_kinds,
+            {**old.rank, kind: 0},
+            old.fold,
         )
         return wider
 

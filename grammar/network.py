@@ -9,12 +9,12 @@ that a candidate edit costs one rule.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.g4 import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.lexer import Lexer, lexer_of
 
-__all__ = ["Network", "RuleAutomaton", "is_left_recursive", "network_of"]
+__all__ = ["Network", "RuleAutomaton", "is_left_recursive", "network_of", "with_rule"]
 
 Symbol = str  # the name of a token or a rule
 
@@ -82,6 +82,37 @@ def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
         tuple(rule),
         entry,
         entry[grammar.start],
+    )
+
+
+def with_rule(network: Network, grammar: Grammar, rule: Rule, lexer: Lexer) -> Network:
+    """The network with the automaton of one rule exchanged for that of its new text.
+
+    Positions of all other rules, and the first one of this, keep their numbers; ``grammar`` already
+    has the new rule, and ``lexer`` numbers its tokens as the network's does. Costs far less than
+    linking anew, which is what makes trying thousands of edits possible.
+    """
+    automaton = rule_automaton(grammar, rule)
+    entry, first = network.entry, network.entry[rule.name]
+    size = len(network.rule) - 1
+    place = [first, *range(size + 1, size + len(automaton.edges))]
+    added = len(automaton.edges) - 1
+    shifts = [*network.shifts, *({} for _ in range(added))]
+    calls = [*network.calls, *(() for _ in range(added))]
+    final = [*network.final, *(False for _ in range(added))]
+    for state, edges in enumerate(automaton.edges):
+        p = place[state]
+        shifts[p] = {lexer.kind_of[s]: place[t] for s, t in edges.items() if s not in entry}
+        calls[p] = tuple((entry[s], place[t]) for s, t in edges.items() if s in entry)
+        final[p] = state in automaton.final
+    return replace(
+        network,
+        lexer=lexer,
+        shifts=tuple(shifts),
+        calls=tuple(calls),
+        final=tuple(final),
+        rule=(*network.rule, *(rule.name for _ in range(added))),
+        automata={**network.automata, rule.name: automaton},
     )
 
 

@@ -173,11 +173,11 @@ class CandidateFinder:
             rank = width + self.phraser.breadth(symbols)
             unit = repeated(symbols)
             if unit is None:
-                yield rank + 10, self._with_tokens(words, Insert(rule, place, _optional(symbols)))
+                yield rank + 8, self._with_tokens(words, Insert(rule, place, _optional(symbols)))
             looped = unit or symbols
             if looped[0] == "','" or unit:
                 text = f"({' '.join(looped)})*" if len(looped) > 1 else f"{looped[0]}*"
-                yield rank + 12, self._with_tokens(words, Insert(rule, place, text))
+                yield rank + 9, self._with_tokens(words, Insert(rule, place, text))
 
     def _replacements(
         self, rule: str, place: Address, element: object, words: Sequence[Word]
@@ -188,8 +188,10 @@ class CandidateFinder:
             if place == (1, 1) and len(self._sequence(rule, (1,)).elements) == 1:
                 continue  # the same as an alternative of the rule
             rank = self._width(rule) + self.phraser.breadth(symbols) + 10
-            if len(words) > 1 and self._is_keyword(element):
-                rank += _UNLIKELY
+            if isinstance(element, Repeat):
+                rank += _UNLIKELY  # one more thing in a loop made for something else
+            if self._is_keyword(element) and (len(words) > 1 or place[-1] == 1):
+                rank += _UNLIKELY  # the word that says what a line is says nothing else
             yield rank, self._with_tokens(words, Widen(rule, place, " ".join(symbols)))
 
     def _is_keyword(self, element: object) -> bool:

@@ -25,7 +25,8 @@ __all__ = ["Cause", "Judge", "Proposal", "find_causes"]
 _SPECIMENS = 3
 _MOST_TRIED = 90
 _FIRST_TRIAL = 24
-_KEPT = 6
+_KEPT = 5
+_MOST_JUDGED = 30
 _ROUNDS = 4
 # An edit that mends nearly as much as the best is preferred when it lets in less.
 _AS_GOOD = 0.97
@@ -132,35 +133,42 @@ class _Search:
             (candidate, self.trial.outcome(candidate.edits, sample))
             for candidate in _merged([c for c, o in first if o.mended])
         ]
-        kept = self._best(first, _KEPT)
-        whole = [(c, self.trial.outcome(c.edits, self.open)) for c, _ in kept]
-        proposals = [
-            Proposal(c.edits, o.mended, o.advanced, c.breadth, self.judge(c.edits))
-            for c, o in whole
-            if o.mended or o.advanced
-        ]
-        return self._ranked(proposals, set(group))
+        proposals = []
+        for candidate, negatives in self._kept(first):
+            outcome = self.trial.outcome(candidate.edits, self.open)
+            proposals.append(
+                Proposal(
+                    candidate.edits,
+                    outcome.mended,
+                    outcome.advanced,
+                    candidate.breadth,
+                    negatives,
+                )
+            )
+        return self._ranked(proposals)
 
     def _gain(self, outcome: Outcome | Proposal) -> float:
         whole = sum(self.weights[n] for n in outcome.mended)
         further = sum(self.weights[n] for n in outcome.advanced)
         return whole + further / 4
 
-    def _best(
-        self, outcomes: list[tuple[Candidate, Outcome]], count: int
-    ) -> list[tuple[Candidate, Outcome]]:
-        """The most gainful candidates, and among equals the most restrictive."""
+    def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
+        """The most gainful candidates, first those that let in no negatives."""
         useful = [(c, o) for c, o in outcomes if o.mended or o.advanced]
-        useful.sort(key=lambda co: (-self._gain(co[1]), co[0].breadth, str(co[0].edits)))
-        kept = useful[: count - 2]
-        if useful:
-            enough = _AS_GOOD * self._gain(useful[0][1])
-            narrow = [co for co in useful[count - 2 :] if self._gain(co[1]) >= enough]
-            narrow.sort(key=lambda co: co[0].breadth)
-            kept += narrow[:2] or useful[count - 2 : count]
-        return kept
+        best = max((self._gain(o) for _, o in useful), default=0)
+        useful.sort(
+            key=lambda co: (self._gain(co[1]) < _AS_GOOD * best, co[0].breadth, -self._gain(co[1]))
+        )
+        clean: list[tuple[Candidate, int]] = []
+        costly: list[tuple[Candidate, int]] = []
+        for candidate, _ in useful[:_MOST_JUDGED]:
+            negatives = self.judge(candidate.edits)
+            (costly if negatives else clean).append((candidate, negatives))
+            if len(clean) == _KEPT:
+                break
+        return clean + costly[: _KEPT - len(clean)]
 
-    def _ranked(self, proposals: list[Proposal], group: set[int]) -> list[Proposal]:
+    def _ranked(self, proposals: list[Proposal]) -> list[Proposal]:
         """No negatives first; then by gain, those nearly as good by what they let in."""
         out: list[Proposal] = []
         left = sorted(proposals, key=lambda p: (-self._gain(p), p.breadth))

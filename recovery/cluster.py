@@ -105,6 +105,7 @@ class _Lines:
         numbers: dict[Line, int] = {}
         shapes: list[Shape] = []
         self.line_of: dict[tuple[str, int], int] = {}
+        self.specimens: list[Member] = []  # of each line the shortest
         files: dict[int, dict[str, int]] = defaultdict(dict)
         for file, index, failed in direct:
             form = found.forms[failed.form]
@@ -112,6 +113,9 @@ class _Lines:
             number = numbers.setdefault(line, len(numbers))
             if number == len(shapes):
                 shapes.append(self.shaper.shape(failed, form, self.contexts[failed.form]))
+                self.specimens.append(Member(file, failed))
+            elif len(failed.source) < len(self.specimens[number].failed.source):
+                self.specimens[number] = Member(file, failed)
             self.line_of[file.digest, index] = number
             files[number][file.digest] = len(file.places)
         self.lines = tuple(numbers)
@@ -181,16 +185,13 @@ def _cluster(
     groups: _Lines,
     needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
 ) -> Cluster:
-    line = groups.lines[_heaviest(cause, groups)]
-    of_line = [
-        m for m in members if not m.failed.follows and _is_of(m.failed, line, groups)
-    ] or members
-    example = min(of_line, key=lambda m: (len(m.failed.source), m.file.path, m.failed.line))
+    heaviest = _heaviest(cause, groups)
+    example = groups.specimens[heaviest]
     return Cluster(
         id=_identity(title),
         title=title,
         context=groups.contexts[example.failed.form],
-        line=line,
+        line=groups.lines[heaviest],
         example=example,
         members=tuple(members),
         unlocks=unlocks,
@@ -199,17 +200,6 @@ def _cluster(
             sum(len(file.places) for file, direct, _ in needs if direct <= proposal.mended)
             for proposal in cause.proposals
         ),
-    )
-
-
-def _is_of(failed: Failed, line: Line, groups: _Lines) -> bool:
-    return groups.contexts[failed.form] is not None and (
-        len(failed.words) >= line.form.index
-        and line.form.index < len(line.form.kinds)
-        and all(
-            place < len(failed.words) and failed.words[place] == word
-            for place, word in line.keywords
-        )
     )
 
 

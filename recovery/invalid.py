@@ -65,8 +65,9 @@ _SPELLINGS = {
     "bits": ("'B101'", "'HFF'"),
     "enum": ("#ON", "#T1"),
     "truth": ("TRUE", "FALSE"),
+    "type": ("INT", "BOOL"),
 }
-_ANY = ("name", "number", "string", "truth", "(", ")", "=", "==", "+", ",", "THEN", "NOT")
+_ANY = ("name", "number", "string", "truth", "type", "(", ")", "=", "==", "+", ",", "THEN", "NOT")
 
 
 def _spell(kind: str, chance: random.Random) -> str:

@@ -7,7 +7,7 @@ The written ones lie in ``corpus/negatives`` with their reason in front; the oth
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast, get_args
@@ -25,6 +25,7 @@ _KEYS = frozenset({"reason", "phase", "rule", "line"})
 _ENTRY = re.compile(r";@\s*(?P<key>\w+):\s*(?P<value>.*?)\s*")
 # A grammar with another keyword has another lexer; some are kept, for candidates take turns.
 _MOST_LEXERS = 4
+_LINE_ENDS = frozenset({"\n", "\r\n"})
 
 
 class NegativeError(Exception):
@@ -159,7 +160,7 @@ class NegativeSet:
         return found
 
     def _cut(self, lexer: Lexer) -> list[list[int]] | None:
-        """Token kinds of each line; ``None`` where a token goes on behind the line."""
+        """Token kinds of each line; ``None`` where a token goes on behind its line."""
         if lexer not in self._kinds:
             if len(self._kinds) >= _MOST_LEXERS:
                 del self._kinds[next(iter(self._kinds))]
@@ -167,17 +168,23 @@ class NegativeSet:
         return self._kinds[lexer]
 
 
-def _kinds(lexer: Lexer, lines: Iterable[str]) -> list[list[int]] | None:
-    out = []
-    for line in lines:
-        lexemes = [lexeme for lexeme in lexer.lexemes(line) if lexeme]
-        if line.endswith("\n") and lexemes and lexemes[-1].strip("\r\n"):
-            return None
-        kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
-        out.append([kind for kind in kinds if kind != SKIPPED])
-    return out
-
-
 def _lines(text: str) -> list[str]:
-    """The lines with their ends."""
-    return re.findall(r"[^\n]*\n|[^\n]+", text)
+    """The lines of a text, each with its end."""
+    return re.findall(r"[^\n]*\n|[^\n]+\Z", text)
+
+
+def _kinds(lexer: Lexer, lines: Sequence[str]) -> list[list[int]] | None:
+    """Token kinds of each line, cut in one go; a last line without an end is given one for that."""
+    ended = ["" if line.endswith("\n") else "\n" for line in lines]
+    lexemes = lexer.lexemes("".join(map(str.__add__, lines, ended)))
+    kinds = list(map(lexer.kinds.__getitem__, lexemes))
+    ends = [index for index, lexeme in enumerate(lexemes) if lexeme in _LINE_ENDS]
+    if len(ends) != len(lines):  # some of them are inside of tokens
+        return None
+    out = []
+    start = 0
+    for end, added in zip(ends, ended, strict=True):
+        line = kinds[start : end if added else end + 1]
+        out.append([kind for kind in line if kind != SKIPPED] if SKIPPED in line else line)
+        start = end + 1
+    return out

@@ -6,13 +6,16 @@ Its fields are a contract (docs/architecture.md): others read it from outside.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import asdict
 from typing import Any
 
 from grammar.failures import FailureFinder
 from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer
 from recovery.cluster import Cluster, Clusters, Member
+from recovery.propose import Reviewer
+from recovery.reduce import Reducer
 from recovery.survey import Survey, SurveyedFile
 
 __all__ = ["record_of"]
@@ -23,13 +26,25 @@ _WIDEST_LINE = 1_000
 _FILES_NAMED = 200
 
 
-def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> dict[str, Any]:
+def record_of(
+    found: Survey,
+    clusters: Clusters,
+    *,
+    grammar_name: str,
+    on_done: Callable[[int], object] = lambda count: None,
+) -> dict[str, Any]:
     """Everything a survey found, as plain data.
 
     Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
-    name the first place of a content, ``copies`` the others.
+    name the first place of a content, ``copies`` the others. ``on_done`` is told of each cluster.
     """
     recognizer = Recognizer(found.grammar)
+    reviewer = Reviewer(found, clusters)
+    reducer = Reducer(recognizer)
+    written = []
+    for entry in clusters.ranked:
+        written.append(_cluster(entry, reviewer, reducer))
+        on_done(1)
     files = found.files
     parsed = [f for f in files if not f.failures]
     return {
@@ -49,7 +64,7 @@ def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> dict[s
             {"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]
         ],
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
-        "clusters": [_cluster(c) for c in clusters.ranked],
+        "clusters": written,
         "failures": _failures(found, clusters, recognizer),
     }
 
@@ -100,7 +115,7 @@ def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list
     ]
 
 
-def _cluster(cluster: Cluster) -> dict[str, Any]:
+def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any]:
     files = cluster.files
     example = cluster.example
     return {
@@ -120,9 +135,16 @@ def _cluster(cluster: Cluster) -> dict[str, Any]:
         "example": _example(example),
         "examples": [_example(m) for m in _examples(cluster)],
         "files_by_origin": _files_by_origin(cluster),
-        "reproducer": None,
-        "proposals": [],
+        "reproducer": _reproducer(cluster, reviewer, reducer),
+        "proposals": reviewer.records(cluster),
     }
+
+
+def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any] | None:
+    best = next((p for p in cluster.proposals if p.mended), None)
+    mended = reviewer.wider(best) if best is not None else None
+    found = reducer.reduce(cluster.line, cluster.example.failed.words, mended=mended)
+    return None if found is None else asdict(found)
 
 
 def _example(member: Member) -> dict[str, Any]:

@@ -22,10 +22,10 @@ from typing import Any, ParamSpec, TypeVar
 from grammar import g4
 from grammar.failures import FailureFinder
 from grammar.recognizer import Core, Recognizer
-from recovery.ingest import Found, Skipped, decode, digest, discover, read
+from recovery.ingest import Found, IngestError, Skipped, decode, digest, discover, read
 from recovery.peak import peak_memory
 from recovery.survey import Survey, survey
-from recovery.synthetic import spread, templates, write_corpus
+from recovery.synthetic import readable, spread, templates, write_corpus
 
 __all__ = ["Cached", "measure", "steps"]
 
@@ -34,7 +34,6 @@ ROUNDS = 3
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
 #: with it beforehand, so that they are the same in every run and on every machine.
 ANTLR_BYTES_PER_S = 60_000
-_MOST_TRIMMINGS = 12
 
 #: A survey that keeps its results from one call to the next.
 Cached = Callable[[Sequence[Path], g4.Grammar], object]
@@ -53,28 +52,37 @@ def measure(
     cached: Cached | None = None,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Measure on everything below ``roots``; the record is described in `docs/architecture.md`.
+    """Measure on everything below ``roots``, each content once.
 
     ``grammar`` has to be the one that the ANTLR parser was generated from. ``sizes`` are those of
     the synthetic corpora in MB, ``antlr_seconds`` about how long ANTLR may read, ``cached`` the
     survey to call twice where nothing changed in between. ``on_step`` is called `steps` times.
 
-    Raises `recovery.ingest.IngestError` where there is nothing to survey.
+    In the record, ``bytes_per_s`` and ``warm_bytes_per_s`` are for a first and a second survey, all
+    failures found, ``recognise_bytes_per_s`` for a yes or no to each file, the best of ``rounds``
+    each. ``ratio_vs_antlr_python`` is how many times as long ANTLR takes for the same valid texts,
+    ``linear`` the speed on the last of ``scaling`` over that on the first, ``memory_growth_mb``
+    how much more memory the last took at most; ``None`` where it could not be measured.
+
+    Raises `recovery.ingest.IngestError` where there is nothing to measure on.
     """
     for _ in discover(roots):  # what cannot be surveyed is said before a process is started
         pass
     surveyed, phased = [], []
     for _ in range(rounds):
         surveyed.append(_apart(_surveyed, roots, grammar.text))
+        if not surveyed[0].bytes:
+            raise IngestError("none of the files is KRL")
         on_step()
         phased.append(_apart(_phased, roots, grammar.text))
         on_step()
+    of = surveyed[0]
     cold = min(s.cold for s in surveyed)
     warm = min(s.warm for s in surveyed)
     phases = min(phased, key=lambda phases: sum(phases.values()))
+    phases["recording"] = max(cold - sum(phases.values()), 0.0)
     total = sum(phases.values())
     recognising = sum(phases[name] for name in ("decoding", "building", "lexing", "recognising"))
-    of = surveyed[0]
     beside = _apart(_beside_antlr, roots, grammar.text, antlr_seconds)
     on_step()
     unchanged = warm if cached is None else _again(cached, roots, grammar)
@@ -184,7 +192,8 @@ def _timed_survey(roots: Sequence[Path], grammar: g4.Grammar) -> tuple[float, Su
 def _phased(roots: Sequence[Path], grammar_text: str) -> dict[str, float]:
     """Seconds of each phase, each done for all files before the next.
 
-    ``failures`` is what finding all failures costs beyond lexing and recognising once.
+    ``failures`` is what finding all of them costs beyond lexing and recognising once. The rest of
+    what a survey takes, ``recording``, is keeping what was found.
     """
     clock = time.perf_counter
     gc.collect()
@@ -229,6 +238,7 @@ class _Side:
 
     files: int = 0
     bytes: int = 0
+    tokens: int = 0
     antlr_seconds: float = 0.0
     our_seconds: float = 0.0
 
@@ -258,42 +268,28 @@ class _Side:
 def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> dict[str, Any]:
     """Both readers on valid texts, accept or reject, and on failing ones, all errors reported.
 
-    Valid are files that parse, and others without the lines that do not. The tables of both are
-    built before the clock runs; what either remembers of the texts before is its own to use.
+    Valid texts are files that parse, and others made to (`recovery.synthetic.readable`). The tables
+    of both readers are built before the clock runs, what they learn while reading is not.
     """
     from grammar import reference
 
     grammar = g4.read(grammar_text)
-    texts = spread(_decoded(_contents(roots)))
     recognizer = Recognizer(grammar)
-    trimmer = FailureFinder(Recognizer(grammar))
-    finder = FailureFinder(recognizer)
+    finder = FailureFinder(Recognizer(grammar))
     recovering = _recovering_antlr()
     reference.accepts("")
-    recognizer.accepts("")
     budget = seconds * ANTLR_BYTES_PER_S
+    texts = spread(_decoded(_contents(roots)))
     valid, failing = _Side(), _Side()
+    for text in list(readable(texts, Recognizer(grammar))):
+        if valid.bytes + len(text) <= budget * 2 / 3:
+            valid.compare(text, reference.accepts, recognizer.accepts)
+            valid.tokens += len(recognizer.kinds(text))
     for text in texts:
-        trimmed = _trimmed(trimmer, text)
-        if trimmed is not None and valid.bytes + len(trimmed) <= budget * 2 / 3:
-            valid.compare(trimmed, reference.accepts, recognizer.accepts)
-        if trimmed != text and failing.bytes + len(text) <= budget / 3:
+        if failing.bytes + len(text) <= budget / 3 and not recognizer.accepts(text):
             failing.compare(text, recovering, finder.find)
+            failing.tokens += len(recognizer.kinds(text))
     return {"valid": valid.record(), "failing": failing.record()}
-
-
-def _trimmed(finder: FailureFinder, text: str) -> str | None:
-    """The text without the lines that fail, or ``None`` where that leads to no program."""
-    for _ in range(_MOST_TRIMMINGS):
-        failing = {failure.line for failure in finder.find(text)}
-        if not failing:
-            return text
-        lines = text.replace("\r\n", "\n").replace("\r", "\n").splitlines(keepends=True)
-        kept = "".join(line for number, line in enumerate(lines, 1) if number not in failing)
-        if kept == text:
-            return None
-        text = kept
-    return None
 
 
 def _recovering_antlr() -> Callable[[str], object]:
@@ -332,7 +328,10 @@ def _synthesise(
 ) -> None:
     texts = spread(_decoded(_contents(roots)))
     lexer = Recognizer(g4.read(grammar_text)).lexer
-    write_corpus(list(templates(texts, lexer)), folder, size, seed)
+    try:
+        write_corpus(list(templates(texts, lexer)), folder, size, seed)
+    except ValueError as error:
+        raise IngestError(f"no larger corpus can be made of these files: {error}") from error
 
 
 def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from grammar.failures import Failure, FailureFinder, Form
 from grammar.recognizer import Recognizer
 from recovery.ingest import Found, Skipped, decode, digest, discover, read
 
-__all__ = ["Failed", "Survey", "SurveyedFile", "survey"]
+__all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
 
 # One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
 _TASK_BYTES = 1 << 20
@@ -112,6 +112,21 @@ def survey(
         on_done(gathered.add(done))
     on_done(len(candidates) - gathered.dealt_with)
     return gathered.survey(grammar, time.perf_counter() - began)
+
+
+def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Survey:
+    """Read programs given as (path, text) in this process; each is taken for a file of its own."""
+    began = time.perf_counter()
+    finder = FailureFinder(Recognizer(grammar))
+    forms: dict[Form, int] = {}
+    files = []
+    for path, text in programs:
+        failures = finder.find(text)
+        lines = source_lines(text) if failures else []
+        found = Found(path, "given", len(text), Path(path), None)
+        failed = tuple(_failed(f, lines, forms) for f in failures)
+        files.append(SurveyedFile(found, ((path, "given"),), path, len(text), failed))
+    return Survey(grammar, tuple(files), (), tuple(forms), time.perf_counter() - began)
 
 
 # ------------------------------------------------------------------------------ in a process

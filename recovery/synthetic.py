@@ -1,23 +1,27 @@
-"""Corpora of any size, made from a small one. They serve benches, and never as evidence.
+"""Programs made from real ones: more of them, and valid ones. For benches, never as evidence.
 
-A copy of a program keeps its layout, its comments and every kind of token, so that reading it is
-as much work as reading the program. Its names get a suffix and its numbers other digits, so that no
-two copies are the same and nothing remembered about one spares the reading of another.
+Benches need more text than there is, and text that parses long before the grammar is finished. A
+copy of a program keeps its layout, its comments and every kind of token, so that reading it is as
+much work as reading the program. Its names get a suffix and its numbers other digits, so that no
+two copies are the same and nothing remembered about one spares the reading of another. A valid
+program is a real one with other lines of the same corpus in place of those that cannot be read.
 """
 
 from __future__ import annotations
 
 import random
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count, repeat
 from pathlib import Path
 
 from grammar.failures import BLOCKS
-from grammar.lexer import Lexer
+from grammar.lexer import EOF, Lexer
+from grammar.recognizer import Recognizer, State
 
-__all__ = ["Template", "Written", "spread", "templates", "write_corpus"]
+__all__ = ["Template", "Written", "readable", "spread", "templates", "write_corpus"]
 
 # What may hold digits or words that are no numbers and no names stands first, and stays as it is.
 _PIECE = re.compile(
@@ -74,6 +78,38 @@ def templates(texts: Iterable[str], lexer: Lexer) -> Iterator[Template]:
             yield Template(template)
 
 
+def readable(texts: Iterable[str], recognizer: Recognizer) -> Iterator[str]:
+    """Each text made a program, where that can be done.
+
+    In place of a line that cannot be read stands the last line of the corpus that could be read in
+    the same state, led back to it, and was about as long; where there is none, nothing.
+    """
+    fitting: dict[State, dict[int, str]] = defaultdict(dict)
+    for text in texts:
+        made = _made_readable(text, recognizer, fitting)
+        if made:
+            yield made
+
+
+def _made_readable(
+    text: str, recognizer: Recognizer, fitting: dict[State, dict[int, str]]
+) -> str | None:
+    state = recognizer.start
+    lines: list[str] = []
+    for line in text.replace("\r\n", "\n").replace("\r", "\n").splitlines(keepends=True):
+        kinds = recognizer.kinds(line)[:-1]
+        after, failed = recognizer.run(state, kinds)
+        if failed is None:
+            lines.append(line)
+            if after == state and len(kinds) > 1:
+                fitting[state][len(kinds)] = line
+            state = after
+        elif known := fitting[state]:
+            lines.append(known[min(known, key=lambda length: abs(length - len(kinds)))])
+    accepted = recognizer.run(state, [EOF])[1] is None
+    return "".join(lines) if accepted else None
+
+
 def spread(texts: Iterable[str]) -> list[str]:
     """The texts in an order of which every beginning has small and large ones as the whole has."""
     ordered = sorted(texts, key=lambda text: (len(text), text))
@@ -89,7 +125,7 @@ def write_corpus(chosen: Sequence[Template], folder: Path, size: int, seed: int 
     The same templates, size and seed give the same files. Raises ValueError without templates.
     """
     if not chosen:
-        raise ValueError("nothing to copy: no program with a name in it")
+        raise ValueError("there is no name in them")
     files = written = 0
     for template, (digits, suffix) in _variants(chosen, seed):
         data = template.copy(digits, suffix).encode("utf-8")

@@ -10,9 +10,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from grammar.edits import AddRule, AddToken, Edit, apply
+from grammar.edits import AddRule, AddToken, Edit, RemoveRule, apply
 from grammar.g4 import GrammarError
-from grammar.network import is_left_recursive, network_of
+from grammar.network import is_left_recursive, network_of, with_rule
 from grammar.paths import Paths
 from grammar.recognizer import Frames, Recognizer, State
 from recovery.candidates import Line
@@ -39,7 +39,12 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
         for edit in edits:
             if isinstance(edit, AddToken):
                 lexer = lexer.with_keyword(edit.name)
-        network = network_of(grammar, lexer)
+        changed = [e.rule for e in edits if not isinstance(e, AddToken | AddRule | RemoveRule)]
+        if len(changed) == 1 and not any(isinstance(e, AddRule | RemoveRule) for e in edits):
+            rule = grammar.by_name[changed[0]]
+            network = with_rule(recognizer.network, grammar, rule, lexer)
+        else:
+            network = network_of(grammar, lexer)
     except (GrammarError, KeyError):
         return None
     return None if is_left_recursive(network) else Recognizer(grammar, network)

@@ -96,8 +96,9 @@ def _write(record: Mapping[str, Any], target: Path) -> None:
 def _print_speed(record: Mapping[str, Any]) -> None:
     console = Console(highlight=False)
     console.print(
-        f"{record['files']:,} files, {record['bytes'] / _MB:.2f} MB, of which {record['parsed']:,} "
-        f"parse; {record['failures']:,} failures; Python {record['python']}, one process"
+        f"{record['files']:,} files, {record['bytes'] / _MB:.2f} MB; {record['parsed']:,} parse; "
+        f"{record['failures']:,} failures; Python {record['python']}",
+        soft_wrap=True,
     )
     console.print(_figures(record))
     console.print(
@@ -112,10 +113,11 @@ def _print_speed(record: Mapping[str, Any]) -> None:
     console.print(_beside_antlr(record["antlr"]))
     if record["scaling"]:
         console.print(_scaling(record))
+        console.print(_growth(record), soft_wrap=True)
 
 
 def _figures(record: Mapping[str, Any]) -> Table:
-    kept = "results kept" if record["cached"] else "no results are kept yet: a plain second run"
+    kept = "results kept" if record["cached"] else "no results kept"
     ratio = record["ratio_vs_antlr_python"]
     return _table(
         ("figure", "", "aim"),
@@ -131,25 +133,26 @@ def _figures(record: Mapping[str, Any]) -> Table:
 
 def _beside_antlr(antlr: Mapping[str, Any]) -> Table:
     rows = []
-    for name, label in (("valid", "valid, accept or reject"), ("failing", "failing, all errors")):
+    for name, label in (("valid", "valid, yes or no"), ("failing", "failing, all errors")):
         side = antlr[name]
         rows.append(
             (
                 label,
                 f"{side['files']:,}",
-                f"{side['bytes'] / _MB:.2f}",
-                _rate(side["antlr_bytes_per_s"]),
-                _rate(side["our_bytes_per_s"]),
+                _in_mb(side["bytes"]),
+                f"{side['tokens']:,}",
+                _in_mb(side["antlr_bytes_per_s"]),
+                _in_mb(side["our_bytes_per_s"]),
                 _times(side["ratio"]),
             )
         )
-    return _table(("beside ANTLR", "files", "MB", "ANTLR", "ours", "ratio"), rows)
+    return _table(("beside ANTLR, MB/s", "files", "MB", "tokens", "ANTLR", "ours", ""), rows)
 
 
 def _scaling(record: Mapping[str, Any]) -> Table:
     rows = [
         (
-            f"{entry['bytes'] / _MB:.1f} MB",
+            f"{entry['bytes'] / _MB:,.1f} MB",
             f"{entry['files']:,}",
             f"{entry['seconds']:.1f}",
             _rate(entry["bytes_per_s"]),
@@ -158,19 +161,17 @@ def _scaling(record: Mapping[str, Any]) -> Table:
         )
         for entry in record["scaling"]
     ]
+    return _table(("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"), rows)
+
+
+def _growth(record: Mapping[str, Any]) -> str:
     growth = record["memory_growth_mb"]
-    more = "" if growth is None else f"; {growth:+,.0f} MB of memory from the first to the last"
-    return _table(
-        ("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"),
-        rows,
-        caption=f"Speed of the last to that of the first: {record['linear']:.2f}{more}",
-    )
+    more = "" if growth is None else f", {growth:+,.0f} MB of memory"
+    return f"The last against the first: {record['linear']:.2f} times the speed{more}"
 
 
-def _table(
-    columns: Sequence[str], rows: Sequence[tuple[str, ...]], caption: str | None = None
-) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, caption=caption, caption_justify="left")
+def _table(columns: Sequence[str], rows: Sequence[tuple[str, ...]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for place, heading in enumerate(columns):
         table.add_column(heading, justify="right" if place else "left", no_wrap=True)
     for row in rows:
@@ -178,8 +179,12 @@ def _table(
     return table
 
 
-def _rate(bytes_per_s: float | None) -> str:
-    return "–" if bytes_per_s is None else f"{bytes_per_s / _MB:.2f} MB/s"
+def _rate(bytes_per_s: float) -> str:
+    return f"{_in_mb(bytes_per_s)} MB/s"
+
+
+def _in_mb(size: float | None) -> str:
+    return "–" if size is None else f"{size / _MB:.2f}"
 
 
 def _times(ratio: float | None) -> str:

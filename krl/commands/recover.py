@@ -16,6 +16,7 @@ from krl.terminal import print_survey
 __all__ = ["recover"]
 
 _DEFAULT_CORPUS = Path("corpus")
+_DEFAULT_NEGATIVES = Path("corpus", "negatives")
 _DEFAULT_OUT = Path("reports", "out", "recover")
 
 
@@ -43,6 +44,10 @@ def recover(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler (not built yet).")
     ] = None,
+    negatives: Annotated[
+        Path,
+        typer.Option(metavar="DIR", help="Programs that every proposal must keep rejected."),
+    ] = _DEFAULT_NEGATIVES,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 when a file does not parse.")
     ] = False,
@@ -52,6 +57,8 @@ def recover(
     from grammar.generate import GRAMMAR
     from recovery.cluster import cluster
     from recovery.ingest import IngestError
+    from recovery.judge import judge_of, no_judge
+    from recovery.negatives import NegativeError, load
     from recovery.record import record_of
     from recovery.survey import survey
     from reports import write_survey_page
@@ -65,10 +72,15 @@ def recover(
         chosen = read_file(grammar or GRAMMAR)
         with progress_bar("surveying") as bar:
             found = survey(roots, chosen, jobs=jobs, on_found=bar.expect, on_done=bar)
-    except (GrammarError, IngestError) as error:
+        judge = judge_of(found.grammar, load(negatives)) if negatives.is_dir() else no_judge
+        with progress_bar("finding causes") as bar:
+            clusters = cluster(found, judge=judge, on_found=bar.expect, on_done=bar)
+    except (GrammarError, IngestError, NegativeError) as error:
         raise Unusable(str(error)) from error
-    clusters = cluster(found)
-    record = record_of(found, clusters, grammar_name=(grammar or GRAMMAR).as_posix())
+    with progress_bar("reducing and reviewing", len(clusters.ranked)) as bar:
+        record = record_of(
+            found, clusters, grammar_name=_grammar_name(grammar), on_done=bar
+        )
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_survey_page(record, out)
@@ -77,6 +89,10 @@ def recover(
         _write_json(record, target)
     print_survey(record, page)
     return FINDINGS if strict and record["parsed"] < record["files"] else FINE
+
+
+def _grammar_name(chosen: Path | None) -> str:
+    return "grammar/KRL.g4" if chosen is None else chosen.as_posix()
 
 
 def _write_json(record: dict[str, Any], target: Path) -> None:

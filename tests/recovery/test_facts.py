@@ -66,7 +66,7 @@ def test_grammatical_negatives_break_no_fact() -> None:
         "TIME_BLOCK END = 3\nCONST_VEL END = -4 ONSTART",
         "STOP WHEN PATH = 50 IF $IN[1] == FALSE",
         "SPLINE = 7\nSLIN.X = 8\nSPL[1] = 9",
-        'MESSAGE("THEN ENDIF (", , , [] )'.replace("[] ", "TEXT[] "),
+        'MESSAGE("THEN ENDIF (", , , TEXT[])',
         'X[1,] = Y[,2]\nTEXT[] = "a;b" ; ENDIF (',
         "IF A=>B THEN\nENDIF",
         "MASK = 'B 110' B_AND B_NOT 'HFF'",

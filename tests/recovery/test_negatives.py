@@ -54,13 +54,13 @@ def test_rule_and_line_may_be_left_out(tmp_path: Path) -> None:
 
 def test_files_come_in_order_and_others_are_left_aside(tmp_path: Path) -> None:
     """KRL files of all folders are read by path; a README is not."""
-    for name in ("b/x.sub", "a/z.src", "a/y.dat"):
+    for name in ("b/x.sub", "a/z.src", "a/y.dat", "a/b.src", "c/a.src", "d.dat"):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(GOOD.encode())
     (tmp_path / "README.md").write_text("none", encoding="utf-8")
     names = [n.path.relative_to(tmp_path).as_posix() for n in load(tmp_path) if n.path]
-    assert ["a/y.dat", "a/z.src", "b/x.sub"] == names
+    assert ["a/b.src", "a/y.dat", "a/z.src", "b/x.sub", "c/a.src", "d.dat"] == names
 
 
 @pytest.mark.parametrize(
@@ -107,20 +107,43 @@ def test_written_negatives_are_all_read_and_rejected() -> None:
 
 def test_accepted_are_those_the_recogniser_accepts() -> None:
     """Line by line gives what the whole text gives, with any line ends and without the last."""
-    texts = ["", "A", "A\n", "A\r\nB\n", "A\n\n?\nB\n", "?\n", "A ; ?\nB", "; A\n", "A\rB\n"]
+    texts = [
+        "",
+        "A",
+        "A\n",
+        "A\r\nB\n",
+        "A\n\n?\nB\n",
+        "?\n",
+        "A ; ?\nB",
+        "; A\n",
+        "A\rB\n",
+        "A (  B\n",
+    ]
     found = NegativeSet(map(negative, texts))
-    for recognizer in (toy(), toy("WORD* NEWLINE", "WORD NEWLINE"), toy("'\\r\\n' | ", "'\\r' | ")):
+    gap = "GAP : '(' ' '+ -> skip ;\nSPACE"
+    for recognizer in (
+        toy(),
+        toy("SPACE", gap),
+        toy("WORD* NEWLINE", "WORD NEWLINE"),
+        toy("'\\r\\n' | ", "'\\r' | "),
+    ):
         expected = [text for text in texts if recognizer.accepts(text)]
         assert expected == [n.text for n in found.accepted(recognizer)]
 
 
-def test_tokens_over_several_lines_are_read_whole() -> None:
+@pytest.mark.parametrize(
+    "rule",
+    [
+        "NOTE : '<' ~[>]* '>' -> skip ;",
+        "LONG : '<' ~[>]* '>' ;",
+        "ENDS : [\\n]+ -> skip ;",
+        "TAIL : '\\n' '!' -> skip ;",
+    ],
+)
+def test_tokens_over_several_lines_are_read_whole(rule: str) -> None:
     """A lexer whose tokens go on behind the line is asked about whole programs."""
-    recognizer = toy(
-        "COMMENT :", "NOTE : '<' ~[>]* '>' -> skip ;\nLONG : 'X' '\\n' 'Y' ;\nCOMMENT :"
-    )
-    recognizer = toy("NEWLINE : '\\r\\n' | '\\n' ;", "NEWLINE : ' '* '\\n' ;\nTAIL : '\\n' '!' ;")
-    texts = ["A\n", "A\n!\n", "A  \nB\n"]
+    recognizer = toy("COMMENT", f"{rule}\nCOMMENT")
+    texts = ["A <\n> B\n", "A <\nB\n", "A\n\n\nB\n", "A\n!B\n", "A"]
     expected = [text for text in texts if recognizer.accepts(text)]
     assert expected == [n.text for n in NegativeSet(map(negative, texts)).accepted(recognizer)]
 

@@ -1,0 +1,36 @@
+"""The judge of edits: how many programs that must stay rejected would an edit let in?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from grammar.edits import Edit
+from grammar.g4 import Grammar
+from grammar.recognizer import Recognizer
+from recovery.causes import Judge
+from recovery.negatives import Negative, NegativeSet
+from recovery.trial import edited
+
+__all__ = ["judge_of", "no_judge"]
+
+
+def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
+    """A judge for edits of ``grammar``; what the grammar accepts already is not held against them."""
+    recognizer = Recognizer(grammar)
+    rejected = NegativeSet(negatives).rejected_by(recognizer)
+    known: dict[tuple[Edit, ...], int] = {}
+
+    def judge(edits: Sequence[Edit]) -> int:
+        key = tuple(edits)
+        if key not in known:
+            wider = edited(recognizer, edits)
+            known[key] = 0 if wider is None else len(rejected.accepted(wider))
+        return known[key]
+
+    return judge
+
+
+def no_judge(edits: Sequence[Edit]) -> int:
+    """Where there are no negatives nothing speaks against an edit."""
+    del edits
+    return 0

@@ -1,0 +1,59 @@
+"""`krl bench`: what it takes, prints and writes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+
+PROGRAM = "DEF main()\nDECL INT count\ncount = 1\nfold = = 3\nEND\n"
+
+
+def test_recover_prints_a_table_and_writes_the_record(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`krl bench recover` measures on the files named, and stdout and record have the figures."""
+    (tmp_path / "main.src").write_text(PROGRAM, encoding="utf-8", newline="\n")
+    target = tmp_path / "out" / "speed.json"
+    given = ["bench", "recover", str(tmp_path), "--sizes", "0.01", "--json", str(target)]
+    assert 0 == main(given)
+    said, complained = capsys.readouterr()
+    assert "" == complained
+    assert said.startswith("1 files, 0.00 MB; 0 parse; 1 failures; Python 3.")
+    for row in ("all failures, cold", "ANTLR's Python runtime", "recording", "peak memory"):
+        assert row in said
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert ("recover", "KRL.g4", len(PROGRAM)) == (
+        record["bench"],
+        record["grammar"],
+        record["bytes"],
+    )
+    assert {"bytes_per_s", "ratio_vs_antlr_python", "unchanged_s_per_mb"} <= record.keys()
+    assert [0.01] == [entry["mb"] for entry in record["scaling"]]
+
+
+@pytest.mark.parametrize("sizes", ["ten", "1,-1", "0", "1;2", "nan", "1e9"])
+def test_sizes_are_megabytes(
+    sizes: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Anything but sizes in MB is refused in one line before anything is measured."""
+    assert 2 == main(["bench", "recover", str(tmp_path), "--sizes", sizes])
+    said = capsys.readouterr().err
+    assert f"krl: --sizes {sizes}: not a list of MB, each above 0 and up to 2,000\n" == said
+
+
+def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A path that is not there is one line on stderr and status 2."""
+    assert 2 == main(["bench", "recover", str(tmp_path / "gone"), "--sizes", ""])
+    assert "gone: no such file or folder" in capsys.readouterr().err
+
+
+def test_a_corpus_is_needed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Outside a checkout something has to be named."""
+    monkeypatch.chdir(tmp_path)
+    assert 2 == main(["bench", "recover"])
+    said = capsys.readouterr().err
+    assert "krl: there is no corpus/ here: name files, folders or .zip archives\n" == said
