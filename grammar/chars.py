@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from grammar.g4 import (
+from grammar.model import (
     MAX_CODE_POINT,
     CharRange,
     CharSet,
@@ -249,6 +249,7 @@ def _size(ranges: Sequence[CharRange]) -> int:
 
 def class_of(ranges: Sequence[CharRange]) -> str:
     """The set of characters as ``re`` writes it."""
+
     def one(code: int) -> str:
         return re.escape(chr(code)) if code < 128 else f"\\U{code:08x}"
 

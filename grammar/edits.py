@@ -12,7 +12,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
-from grammar.g4 import (
+from grammar.g4 import read_rule
+from grammar.model import (
     Alternative,
     Element,
     Grammar,
@@ -22,7 +23,6 @@ from grammar.g4 import (
     Reference,
     Repeat,
     Rule,
-    read_rule,
 )
 
 __all__ = [
@@ -265,9 +265,7 @@ def _add_token(grammar: Grammar, name: str) -> Grammar:
     if name in grammar.by_name:
         raise GrammarError(f"token {name} exists already")
     keywords = [
-        i
-        for i, rule in enumerate(grammar.rules)
-        if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
+        i for i, rule in enumerate(grammar.rules) if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
     ]
     if not keywords:
         raise GrammarError("the grammar has no keywords yet")
@@ -320,13 +318,17 @@ def from_data(data: Mapping[str, object]) -> Edit:
     cls = _KINDS.get(str(data.get("edit")))
     if cls is None:
         raise GrammarError(f"there is no edit {data.get('edit')!r}; know {', '.join(_KINDS)}")
+    unknown = data.keys() - {"edit", *(known.name for known in fields(cls))}
+    if unknown:
+        raise GrammarError(f"edit {data['edit']} has no {', '.join(sorted(unknown))}")
     values: dict[str, object] = {}
     for known in fields(cls):
         if known.name not in data:
             continue
         value = data[known.name]
         wanted = {"at": list, "count": int, "alternative": int}.get(known.name, str)
-        if not isinstance(value, wanted):
+        numbers = value if isinstance(value, list) else []
+        if not isinstance(value, wanted) or not all(isinstance(n, int) for n in numbers):
             raise GrammarError(f"edit {data['edit']}: {known.name} is not as it should be")
         values[known.name] = tuple(value) if isinstance(value, list) else value
     try:

@@ -241,11 +241,11 @@ class FailureFinder:
     ) -> State:
         """The guess under which most of the next lines can be read, the first of equals."""
         known = [g for g in guesses if g is not None]
-        lines = [kinds[s:e] for s, e in following[:_LINES_AHEAD * 4]]
+        lines = [kinds[s:e] for s, e in following[: _LINES_AHEAD * 4]]
         lines = [line for line in lines if line[0] != self.recognizer.line_kind][:_LINES_AHEAD]
         if lost:
             known.reverse()
-        if len(known) == 1 and not lost or self._readable(known[0], lines[:1]):
+        if (len(known) == 1 and not lost) or self._readable(known[0], lines[:1]):
             return known[0]
         if lost:
             known += self._anchors.states

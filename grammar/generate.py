@@ -35,7 +35,10 @@ def generate(grammar: Path, folder: Path) -> None:
 
     Raises `GenerationError` where Java or ANTLR is missing or the grammar has errors.
     """
-    tool = shutil.which("antlr4", path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))))
+    tool = shutil.which(
+        "antlr4",
+        path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))),
+    )
     if tool is None:
         raise GenerationError("antlr4 is missing: install the extra 'dev' (antlr4-tools)")
     with tempfile.TemporaryDirectory() as scratch:
@@ -90,7 +93,9 @@ def _verify() -> str | None:
         for path in sorted(fresh.iterdir()):
             committed = GENERATED / path.name
             if not committed.exists() or committed.read_bytes() != path.read_bytes():
-                return f"_generated/{path.name} differs from what ANTLR generates; run 'make grammar'"
+                return (
+                    f"_generated/{path.name} differs from what ANTLR generates; run 'make grammar'"
+                )
     return None
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 
 from grammar.chars import automaton_of, both_cases, class_of, first_characters, overlap, pattern_of
-from grammar.g4 import (
+from grammar.model import (
     CharSet,
     Element,
     Grammar,
@@ -90,10 +90,7 @@ class Lexer:
         self.names: tuple[str, ...] = ("EOF", *(r.name for r in rules))
         self.kind_of = {name: kind for kind, name in enumerate(self.names)}
         texts = {name: text for text, name in grammar.literal_tokens.items()}
-        self.display = tuple(
-            texts.get(name, name)
-            for name in self.names
-        )
+        self.display = tuple(texts.get(name, name) for name in self.names)
         self._wider: dict[str, Lexer] = {}
         self._keywords = frozenset(
             self.kind_of[name] for name, text in texts.items() if text[0].isalpha()

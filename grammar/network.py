@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from grammar.g4 import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.lexer import Lexer, lexer_of
+from grammar.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 
 __all__ = ["Network", "RuleAutomaton", "is_left_recursive", "network_of", "with_rule"]
 
@@ -67,9 +67,7 @@ def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
     for name, automaton in automata.items():
         base = entry[name]
         for state, edges in enumerate(automaton.edges):
-            shifts.append(
-                {lexer.kind_of[s]: base + t for s, t in edges.items() if s not in entry}
-            )
+            shifts.append({lexer.kind_of[s]: base + t for s, t in edges.items() if s not in entry})
             calls.append(tuple((entry[s], base + t) for s, t in edges.items() if s in entry))
             final.append(state in automaton.final)
             rule.append(name)

@@ -40,9 +40,7 @@ class Paths:
 
     def completion(self, state: Frames) -> list[int]:
         """The shortest tokens that end a program from this state; end of file included."""
-        ways = [
-            [kind for position in frames for kind in self._out[position]] for frames in state
-        ]
+        ways = [[kind for position in frames for kind in self._out[position]] for frames in state]
         return min(ways, key=lambda way: (len(way), way))
 
     def shortest(self, rule: str) -> list[int]:

@@ -18,8 +18,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from grammar.g4 import Grammar
 from grammar.lexer import EOF, SKIPPED
+from grammar.model import Grammar
 from grammar.network import Network, network_of
 
 __all__ = ["Configuration", "Core", "Frames", "Recognizer", "State", "Tail"]
@@ -151,9 +151,7 @@ class Recognizer:
         while tail:
             below.append(tail[0])
             tail = tail[1]
-        return tuple(
-            sorted((p, *stack.positions(), *below) for p, stack in state.core.kernel)
-        )
+        return tuple(sorted((p, *stack.positions(), *below) for p, stack in state.core.kernel))
 
     def restore(self, frames: Frames) -> State:
         """The state that `frames` describes, in a recogniser of the same grammar."""

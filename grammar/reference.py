@@ -33,7 +33,7 @@ class _FirstError(ErrorListener):  # type: ignore[misc]
         super().__init__()
         self.found: Refusal | None = None
 
-    def syntaxError(  # noqa: N802, PLR0913 - ANTLR's signature
+    def syntaxError(  # noqa: N802 - ANTLR's signature
         self, recognizer: Any, symbol: Any, line: int, column: int, message: str, error: Any
     ) -> None:
         if self.found is None:

@@ -6,12 +6,12 @@ reproducers and tell where lines may begin; the random ones feed the comparison 
 
 from __future__ import annotations
 
-import math
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
-from grammar.g4 import (
+from grammar.lexer import lexer_of
+from grammar.model import (
     Alternative,
     CharSet,
     Element,
@@ -22,7 +22,7 @@ from grammar.g4 import (
     Repeat,
     walk,
 )
-from grammar.lexer import lexer_of
+from grammar.wellformed import shortest_length, shortest_lengths
 
 __all__ = ["Sentences", "Speller"]
 
@@ -35,32 +35,8 @@ class Sentences:
         self._rules = {r.name: r for r in grammar.rules if not r.is_lexer}
 
     @cached_property
-    def _costs(self) -> dict[str, float]:
-        """Tokens in the shortest sentence of each rule; infinite where there is none."""
-        costs = dict.fromkeys(self._rules, math.inf)
-        changed = True
-        while changed:
-            changed = False
-            for name, rule in self._rules.items():
-                cost = min(self._sequence_cost(a, costs) for a in rule.alternatives)
-                if cost < costs[name]:
-                    costs[name] = cost
-                    changed = True
-        return costs
-
-    def _sequence_cost(self, alternative: Alternative, costs: dict[str, float]) -> float:
-        return sum(self._cost(e, costs) for e in alternative.elements)
-
-    def _cost(self, element: Element, costs: dict[str, float]) -> float:
-        match element:
-            case Reference(name=name):
-                return costs[name] if name in costs else float(name != "EOF")
-            case Group(alternatives=alternatives):
-                return min(self._sequence_cost(a, costs) for a in alternatives)
-            case Repeat(item=item, operator=operator):
-                return self._cost(item, costs) if operator == "+" else 0
-            case _:
-                return 1
+    def _costs(self) -> Mapping[str, float]:
+        return shortest_lengths(self.grammar)
 
     def shortest(self, rule: str) -> list[str]:
         """Token names of the shortest sentence of ``rule``, ``EOF`` left out."""
@@ -81,7 +57,10 @@ class Sentences:
                     yield from self._shortest(item)
 
     def _shortest_of(self, alternatives: tuple[Alternative, ...]) -> Iterator[str]:
-        best = min(alternatives, key=lambda a: self._sequence_cost(a, self._costs))
+        best = min(
+            alternatives,
+            key=lambda a: sum(shortest_length(e, self._costs) for e in a.elements),
+        )
         for element in best.elements:
             yield from self._shortest(element)
 
@@ -99,9 +78,7 @@ class Sentences:
             for alternative in self._rules[outer].alternatives:
                 for left, name, right in self._calls(alternative):
                     candidate = (before + left, right + after)
-                    if name not in frames or sum(map(len, candidate)) < sum(
-                        map(len, frames[name])
-                    ):
+                    if name not in frames or sum(map(len, candidate)) < sum(map(len, frames[name])):
                         frames[name] = candidate
                         if name not in todo:
                             todo.append(name)

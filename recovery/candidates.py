@@ -15,8 +15,8 @@ from functools import cached_property
 
 from grammar.edits import (
     AddAlternative,
-    AddToken,
     Address,
+    AddToken,
     Edit,
     Insert,
     MakeOptional,

@@ -126,8 +126,7 @@ class _Search:
                 tried.setdefault(candidate.edits, candidate)
         sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
         first = [
-            (candidate, self.trial.outcome(candidate.edits, sample))
-            for candidate in tried.values()
+            (candidate, self.trial.outcome(candidate.edits, sample)) for candidate in tried.values()
         ]
         first += [
             (candidate, self.trial.outcome(candidate.edits, sample))

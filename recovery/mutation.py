@@ -28,7 +28,8 @@ from grammar.edits import (
     describe,
     sequences,
 )
-from grammar.g4 import Grammar, GrammarError, Literal, Reference, Repeat, read, walk
+from grammar.g4 import Grammar, GrammarError, Literal, Reference, Repeat, read
+from grammar.model import walk
 from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
 from recovery.causes import Judge
@@ -183,9 +184,7 @@ def _without_keywords(grammar: Grammar) -> Iterator[Mutant]:
             yield from _made("keyword", grammar, [*removals, RemoveRule(rule.name)], users)
 
 
-def combined(
-    singles: Sequence[Mutant], grammar: Grammar, count: int, seed: int
-) -> list[Mutant]:
+def combined(singles: Sequence[Mutant], grammar: Grammar, count: int, seed: int) -> list[Mutant]:
     """Mutants with two or three things taken out, of different rules."""
     chance = random.Random(seed)
     out: list[Mutant] = []
@@ -225,9 +224,7 @@ def assess(
     found = survey_texts(shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
-        return Verdict(
-            mutant, False, None, None, None, 0, 0, 0, (), time.perf_counter() - began
-        )
+        return Verdict(mutant, False, None, None, None, 0, 0, 0, (), time.perf_counter() - began)
     clusters = cluster(found, judge=judge(mutant.grammar))
     seconds = time.perf_counter() - began
     base = Recognizer(mutant.grammar)
@@ -389,7 +386,11 @@ def figures(verdicts: Sequence[Verdict], negative_count: int) -> dict[str, Any]:
         "mutants": total,
         "detected": round(len(seen) / total, 4) if total else None,
         **(
-            {f"{name}_top{n}": share(name, n) for name in ("rule", "item", "repair") for n in (1, 5)}
+            {
+                f"{name}_top{n}": share(name, n)
+                for name in ("rule", "item", "repair")
+                for n in (1, 5)
+            }
             if total
             else {}
         ),
@@ -404,4 +405,3 @@ def figures(verdicts: Sequence[Verdict], negative_count: int) -> dict[str, Any]:
         if total
         else None,
     }
-

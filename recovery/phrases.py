@@ -55,9 +55,7 @@ class Phraser:
         network = self.recognizer.network
         direct = {
             rule: {
-                network.rule[callee]
-                for callee, back in network.calls[entry]
-                if network.final[back]
+                network.rule[callee] for callee, back in network.calls[entry] if network.final[back]
             }
             for rule, entry in network.entry.items()
         }

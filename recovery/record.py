@@ -60,9 +60,7 @@ def record_of(
             {"path": s.path, "reason": s.reason, "origin": s.origin} for s in found.skipped
         ],
         "origins": _origins(files),
-        "copies": [
-            {"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]
-        ],
+        "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
         "clusters": written,
         "failures": _failures(found, clusters, recognizer),

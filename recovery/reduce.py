@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 from grammar.failures import Context, Failure, FailureFinder
@@ -22,9 +24,8 @@ from recovery.spelling import Spelling, Token
 
 __all__ = ["Reducer", "Reproducer"]
 
-# How many of the configurations a line was read from are looked at, and how far up their stacks.
+# How many of the configurations a line was read from are looked at.
 _MOST_CONFIGURATIONS = 12
-_DEEPEST = 16
 # How many tokens at a failure may have to go for the rest of the line to be read.
 _LONGEST_GAP = 64
 # Up to so many tokens every stretch is tried, above it halves, quarters and so on.
@@ -50,17 +51,40 @@ class Reproducer:
 
 
 class _Way(NamedTuple):
-    """What makes two failures alike.
+    """What makes two failures alike: the offending token and what the grammar was doing.
 
-    The offending token's kind; the keywords meant by it, by the name before it and by the first of
-    the line; what the grammar was doing.
+    ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
+    it, by the name before it and by the first of the line. ``opening`` is the first token's kind
+    where the line could have ended: then the statement as a whole is what does not go on.
     """
 
     kind: int
     meant: str | None
     before: str | None
     lead: str | None
-    context: Context
+    opening: int | None
+    rule: str
+    expected: tuple[str, ...]
+
+
+def _way(
+    recognizer: Recognizer,
+    kinds: Sequence[int],
+    meant: Sequence[str | None],
+    index: int,
+    context: Context,
+) -> _Way:
+    """How the line of these tokens fails at ``index``."""
+    could_end = recognizer.lexer.display[recognizer.line_kind] in context.expected
+    return _Way(
+        kinds[index],
+        meant[index],
+        meant[index - 1] if index else None,
+        meant[0],
+        kinds[0] if could_end or not index else None,
+        context.rule,
+        context.expected,
+    )
 
 
 _Tokens = list[Token]
@@ -75,8 +99,6 @@ class Reducer:
         self._finder = FailureFinder(recognizer)
         self._spelling = Spelling(recognizer)
         self._paths = Paths(recognizer.network)
-        self._sentences = Sentences(recognizer.grammar)
-        self._prefixes: dict[Frames, list[tuple[int, ...]]] = {}
 
     def reduce(
         self, line: Line, words: Sequence[str], *, mended: Recognizer | None = None
@@ -90,11 +112,10 @@ class Reducer:
         way = self._way(line)
         tokens = self._spelling.tokens(line, words)
         for wider in (None,) if mended is None else (mended, None):
-            programs = list(self._programs(line, tokens, wider))
             # what only follows from the failure is put up with where it cannot be helped
             for may_follow in (False, True):
                 test = _Test(self._finder, self._spelling, way, wider, may_follow)
-                for program in programs:
+                for program in self._programs(line, tokens, wider):
                     if test.passes(program.whole):
                         return self._reproducer(test, _smallest(program, test))
         return None
@@ -103,13 +124,9 @@ class Reducer:
         form, meant = line.form, dict(line.keywords)
         before = self.recognizer.restore(form.before)
         state, _ = self.recognizer.run(before, form.kinds[: form.index])
-        return _Way(
-            form.kinds[form.index],
-            meant.get(form.index),
-            meant.get(form.index - 1),
-            meant.get(0),
-            self._finder.context(state),
-        )
+        context = self._finder.context(state)
+        words = [meant.get(i) for i in range(len(form.kinds))]
+        return _way(self.recognizer, form.kinds, words, form.index, context)
 
     def _reproducer(self, test: _Test, tokens: _Tokens) -> Reproducer:
         text = self._spelling.text(tokens, test.wider)
@@ -133,41 +150,46 @@ class Reducer:
     ) -> Iterator[_Program]:
         """Programs around the line, the shortest ways to it first."""
         recognizer, form = self.recognizer, line.form
-        for prefix in self._prefixes_to(form.before):
+        out = None if wider is None else Paths(wider.network)
+        for prefix in chain(self._places, self._prefixes(form.before)):
             start, failed = recognizer.run(recognizer.start, prefix)
             if failed is not None or recognizer.run(start, form.kinds)[1] != form.index:
                 continue
             before = self._spelling.frame(prefix)
             body = tokens
             endings = self._endings(start, form.kinds, form.index)
-            if wider is not None:
+            if wider is not None and out is not None:
                 read = _readable(wider, before, tokens, form.index)
                 if read is None:
                     continue
                 body, state = read
-                ending = Paths(wider.network).completion(wider.frames(state))[:-1]
+                ending = out.completion(wider.frames(state))[:-1]
                 endings.append(self._spelling.frame(ending, wider))
             for after in endings:
                 yield _Program(before, body, after)
 
-    def _prefixes_to(self, before: Frames) -> list[tuple[int, ...]]:
-        """Tokens after which a program is where the line began, or in a place like it.
+    @cached_property
+    def _places(self) -> list[list[int]]:
+        """Tokens to each place where a line can begin, the fewest first."""
+        recognizer, sentences = self.recognizer, Sentences(self.recognizer.grammar)
+        kind_of, line_kind = recognizer.lexer.kind_of, recognizer.line_kind
+        found: dict[State, list[int]] = {recognizer.start: []}
+        for rule in sentences.reachable:
+            for sentence in sentences.through(rule):
+                kinds = [kind_of[name] for name in sentence]
+                state: State | None = recognizer.start
+                for end, kind in enumerate(kinds, 1):
+                    state = None if state is None else recognizer.step(state, kind)
+                    if state is None:  # a rule that only fits with more around it
+                        break
+                    if kind == line_kind and end < len(found.get(state, sentence)):
+                        found[state] = kinds[:end]
+        return sorted(found.values(), key=lambda way: (len(way), way))
 
-        What encloses the line is left out from some level on, the frame of the rule there put in
-        its stead.
-        """
-        found = self._prefixes.get(before)
-        if found is None:
-            kind_of, rule_of = self.recognizer.lexer.kind_of, self.recognizer.network.rule
-            ways: set[tuple[int, ...]] = set()
-            for frames in before[:_MOST_CONFIGURATIONS]:
-                ways.add(tuple(self._paths.prefix(frames)))
-                for depth in range(1, min(len(frames), _DEEPEST) + 1):
-                    outside, _ = self._sentences.frame(rule_of[frames[depth - 1]])
-                    inside = self._paths.prefix(frames[:depth])
-                    ways.add((*(kind_of[name] for name in outside), *inside))
-            found = self._prefixes[before] = sorted(ways, key=lambda way: (len(way), way))
-        return found
+    def _prefixes(self, before: Frames) -> Iterator[list[int]]:
+        """Tokens to the very place where the line began."""
+        for frames in before[:_MOST_CONFIGURATIONS]:
+            yield self._paths.prefix(frames)
 
     def _endings(self, start: State, kinds: Sequence[int], index: int) -> list[_Tokens]:
         """How a program goes on behind the line: as without it, or as if it had been read."""
@@ -246,33 +268,47 @@ class _Test:
     def passes(self, tokens: _Tokens) -> bool:
         """Whether the program passes; never once the work allowed has been done."""
         self.left -= len(tokens) + _COST_OF_A_TEST
-        return (
-            self.left > 0
-            and self._fails_so(tokens)
-            and (self.wider is None or self._is_read(self.wider, tokens))
-            and self._fails_once(tokens)
-        )
-
-    def _fails_so(self, tokens: _Tokens) -> bool:
+        if self.left < 0:
+            return False
+        recognizer, wider = self.recognizer, self.wider
         kinds = [*(t.kind for t in tokens), EOF]
-        state, index = self.recognizer.run(self.recognizer.start, kinds)
+        state, index = recognizer.run(recognizer.start, kinds)
         if index is None or kinds[index] != self.way.kind:
             return False
-        meant = [t.meant for t in tokens[: index + 1]]
-        line_kind = self.recognizer.line_kind
-        first = next((i + 1 for i in range(index - 1, -1, -1) if kinds[i] == line_kind), 0)
-        if index == len(tokens):  # the end of the file is a line of its own
-            first = index
-            meant.append(None)
-        return (
-            meant[index] == self.way.meant
-            and meant[first] == self.way.lead
-            and (meant[index - 1] if index > first else None) == self.way.before
-            and self.finder.context(state) == self.way.context
+        first, end = self._line(kinds, index)
+        meant = [*(t.meant for t in tokens), None]
+        way = _way(
+            recognizer,
+            kinds[first:end],
+            meant[first:end],
+            index - first,
+            self.finder.context(state),
         )
+        if way != self.way:
+            return False
+        if wider is not None:
+            if wider.run(wider.start, [*_kinds_in(wider, tokens), EOF])[1] is not None:
+                return False
+        elif not self.may_follow and not self._is_right_without(kinds, first, index, end):
+            return False
+        return self._fails_once(tokens)
 
-    def _is_read(self, wider: Recognizer, tokens: _Tokens) -> bool:
-        return wider.run(wider.start, [*_kinds_in(wider, tokens), EOF])[1] is None
+    def _line(self, kinds: Sequence[int], index: int) -> tuple[int, int]:
+        """Where the line with that token begins and ends; the end of the file is one of its own."""
+        last, line_kind = len(kinds) - 1, self.recognizer.line_kind
+        if index == last:
+            return last, len(kinds)
+        first = next((i + 1 for i in range(index - 1, -1, -1) if kinds[i] == line_kind), 0)
+        end = next((i + 1 for i in range(index, last) if kinds[i] == line_kind), last)
+        return first, end
+
+    def _is_right_without(self, kinds: list[int], first: int, index: int, end: int) -> bool:
+        """Whether it is a program without the failing line, or without tokens at the failure."""
+        accepts = self.recognizer.run
+        start = self.recognizer.start
+        cuts = [(first, end), (max(0, first - 1), end)]
+        cuts += [(index, index + gap) for gap in range(1, min(end - index, _LONGEST_GAP))]
+        return any(accepts(start, kinds[:i] + kinds[j:])[1] is None for i, j in cuts)
 
     def _fails_once(self, tokens: _Tokens) -> bool:
         text = self.spelling.text(tokens, self.wider)

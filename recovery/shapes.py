@@ -59,9 +59,7 @@ class Shape:
 class Shaper:
     """Gives failures their shapes; sees all of them first, to learn the words."""
 
-    def __init__(
-        self, lexer: Lexer, failures: Iterable[tuple[str, Failed, Form]]
-    ) -> None:
+    def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, Failed, Form]]) -> None:
         """``failures`` come with the digest of their file."""
         self.lexer = lexer
         self._name = lexer.kind_of.get("NAME", ERROR)
@@ -120,9 +118,7 @@ class Shaper:
         after = kinds[place + 1] if place + 1 < len(kinds) else None
         if before is None:
             return after not in self._signs
-        return (
-            self._is_operand(before) or self._is_operand(after) or self._is_sign(before, ":")
-        )
+        return self._is_operand(before) or self._is_operand(after) or self._is_sign(before, ":")
 
     def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:
         return 0 <= place < len(kinds) and self._is_operand(kinds[place])
@@ -131,7 +127,7 @@ class Shaper:
         if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
             return False
         text = self.lexer.display[kind]
-        return kind not in self._signs and not self.lexer.is_keyword(kind) or text in "])}"
+        return (kind not in self._signs and not self.lexer.is_keyword(kind)) or text in "])}"
 
     def _is_sign(self, kind: int, text: str) -> bool:
         return kind > 0 and self.lexer.display[kind] == text

@@ -26,6 +26,8 @@ _CLOSING = {"(": ")", "[": "]", "{": "}"}
 # Words that part a block in two, and words before the one that says what a line is.
 _PARTING = frozenset({"ELSE", "CASE", "DEFAULT"})
 _PREFIXES = frozenset({"GLOBAL"})
+# Words of lines with parameters, whose direction is written as in ``DEF A(B :IN)``.
+_DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
 # Numbered names of each letter, more than any line has.
 _MOST_NAMES = 10_000
@@ -115,7 +117,7 @@ class Spelling:
                 continue
             pool: Iterable[str]
             if kind < 0:
-                pool = (name, *_UNKNOWN)
+                pool = (*(name if len(name) == 1 else ""), *_UNKNOWN)
             elif kind in self._fixed:
                 pool = (self._fixed[kind],)
             else:
@@ -127,9 +129,7 @@ class Spelling:
             found[kind, name] = text
         return [meant or found[kind, name] for kind, name, meant in tokens]
 
-    def _laid_out(
-        self, tokens: Sequence[Token], texts: Sequence[str], *, closely: bool
-    ) -> str:
+    def _laid_out(self, tokens: Sequence[Token], texts: Sequence[str], *, closely: bool) -> str:
         lines: list[str] = []
         blocks = _Blocks()
         start = 0
@@ -146,6 +146,7 @@ class Spelling:
     def _spaced(self, tokens: Sequence[Token], texts: Sequence[str]) -> Iterator[str]:
         """The texts of a line with blanks between them as people put them."""
         inside: list[str] = []  # open brackets
+        declares = not _DECLARING.isdisjoint(texts[:2])
         signed = False  # after a sign that belongs to the number behind it
         for i, text in enumerate(texts):
             last = texts[i - 1] if i else ""
@@ -156,9 +157,10 @@ class Spelling:
                 or signed
                 or last in ("(", "[", "{", ".")
                 or text in (")", "]", "}", ",", ".")
-                or (text in ("(", "[") and operand_before)
+                or (text == "(" and operand_before)
+                or (text == "[" and (operand_before or last[-1].isalnum()))
                 or (text == ":" and (in_braces or i == 1))
-                or (last == ":" and inside[-1:] == ["("])
+                or (last == ":" and declares)
             )
             if not attached:
                 yield " "

@@ -246,9 +246,7 @@ class _Gathered:
                 skipped += [Skipped(p, content.result, o) for p, o in content.places]
             elif content.result is not None:
                 places = tuple(content.places)
-                files.append(
-                    SurveyedFile(content.found, places, key, content.size, content.result)
-                )
+                files.append(SurveyedFile(content.found, places, key, content.size, content.result))
         skipped.sort(key=lambda s: s.path)
         return Survey(grammar, tuple(files), tuple(skipped), tuple(self.forms), seconds)
 

@@ -101,9 +101,7 @@ class Trial:
         if among is not None:
             wanted = frozenset(among)
             chosen = [n for n in chosen if n in wanted]
-        new = {
-            e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)
-        }
+        new = {e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)}
         starts: dict[Frames, State | None] = {}
         mended, advanced = [], []
         for number in chosen:

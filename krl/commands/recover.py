@@ -78,9 +78,7 @@ def recover(
     except (GrammarError, IngestError, NegativeError) as error:
         raise Unusable(str(error)) from error
     with progress_bar("reducing and reviewing", len(clusters.ranked)) as bar:
-        record = record_of(
-            found, clusters, grammar_name=_grammar_name(grammar), on_done=bar
-        )
+        record = record_of(found, clusters, grammar_name=_grammar_name(grammar), on_done=bar)
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_survey_page(record, out)

@@ -1,4 +1,4 @@
-"""The grammars of the project, and slow, plain readings of grammar data to judge the fast ones by."""
+"""The project's grammars, its corpus, and slow plain readings of grammar data as a measure."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from grammar.g4 import CharSet, Element, Grammar, Group, Literal, Reference, Repeat, Rule, read_file
+from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
+from grammar.model import CharSet, Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.recognizer import Recognizer
 
 CORPUS = GRAMMAR.parents[1] / "corpus"
