@@ -24,7 +24,7 @@ from grammar.edits import (
     sequences,
 )
 from grammar.failures import Form
-from grammar.g4 import Alternative, Group, Literal, Reference, Repeat
+from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat
 from grammar.recognizer import Configuration, Recognizer, State
 from recovery.phrases import Phraser, Word, repeated
 
@@ -126,6 +126,8 @@ class CandidateFinder:
                 # before the first element of a rule only where that element itself comes next
                 if position != base or words[end][0] in self._first(sequence, number):
                     yield from self._insertions(rule, place, words[start:end])
+                yield from self._repetitions(rule, place, words[start:end])
+            yield from self._blocks(rule, place, words[start:])
             if number > len(sequence.elements):
                 continue
             # something else in place of the next element
@@ -137,13 +139,22 @@ class CandidateFinder:
             yield from self._omissions(state, site, place, words, start)
 
     def _first(self, sequence: Alternative, number: int) -> frozenset[int]:
-        """The token a place itself reads next, where the element there is a token."""
+        """The tokens with which the element at a place itself begins, rules left aside."""
         if number > len(sequence.elements):
             return frozenset()
-        element = sequence.elements[number - 1]
-        if isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
-            return frozenset([self.recognizer.lexer.kind_of[self.grammar.token_of(element)]])
-        return frozenset()
+        return frozenset(self._tokens(sequence.elements[number - 1]))
+
+    def _tokens(self, element: Element) -> Iterator[int]:
+        if isinstance(element, Repeat):
+            yield from self._tokens(element.item)
+        elif isinstance(element, Group):
+            for alternative in element.alternatives:
+                if alternative.elements:
+                    yield from self._tokens(alternative.elements[0])
+        elif isinstance(element, Literal) or (
+            isinstance(element, Reference) and element.is_token
+        ):
+            yield self.recognizer.lexer.kind_of[self.grammar.token_of(element)]
 
     def _resuming(self, state: State, words: list[Word], start: int) -> list[int]:
         """Where the line can be read on from ``state``, to its end or for some tokens at least."""
@@ -179,6 +190,40 @@ class CandidateFinder:
                 text = f"({' '.join(looped)})*" if len(looped) > 1 else f"{looped[0]}*"
                 yield rank + 9, self._with_tokens(words, Insert(rule, place, text))
 
+    def _repetitions(
+        self, rule: str, place: Address, words: Sequence[Word]
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        """The operand before a place again, after a sign or word: ``a (',' a)*``."""
+        if place[-1] == 1 or len(words) < 2 or any(kind < 0 for kind, _ in words):
+            return
+        before = self._sequence(rule, place[:-1]).elements[place[-1] - 2]
+        if not isinstance(before, Reference) or before.is_token:
+            return
+        kind, keyword = words[0]
+        if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
+            text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
+            yield self._width(rule) + 8, self._with_tokens(words, Insert(rule, place, text))
+
+    def _blocks(
+        self, rule: str, place: Address, words: Sequence[Word]
+    ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        """A rule of several lines that this line begins and that is not known at this place."""
+        if any(keyword for _, keyword in words):
+            return
+        rank = self._width(rule) + 8
+        elements = self._sequence(rule, place[:-1]).elements
+        following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
+        inner = following.item if isinstance(following, Repeat) else following
+        for block in self.phraser.opened_by([kind for kind, _ in words]):
+            if isinstance(inner, Reference) and not inner.is_token and inner.name != block:
+                hub = self.grammar.by_name[inner.name]
+                if len(hub.alternatives) > 1:
+                    ends = {hub.source_of(a.elements[-1]) for a in hub.alternatives if a.elements}
+                    text = f"{block} {min(ends)}" if len(ends) == 1 else block
+                    yield self._width(hub.name) + 8, (AddAlternative(hub.name, text),)
+            for text in (f"{block}*", f"({block} NEWLINE*)*"):
+                yield rank + 2, (Insert(rule, place, text),)
+
     def _replacements(
         self, rule: str, place: Address, element: object, words: Sequence[Word]
     ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
@@ -190,8 +235,11 @@ class CandidateFinder:
             rank = self._width(rule) + self.phraser.breadth(symbols) + 10
             if isinstance(element, Repeat):
                 rank += _UNLIKELY  # one more thing in a loop made for something else
-            if self._is_keyword(element) and (len(words) > 1 or place[-1] == 1):
-                rank += _UNLIKELY  # the word that says what a line is says nothing else
+            elements = self._sequence(rule, place[:-1]).elements
+            if self._is_keyword(element) and (
+                len(words) > 1 or place[-1] == 1 or place[-1] == len(elements)
+            ):
+                rank += _UNLIKELY  # the words that say what a line is say nothing else
             yield rank, self._with_tokens(words, Widen(rule, place, " ".join(symbols)))
 
     def _is_keyword(self, element: object) -> bool:

@@ -105,6 +105,9 @@ class _Search:
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.open = set(range(len(lines)))
+        self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
+        for number in sorted(self.open, key=lambda n: (-weights[n], n)):
+            self.same_token[self._token(number)].append(number)
 
     def best_for(self, group: Sequence[int]) -> Cause | None:
         """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
@@ -125,6 +128,7 @@ class _Search:
             for candidate in self.finder.find(self.lines[number])[:_MOST_TRIED]:
                 tried.setdefault(candidate.edits, candidate)
         sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
+        sample |= set(_spread(self._alike(specimens[0]), _FIRST_TRIAL))
         first = [
             (candidate, self.trial.outcome(candidate.edits, sample)) for candidate in tried.values()
         ]
@@ -145,6 +149,14 @@ class _Search:
                 )
             )
         return self._ranked(proposals)
+
+    def _alike(self, number: int) -> list[int]:
+        """Other lines that fail at the same token, whatever else they look like."""
+        return [n for n in self.same_token[self._token(number)] if n in self.open]
+
+    def _token(self, number: int) -> tuple[int, str | None]:
+        line = self.lines[number]
+        return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
 
     def _gain(self, outcome: Outcome | Proposal) -> float:
         whole = sum(self.weights[n] for n in outcome.mended)

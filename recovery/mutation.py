@@ -317,20 +317,16 @@ def _repairs(base: Recognizer, edits: Sequence[Edit], texts: Sequence[str]) -> b
 # ------------------------------------------------------------------------------------ the bench
 
 
-def programs_for(grammar: Grammar, texts: Sequence[str], count: int, seed: int) -> list[str]:
-    """Programs the grammar reads: those of ``texts`` that it does, then made ones up to ``count``.
-
-    The made ones use every alternative and optional part of every rule, and random programs.
-    """
+def covering(grammar: Grammar) -> list[str]:
+    """The shortest programs through every alternative and every optional part of every rule."""
     recognizer = Recognizer(grammar)
-    out = [t for t in texts if recognizer.accepts(t)][:count]
     sentences, speller = Sentences(grammar), Speller(grammar)
-    chance = random.Random(seed)
-    while len(out) < count:
-        text = speller.text(sentences.random(chance, size=chance.randint(20, 160)))
-        if recognizer.accepts(text):
-            out.append(text)
-    return out
+    texts = {
+        speller.text(sentence)
+        for rule in sentences.reachable
+        for sentence in sentences.through(rule)
+    }
+    return sorted(text for text in texts if recognizer.accepts(text))
 
 
 def bench(

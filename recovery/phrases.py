@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import islice, product
 
 from grammar.recognizer import Recognizer, State
 
@@ -19,6 +20,9 @@ Word = tuple[int, str | None]
 
 _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
+_MOST_SPELLINGS = 12
+#: A rule used in so many places is an established part of the language.
+_COMMON = 3
 _MOST_REMEMBERED = 200_000
 
 
@@ -70,6 +74,11 @@ class Phraser:
             closed(rule)
         return out
 
+    def opened_by(self, kinds: Sequence[int]) -> list[str]:
+        """Rules that go on over the end of a line which begins them so."""
+        run = self.recognizer.run
+        return [rule for rule, entry in self._entries.items() if run(entry, kinds)[1] is None]
+
     def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
         """Rules of which these tokens are a whole sentence."""
         found = self._spans.get(kinds)
@@ -94,58 +103,63 @@ class Phraser:
         if not words or len(words) > _LONGEST_PHRASE:
             return
         seen: set[tuple[str, ...]] = set()
-        for choose in (None, self._narrowest, self._widest):
-            symbols = self._written(words, choose)
-            if symbols is None:
-                continue
+        for symbols in self._spellings(words):
             for shape in (symbols, as_list(symbols)):
                 if len(shape) <= _MOST_SYMBOLS and shape not in seen:
                     seen.add(shape)
                     yield shape
 
-    def _narrowest(self, rules: frozenset[str]) -> str:
-        """Of rules that fit alike the one that stands for least else.
+    def _spellings(self, words: Sequence[Word]) -> Iterator[tuple[str, ...]]:
+        """The words as they are, then with rules for their operands, narrow ones first."""
+        parts = self._parts(words)
+        if parts is None:
+            return
+        plain = [self._token(word) for word in words]
+        if all(plain):
+            yield tuple(token for token in plain if token)
+        choices = [self._levels(part) for part in parts]
+        if all(choices):
+            yield from islice(product(*choices), _MOST_SPELLINGS)
 
-        A rule that nothing uses waits to be used: it comes first.
-        """
-        return min(rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), r))
-
-    def _widest(self, rules: frozenset[str]) -> str:
-        """The most used rule; of those alike the one that stands for most of the others."""
-        return max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
-
-    def _written(self, words: Sequence[Word], choose: object) -> tuple[str, ...] | None:
-        """The fewest symbols that cover the words, rules chosen by ``choose``."""
+    def _parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
+        """The words cut into the fewest operands and single tokens."""
         count = len(words)
-        best: list[tuple[int, tuple[str, ...]] | None] = [None] * count + [(0, ())]
+        best: list[tuple[int, list[tuple[Word, ...]]] | None] = [None] * count + [(0, [])]
         for start in range(count - 1, -1, -1):
             for end in range(start + 1, count + 1):
-                rest = best[end]
-                symbol = self._symbol(words[start:end], choose)
-                if rest is None or symbol is None:
+                rest, part = best[end], tuple(words[start:end])
+                if rest is None or not self._levels(part):
                     continue
-                cost = rest[0] + (10 if end - start == 1 or choose is None else 9)
+                cost = rest[0] + (10 if len(part) == 1 else 9)
                 known = best[start]
                 if known is None or cost < known[0]:
-                    best[start] = (cost, (symbol, *rest[1]))
+                    best[start] = (cost, [part, *rest[1]])
         return best[0][1] if best[0] else None
 
-    def _symbol(self, words: Sequence[Word], choose: object) -> str | None:
-        kinds = tuple(kind for kind, _ in words)
-        if len(words) == 1:
-            kind, keyword = words[0]
-            if keyword is not None:
-                return keyword
-            if kind < 0:
-                return None
-            if choose is None or not self._is_operand(kind):
-                return self.spelled(kind)
-        if choose is None or any(keyword for _, keyword in words):
-            return None
-        rules = self.rules_for(kinds)
+    def _levels(self, part: tuple[Word, ...]) -> tuple[str, ...]:
+        """What can stand for a part: its token, or rules from the narrowest to the widest."""
+        if len(part) == 1:
+            token = self._token(part[0])
+            if token is None or part[0][1] is not None or not self._is_operand(part[0][0]):
+                return () if token is None else (token,)
+        elif any(keyword is not None or kind < 0 for kind, keyword in part):
+            return ()
+        rules = self.rules_for(tuple(kind for kind, _ in part))
         if not rules:
-            return self.spelled(kinds[0]) if len(kinds) == 1 else None
-        return choose(rules)  # type: ignore[operator,no-any-return]
+            token = self._token(part[0])
+            return (token,) if len(part) == 1 and token else ()
+        # a rule that nothing uses waits to be used: it comes first
+        narrow = min(rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), r))
+        common = [r for r in rules if self._uses[r] >= _COMMON]
+        middle = min(common, key=lambda r: (len(self._wider[r]), r), default=narrow)
+        wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
+        return tuple(dict.fromkeys((narrow, middle, wide)))
+
+    def _token(self, word: Word) -> str | None:
+        kind, keyword = word
+        if keyword is not None:
+            return keyword
+        return None if kind < 0 else self.spelled(kind)
 
     def _is_operand(self, kind: int) -> bool:
         """Whether a token carries a value of its own: a name, a number, a string."""
