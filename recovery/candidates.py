@@ -24,7 +24,7 @@ from grammar.edits import (
     sequences,
 )
 from grammar.failures import Form
-from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat
+from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
 from grammar.recognizer import Configuration, Recognizer, State
 from recovery.phrases import Phraser, Word, repeated
 
@@ -104,7 +104,7 @@ class CandidateFinder:
                     continue
                 beyond = self.recognizer.at((back, stack), before)
                 if self.recognizer.run(beyond, end)[1] is None:
-                    for symbols in self.phraser.phrases(words[:last]):
+                    for symbols in self.phraser.phrases(words[:last], self._near(rule)):
                         rank, edits = self._alternative(rule, symbols, words[:last])
                         yield rank + _UNLIKELY, edits
 
@@ -180,7 +180,7 @@ class CandidateFinder:
             len(self._sequence(rule, place[:-1]).elements) == 1
         ):
             width += _UNLIKELY  # behind one of many statements rather than in it
-        for symbols in self.phraser.phrases(words):
+        for symbols in self.phraser.phrases(words, self._near(rule)):
             rank = width + self.phraser.breadth(symbols)
             unit = repeated(symbols)
             if unit is None:
@@ -202,7 +202,8 @@ class CandidateFinder:
         kind, keyword = words[0]
         if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
-            yield self._width(rule) + 8, self._with_tokens(words, Insert(rule, place, text))
+            rank = self._width(rule) + self.phraser.breadth((before.name,)) + 8
+            yield rank, self._with_tokens(words, Insert(rule, place, text))
 
     def _blocks(
         self, rule: str, place: Address, words: Sequence[Word]
@@ -222,14 +223,15 @@ class CandidateFinder:
                     text = f"{block} {min(ends)}" if len(ends) == 1 else block
                     yield self._width(hub.name) + 8, (AddAlternative(hub.name, text),)
             for text in (f"{block}*", f"({block} NEWLINE*)*"):
-                yield rank + 2, (Insert(rule, place, text),)
+                yield rank + _UNLIKELY, (Insert(rule, place, text),)
 
     def _replacements(
         self, rule: str, place: Address, element: object, words: Sequence[Word]
     ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
-        for symbols in self.phraser.phrases(words):
-            if isinstance(element, Reference) and not element.is_token:
+        if isinstance(element, Reference) and not element.is_token:
+            for symbols in self.phraser.phrases(words, self._near(element.name)):
                 yield self._alternative(element.name, symbols, words)
+        for symbols in self.phraser.phrases(words, self._near(rule)):
             if place == (1, 1) and len(self._sequence(rule, (1,)).elements) == 1:
                 continue  # the same as an alternative of the rule
             rank = self._width(rule) + self.phraser.breadth(symbols) + 10
@@ -255,6 +257,15 @@ class CandidateFinder:
         hub = max(0, _HUB + 2 - len(self.grammar.by_name[rule].alternatives))
         rank = self._width(rule) + self.phraser.breadth(symbols) + 8 + hub
         return rank, self._with_tokens(words, AddAlternative(rule, " ".join(symbols)))
+
+    def _near(self, rule: str) -> frozenset[str]:
+        """Rules that a rule refers to."""
+        return frozenset(
+            e.name
+            for a in self.grammar.by_name[rule].alternatives
+            for e in walk(a)
+            if isinstance(e, Reference) and not e.is_token
+        )
 
     def _width(self, rule: str) -> int:
         """How many rules lead to this one: an edit counts wherever they are used."""

@@ -29,7 +29,7 @@ _KEPT = 5
 _MOST_JUDGED = 30
 _ROUNDS = 4
 # An edit that mends nearly as much as the best is preferred when it lets in less.
-_AS_GOOD = 0.97
+_AS_GOOD = 0.99
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,6 @@ Word = tuple[int, str | None]
 _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
 _MOST_SPELLINGS = 12
-#: A rule used in so many places is an established part of the language.
-_COMMON = 3
 _MOST_REMEMBERED = 200_000
 
 
@@ -76,8 +74,12 @@ class Phraser:
 
     def opened_by(self, kinds: Sequence[int]) -> list[str]:
         """Rules that go on over the end of a line which begins them so."""
-        run = self.recognizer.run
-        return [rule for rule, entry in self._entries.items() if run(entry, kinds)[1] is None]
+        out = []
+        for rule, entry in self._entries.items():
+            state, failed = self.recognizer.run(entry, kinds)
+            if failed is None and not self.recognizer.ends(state):
+                out.append(rule)
+        return out
 
     def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
         """Rules of which these tokens are a whole sentence."""
@@ -98,18 +100,25 @@ class Phraser:
         """How much a phrase lets in: nothing for tokens, more for rules that stand for more."""
         return sum(1 + len(self._wider[s]) for s in symbols if s in self._wider)
 
-    def phrases(self, words: Sequence[Word]) -> Iterator[tuple[str, ...]]:
-        """Symbols for the words, the most restrictive first; none where they are too many."""
+    def phrases(
+        self, words: Sequence[Word], near: frozenset[str] = frozenset()
+    ) -> Iterator[tuple[str, ...]]:
+        """Symbols for the words, the most restrictive first; none where they are too many.
+
+        ``near`` names rules that stand close by in the grammar: they are tried for operands too.
+        """
         if not words or len(words) > _LONGEST_PHRASE:
             return
         seen: set[tuple[str, ...]] = set()
-        for symbols in self._spellings(words):
+        for symbols in self._spellings(words, near):
             for shape in (symbols, as_list(symbols)):
                 if len(shape) <= _MOST_SYMBOLS and shape not in seen:
                     seen.add(shape)
                     yield shape
 
-    def _spellings(self, words: Sequence[Word]) -> Iterator[tuple[str, ...]]:
+    def _spellings(
+        self, words: Sequence[Word], near: frozenset[str]
+    ) -> Iterator[tuple[str, ...]]:
         """The words as they are, then with rules for their operands, narrow ones first."""
         parts = self._parts(words)
         if parts is None:
@@ -117,7 +126,7 @@ class Phraser:
         plain = [self._token(word) for word in words]
         if all(plain):
             yield tuple(token for token in plain if token)
-        choices = [self._levels(part) for part in parts]
+        choices = [self._levels(part, near) for part in parts]
         if all(choices):
             yield from islice(product(*choices), _MOST_SPELLINGS)
 
@@ -136,7 +145,9 @@ class Phraser:
                     best[start] = (cost, [part, *rest[1]])
         return best[0][1] if best[0] else None
 
-    def _levels(self, part: tuple[Word, ...]) -> tuple[str, ...]:
+    def _levels(
+        self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
+    ) -> tuple[str, ...]:
         """What can stand for a part: its token, or rules from the narrowest to the widest."""
         if len(part) == 1:
             token = self._token(part[0])
@@ -149,11 +160,11 @@ class Phraser:
             token = self._token(part[0])
             return (token,) if len(part) == 1 and token else ()
         # a rule that nothing uses waits to be used: it comes first
-        narrow = min(rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), r))
-        common = [r for r in rules if self._uses[r] >= _COMMON]
-        middle = min(common, key=lambda r: (len(self._wider[r]), r), default=narrow)
+        narrow = min(
+            rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), -self._uses[r], r)
+        )
         wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
-        return tuple(dict.fromkeys((narrow, middle, wide)))
+        return tuple(dict.fromkeys((narrow, *sorted(rules & near)[:2], wide)))
 
     def _token(self, word: Word) -> str | None:
         kind, keyword = word

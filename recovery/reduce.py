@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
 from typing import NamedTuple
 
 from grammar.failures import Context, FailureFinder
@@ -30,7 +29,7 @@ _MOST_CONFIGURATIONS = 12
 # How many tokens at a failure may have to go for the rest of the line to be read.
 _LONGEST_GAP = 64
 # A bound on the work for one reproducer, in tokens read: about a second.
-_MOST_READ = 1_000_000
+_MOST_READ = 3_000_000
 _COST_OF_A_TEST = 40
 
 
@@ -73,9 +72,10 @@ class Reducer:
             # what only follows from the failure is put up with where it cannot be helped
             for may_follow in (False, True):
                 test = _Test(self._finder, self._spelling, way, wider, may_follow)
-                for program in self._programs(line, tokens, wider):
-                    if test.passes(program.whole):
-                        return self._reproducer(test, self._smallest(program, test))
+                for programs in self._programs(line, tokens, wider):
+                    found = [self._smallest(p, test) for p in programs if test.passes(p.whole)]
+                    if found:
+                        return self._reproducer(test, min(found, key=len))
         return None
 
     def _way(self, line: Line) -> _Way:
@@ -117,8 +117,8 @@ class Reducer:
 
     def _programs(
         self, line: Line, tokens: list[Token], wider: Recognizer | None
-    ) -> Iterator[_Program]:
-        """Programs around the line, the shortest ways to it first."""
+    ) -> Iterator[list[_Program]]:
+        """Programs around the line, those at one place together, the shortest ways there first."""
         recognizer, form = self.recognizer, line.form
         ways_out = None if wider is None else Paths(wider.network)
         for prefix in self._prefixes(line):
@@ -127,27 +127,54 @@ class Reducer:
                 recognizer.run(start, form.kinds[: form.index + 1])[1] != form.index
             ):
                 continue
-            before = self._spelling.frame(prefix)
-            body, endings = tokens, list[list[Token]]()
-            readers = [recognizer]
+            before, body = self._spelling.frame(prefix), tokens
+            beyond: list[list[Token]] = []
             if wider is not None and ways_out is not None:
                 read = _readable(wider, before, tokens, form.index)
                 if read is None:
                     continue
                 body, end = read
-                readers.append(wider)
-                endings.append(
-                    self._spelling.frame(ways_out.completion(wider.frames(end))[:-1], wider)
-                )
-            states = [_states(reader, before, body) for reader in readers]
-            # cores and tails are the same or not; comparing deep tails in full could cost more
-            places = [
-                tuple((id(s.core), id(s.tail)) if s else None for s in at)
-                for at in zip(*states, strict=True)
-            ]
-            for shorter in (without_loops(body, places), body):
-                for after in chain(self._endings(start, shorter), endings):
-                    yield _Program(before, shorter, after)
+                way = ways_out.completion(wider.frames(end))[:-1]
+                beyond.append(self._spelling.frame(way, wider))
+            for bodies in (self._shortened(start, before, body, wider), [body]):
+                yield [
+                    _Program(before, chosen, after)
+                    for chosen in bodies
+                    for after in [*self._endings(start, chosen), *beyond]
+                ]
+
+    def _shortened(
+        self, start: State, before: list[Token], line: list[Token], wider: Recognizer | None
+    ) -> list[list[Token]]:
+        """The line without what leads from a state back to it, as far as that can be known."""
+        kinds = [token.kind for token in line]
+        states = _states(self.recognizer, start, kinds)
+        if wider is not None:
+            outset, _ = wider.run(wider.start, _kinds_in(wider, before))
+            more = _states(wider, outset, _kinds_in(wider, line))
+            return [without_loops(line, list(zip(_places(states), _places(more), strict=True)))]
+        # what comes behind a failure is all one, but a line that can be read on shows more
+        found = [without_loops(line, _places(states))]
+        broken = self._broken(start, line)
+        if broken.gap:
+            head, tail = broken.index + 1, broken.index + broken.gap
+            behind = _states(self.recognizer, broken.state, kinds[tail:])
+            found.append(
+                without_loops(line[:head], _places(states[:head]))
+                + without_loops(line[tail:], _places(behind))
+            )
+        return found
+
+    def _broken(self, start: State, line: list[Token]) -> _Broken:
+        kinds = [token.kind for token in line]
+        state, index = self.recognizer.run(start, kinds)
+        if index is None:  # what fails is the end of the file
+            return _Broken(len(kinds), state, 0, start)
+        for gap in range(1, min(len(kinds) - index, _LONGEST_GAP) + 1):
+            end, failed = self.recognizer.run(state, kinds[index + gap :])
+            if failed is None:
+                return _Broken(index, state, gap, end)
+        return _Broken(index, state, 0, start)
 
     def _prefixes(self, line: Line) -> Iterator[list[int]]:
         """Tokens to places where a line can begin, and to the very place where this one began."""
@@ -164,30 +191,25 @@ class Reducer:
         for rule in sentences.reachable:
             for sentence in sentences.through(rule):
                 kinds = [kind_of[name] for name in sentence]
-                state: State | None = recognizer.start
+                here = recognizer.start
                 for end, kind in enumerate(kinds, 1):
-                    state = recognizer.step(state, kind)
+                    state = recognizer.step(here, kind)
                     if state is None:  # a rule that only fits with more around it
                         break
-                    if kind == line_kind and end < len(found.get(state, sentence)):
-                        found[state] = kinds[:end]
+                    here = state
+                    if kind == line_kind and end < len(found.get(here, sentence)):
+                        found[here] = kinds[:end]
         return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
 
     def _endings(self, start: State, line: list[Token]) -> list[list[Token]]:
         """How a program goes on behind the line: as without it, or as if it had been read."""
         recognizer = self.recognizer
-        kinds = [token.kind for token in line]
-        failing, index = recognizer.run(start, kinds)
-        if index is None:  # what fails is the end of the file
+        broken = self._broken(start, line)
+        if broken.index == len(line):
             return [[]]
-        states = [start]
-        for gap in range(1, min(len(kinds) - index, _LONGEST_GAP) + 1):
-            state, failed = recognizer.run(failing, kinds[index + gap :])
-            if failed is None:
-                states.append(state)
-                break
+        states = (start, broken.end)
         ways = {tuple(self._paths.completion(recognizer.frames(s)))[:-1] for s in states}
-        if kinds[-1] != recognizer.line_kind:  # the last line of a file
+        if line[-1].kind != recognizer.line_kind:  # the last line of a file
             ways |= {(recognizer.line_kind, *way) for way in ways}
         return [self._spelling.frame(way) for way in sorted(ways, key=lambda w: (len(w), w))]
 
@@ -203,6 +225,20 @@ class _Program:
     @property
     def whole(self) -> list[Token]:
         return self.before + self.line + self.after
+
+
+@dataclass(frozen=True, slots=True)
+class _Broken:
+    """Where a line fails and in what state, and how it can be read on.
+
+    ``gap`` is how many tokens there have to be left out for that, and ``end`` the state then; none
+    and the state before the line where it cannot.
+    """
+
+    index: int
+    state: State
+    gap: int
+    end: State
 
 
 def _readable(
@@ -228,15 +264,23 @@ def _readable(
     return None
 
 
-def _states(recognizer: Recognizer, before: list[Token], line: list[Token]) -> list[State | None]:
-    """The state before each token of the line; none behind a failure."""
-    state: State | None
-    state, _ = recognizer.run(recognizer.start, _kinds_in(recognizer, before))
+def _states(
+    recognizer: Recognizer, state: State | None, kinds: Sequence[int]
+) -> list[State | None]:
+    """The state before each of the tokens; none behind a failure."""
     out: list[State | None] = []
-    for kind in _kinds_in(recognizer, line):
+    for kind in kinds:
         out.append(state)
         state = None if state is None else recognizer.step(state, kind)
     return out
+
+
+def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
+    """What tells states apart while they are kept.
+
+    Deep tails may be equal and not identical, which costs a loop: comparing them costs more.
+    """
+    return [None if s is None else (id(s.core), id(s.tail)) for s in states]
 
 
 def _kinds_in(recognizer: Recognizer, tokens: list[Token]) -> list[int]:
@@ -273,7 +317,8 @@ def _way(
     context: Context,
 ) -> _Way:
     """How the line of these tokens fails at ``index``."""
-    could_end = recognizer.lexer.display[recognizer.line_kind] in context.expected
+    line_kind = recognizer.line_kind
+    could_end = line_kind > 0 and recognizer.lexer.display[line_kind] in context.expected
     return _Way(
         kinds[index],
         meant[index],

@@ -12,8 +12,9 @@ from typing import TypeVar
 
 __all__ = ["shrunk", "without_loops", "without_stretches"]
 
-# Up to so many items every stretch and pair is tried.
+# Up to so many items every stretch and pair is tried; up to so many, substitutes for stretches.
 _FEW = 40
+_MORE = 120
 
 _T = TypeVar("_T")
 
@@ -41,9 +42,10 @@ def shrunk(
     while len(left) != size:
         size = len(left)
         left = without_stretches(left, passes)
+        if size <= _MORE:
+            left = _substituted(left, substitutes, passes)
         if size <= _FEW:
             left = _without_pairs(left, passes)
-            left = _substituted(left, substitutes, passes)
     return left
 
 
