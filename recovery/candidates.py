@@ -151,9 +151,7 @@ class CandidateFinder:
             for alternative in element.alternatives:
                 if alternative.elements:
                     yield from self._tokens(alternative.elements[0])
-        elif isinstance(element, Literal) or (
-            isinstance(element, Reference) and element.is_token
-        ):
+        elif isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
             yield self.recognizer.lexer.kind_of[self.grammar.token_of(element)]
 
     def _resuming(self, state: State, words: list[Word], start: int) -> list[int]:

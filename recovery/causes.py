@@ -16,9 +16,10 @@ from typing import TypeVar
 from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from grammar.recognizer import Recognizer
 from recovery.candidates import Candidate, CandidateFinder, Line
+from recovery.progress import Progress, unheard
 from recovery.trial import Outcome, Trial
 
-__all__ = ["Cause", "Judge", "Proposal", "find_causes"]
+__all__ = ["Cause", "Judge", "Proposal", "find_causes", "no_judge"]
 
 # Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
 # that a first trial looks at: what is kept after it is tried on everything.
@@ -58,13 +59,19 @@ class Cause:
 Judge = Callable[[Sequence[Edit]], int]
 
 
+def no_judge(edits: Sequence[Edit]) -> int:
+    """Where there are no negatives nothing speaks against an edit."""
+    del edits
+    return 0
+
+
 def find_causes(
     recognizer: Recognizer,
     lines: Sequence[Line],
     weights: Sequence[int],
     groups: Sequence[Sequence[int]],
     judge: Judge,
-    on_done: Callable[[int], object] = lambda count: None,
+    on_done: Progress = unheard,
 ) -> list[Cause]:
     """Group ``lines`` by cause.
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from grammar.failures import Context, FailureFinder
 from grammar.recognizer import Recognizer
 from recovery.candidates import Line
-from recovery.causes import Cause, Judge, Proposal, find_causes
+from recovery.causes import Cause, Judge, Proposal, find_causes, no_judge
+from recovery.progress import Progress, unheard
 from recovery.shapes import Shape, Shaper
 from recovery.survey import Failed, Survey, SurveyedFile
 
@@ -67,9 +68,9 @@ class Clusters:
 def cluster(
     found: Survey,
     *,
-    judge: Judge = lambda edits: 0,
-    on_found: Callable[[int], object] = lambda count: None,
-    on_done: Callable[[int], object] = lambda count: None,
+    judge: Judge = no_judge,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
 ) -> Clusters:
     """Group the failures of a survey by cause.
 

@@ -11,11 +11,11 @@ from recovery.causes import Judge
 from recovery.negatives import Negative, NegativeSet
 from recovery.trial import edited
 
-__all__ = ["judge_of", "no_judge"]
+__all__ = ["judge_of"]
 
 
 def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
-    """A judge for edits of ``grammar``; what the grammar accepts already is not held against them."""
+    """A judge for edits of ``grammar``; what it accepts already is not held against them."""
     recognizer = Recognizer(grammar)
     rejected = NegativeSet(negatives).rejected_by(recognizer)
     known: dict[tuple[Edit, ...], int] = {}
@@ -28,9 +28,3 @@ def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
         return known[key]
 
     return judge
-
-
-def no_judge(edits: Sequence[Edit]) -> int:
-    """Where there are no negatives nothing speaks against an edit."""
-    del edits
-    return 0

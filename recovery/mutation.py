@@ -34,6 +34,7 @@ from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
 from recovery.causes import Judge
 from recovery.cluster import Clusters, cluster
+from recovery.progress import Progress, unheard
 from recovery.reduce import Reducer
 from recovery.survey import survey_texts
 from recovery.trial import edited
@@ -337,7 +338,7 @@ def bench(
     judge: Callable[[Grammar], Judge],
     negatives: Callable[[Recognizer], int],
     negative_count: int,
-    on_done: Callable[[int], object] = lambda count: None,
+    on_done: Progress = unheard,
 ) -> dict[str, Any]:
     """Assess mutants and gather the figures; see `assess`."""
     verdicts = []

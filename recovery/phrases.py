@@ -116,9 +116,7 @@ class Phraser:
                     seen.add(shape)
                     yield shape
 
-    def _spellings(
-        self, words: Sequence[Word], near: frozenset[str]
-    ) -> Iterator[tuple[str, ...]]:
+    def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
         """The words as they are, then with rules for their operands, narrow ones first."""
         parts = self._parts(words)
         if parts is None:

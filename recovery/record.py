@@ -6,7 +6,7 @@ Its fields are a contract (docs/architecture.md): others read it from outside.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
@@ -14,6 +14,7 @@ from grammar.failures import FailureFinder
 from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer
 from recovery.cluster import Cluster, Clusters, Member
+from recovery.progress import Progress, unheard
 from recovery.propose import Reviewer
 from recovery.reduce import Reducer
 from recovery.survey import Survey, SurveyedFile
@@ -31,7 +32,7 @@ def record_of(
     clusters: Clusters,
     *,
     grammar_name: str,
-    on_done: Callable[[int], object] = lambda count: None,
+    on_done: Progress = unheard,
 ) -> dict[str, Any]:
     """Everything a survey found, as plain data.
 

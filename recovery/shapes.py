@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from grammar.failures import Context, Form
 from grammar.lexer import ERROR, Lexer
-from recovery.survey import Failed
+from recovery.outcome import Failed
 
 __all__ = ["Shape", "Shaper"]
 

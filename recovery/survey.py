@@ -11,42 +11,26 @@ import multiprocessing
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
-from dataclasses import dataclass, field, replace
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 from grammar import g4
-from grammar.failures import Failure, FailureFinder, Form
+from grammar.failures import FailureFinder, Form
 from grammar.recognizer import Recognizer
 from recovery.ingest import Found, Skipped, decode, digest, discover, read
+from recovery.memory import Kept, Memory, key_of
+from recovery.outcome import Failed, failures_of, source_lines
+from recovery.progress import Progress, unheard
 
 __all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
 
 # One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64
-_LONGEST_LINE_KEPT = 1_000
-_WORDS_KEPT = 24
-
-
-@dataclass(frozen=True, slots=True)
-class Failed:
-    """One failing line of a file.
-
-    ``line`` and ``column`` from 1; ``token`` is the offending token as written; ``source`` the line
-    (cut at 1,000 characters); ``words`` its tokens in upper case, to the offending one and at
-    least 24; ``form`` indexes `Survey.forms`.
-    """
-
-    line: int
-    column: int
-    token: str
-    source: str
-    words: tuple[str, ...]
-    form: int
-    follows: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +49,7 @@ class SurveyedFile:
 
     @property
     def path(self) -> str:
+        """The first of its places, as people are shown it."""
         return self.found.path
 
     def lines(self) -> list[str]:
@@ -92,12 +77,14 @@ def survey(
     grammar: g4.Grammar,
     *,
     jobs: int | None = None,
-    on_found: Callable[[int], object] = lambda count: None,
-    on_done: Callable[[int], object] = lambda count: None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
 ) -> Survey:
     """Read everything below ``roots`` under ``grammar``.
 
-    ``jobs`` is the number of processes, by default one a core. ``on_found`` is told how many
+    ``jobs`` is the number of processes, by default one a core. ``cache`` is the folder where
+    results are kept for the next time; without one nothing is kept. ``on_found`` is told how many
     candidates there are once they are known, ``on_done`` how many more have been dealt with.
 
     Raises `recovery.ingest.IngestError` where there is nothing to survey.
@@ -105,13 +92,18 @@ def survey(
     began = time.perf_counter()
     candidates = list(discover(roots))
     on_found(len(candidates))
-    gathered = _Gathered()
-    tasks = _tasks(candidates, gathered)
-    jobs = jobs or os.cpu_count() or 1
-    for done in _run(tasks, grammar.text, jobs):
-        on_done(gathered.add(done))
-    on_done(len(candidates) - gathered.dealt_with)
+    with _memory(cache, grammar) as memory:
+        gathered = _Gathered(memory)
+        tasks = _tasks(candidates, gathered)
+        for done in _run(tasks, grammar.text, jobs or os.cpu_count() or 1):
+            gathered.add(done)
+            on_done(len(done))
+    on_done(len(candidates) - gathered.read_now)
     return gathered.survey(grammar, time.perf_counter() - began)
+
+
+def _memory(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[Memory | None]:
+    return nullcontext() if cache is None else Memory(cache, key_of(grammar))
 
 
 def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Survey:
@@ -121,10 +113,8 @@ def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Su
     forms: dict[Form, int] = {}
     files = []
     for path, text in programs:
-        failures = finder.find(text)
-        lines = source_lines(text) if failures else []
         found = Found(path, "given", len(text), Path(path), None)
-        failed = tuple(_failed(f, lines, forms) for f in failures)
+        failed = failures_of(finder, text, forms)
         files.append(SurveyedFile(found, ((path, "given"),), path, len(text), failed))
     return Survey(grammar, tuple(files), (), tuple(forms), time.perf_counter() - began)
 
@@ -132,62 +122,26 @@ def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Su
 # ------------------------------------------------------------------------------ in a process
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
-    """Contents to survey."""
-
-    contents: tuple[bytes, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Done:
-    """Failures of each file of a task, or why it is no KRL; forms are local to the task."""
-
-    results: tuple[tuple[Failed, ...] | str, ...]
-    forms: tuple[Form, ...]
-
-
 @cache
 def _finder(grammar_text: str) -> FailureFinder:
     return FailureFinder(Recognizer(g4.read(grammar_text)))
 
 
-def _perform(grammar_text: str, task: _Task) -> _Done:
+def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
     finder = _finder(grammar_text)
-    forms: dict[Form, int] = {}
-    results: list[tuple[Failed, ...] | str] = []
-    for data in task.contents:
+    results: list[Kept] = []
+    for data in contents:
         source = decode(data)
         if isinstance(source, str):
             results.append(source)
-            continue
-        failures = finder.find(source.text)
-        lines = source_lines(source.text) if failures else []
-        results.append(tuple(_failed(f, lines, forms) for f in failures))
-    return _Done(tuple(results), tuple(forms))
+        else:
+            forms: dict[Form, int] = {}
+            failures = failures_of(finder, source.text, forms)
+            results.append((failures, tuple(forms)))
+    return results
 
 
-def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> Failed:
-    lexemes, index = failure.lexemes, failure.form.index
-    words = tuple(lexeme.upper()[:40] for lexeme in lexemes[: max(_WORDS_KEPT, index + 1)])
-    source = lines[failure.line - 1] if failure.line <= len(lines) else ""
-    return Failed(
-        line=failure.line,
-        column=failure.column,
-        token=failure.text[:200],
-        source=source[:_LONGEST_LINE_KEPT],
-        words=words,
-        form=forms.setdefault(failure.form, len(forms)),
-        follows=failure.follows,
-    )
-
-
-def source_lines(text: str) -> list[str]:
-    """The lines of a program as KRL ends them: CRLF, LF or CR, and nothing else."""
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
-def _run(tasks: Iterable[_Task], grammar_text: str, jobs: int) -> Iterator[_Done]:
+def _run(tasks: Iterable[tuple[bytes, ...]], grammar_text: str, jobs: int) -> Iterator[list[Kept]]:
     """Results in the order of the tasks."""
     if jobs == 1:
         for task in tasks:
@@ -196,7 +150,7 @@ def _run(tasks: Iterable[_Task], grammar_text: str, jobs: int) -> Iterator[_Done
     # 'spawn' behaves the same on every system and never copies a process with threads in it
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        waiting: deque[Future[_Done]] = deque()
+        waiting: deque[Future[list[Kept]]] = deque()
         for task in tasks:
             waiting.append(pool.submit(_perform, grammar_text, task))
             if len(waiting) > 2 * jobs:
@@ -213,68 +167,81 @@ class _Content:
     found: Found
     places: list[tuple[str, str]]
     size: int
-    result: tuple[Failed, ...] | str | None = None
+    result: tuple[Failed, ...] | str = ()
 
 
-@dataclass(slots=True)
 class _Gathered:
     """Results so far, by content."""
 
-    contents: dict[str, _Content] = field(default_factory=dict)
-    skipped: list[Skipped] = field(default_factory=list)
-    forms: dict[Form, int] = field(default_factory=dict)
-    submitted: deque[str] = field(default_factory=deque)
-    dealt_with: int = 0
+    def __init__(self, memory: Memory | None) -> None:
+        self.memory = memory
+        self.contents: dict[str, _Content] = {}
+        self.skipped: list[Skipped] = []
+        self.forms: dict[Form, int] = {}
+        self.submitted: deque[str] = deque()
+        self.read_now = 0
 
-    def add(self, done: _Done) -> int:
-        """Take the results of the next task; returns how many files it dealt with."""
-        numbers = [self.forms.setdefault(form, len(self.forms)) for form in done.forms]
-        for result in done.results:
-            content = self.contents[self.submitted.popleft()]
-            if isinstance(result, str):
-                content.result = result
-            else:
-                content.result = tuple(replace(f, form=numbers[f.form]) for f in result)
-        self.dealt_with += len(done.results)
-        return len(done.results)
+    def meet(self, found: Found, data: bytes) -> bool:
+        """Note a content and where it lies; returns whether it has to be read."""
+        place = (found.path, found.origin)
+        key = digest(data)
+        known = self.contents.get(key)
+        if known is not None:
+            known.places.append(place)
+            return False
+        self.contents[key] = _Content(found, [place], len(data))
+        kept = self.memory.recall(key) if self.memory else None
+        if kept is not None:
+            self._take(key, kept)
+            return False
+        self.submitted.append(key)
+        return True
+
+    def add(self, done: list[Kept]) -> None:
+        """Take the results of the next task."""
+        keys = [self.submitted.popleft() for _ in done]
+        if self.memory:
+            self.memory.keep(zip(keys, done, strict=True))
+        for key, kept in zip(keys, done, strict=True):
+            self._take(key, kept)
+        self.read_now += len(done)
+
+    def _take(self, key: str, kept: Kept) -> None:
+        if isinstance(kept, str):
+            self.contents[key].result = kept
+            return
+        failures, forms = kept
+        numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
+        self.contents[key].result = tuple(replace(f, form=numbers[f.form]) for f in failures)
 
     def survey(self, grammar: g4.Grammar, seconds: float) -> Survey:
         files: list[SurveyedFile] = []
         skipped = list(self.skipped)
         for key, content in self.contents.items():
+            places = tuple(content.places)
             if isinstance(content.result, str):
-                skipped += [Skipped(p, content.result, o) for p, o in content.places]
-            elif content.result is not None:
-                places = tuple(content.places)
+                skipped += [Skipped(path, content.result, origin) for path, origin in places]
+            else:
                 files.append(SurveyedFile(content.found, places, key, content.size, content.result))
         skipped.sort(key=lambda s: s.path)
         return Survey(grammar, tuple(files), tuple(skipped), tuple(self.forms), seconds)
 
 
-def _tasks(candidates: Iterable[Found | Skipped], gathered: _Gathered) -> Iterator[_Task]:
-    """Cut the contents not met before into tasks; note copies and what cannot be read."""
+def _tasks(
+    candidates: Iterable[Found | Skipped], gathered: _Gathered
+) -> Iterator[tuple[bytes, ...]]:
+    """Cut the contents that have to be read into tasks."""
     contents: list[bytes] = []
     size = 0
     for candidate in candidates:
-        if isinstance(candidate, Skipped):
-            gathered.skipped.append(candidate)
-            continue
-        data = read(candidate)
+        data = candidate if isinstance(candidate, Skipped) else read(candidate)
         if isinstance(data, Skipped):
             gathered.skipped.append(data)
-            continue
-        place = (candidate.path, candidate.origin)
-        key = digest(data)
-        known = gathered.contents.get(key)
-        if known is not None:
-            known.places.append(place)
-            continue
-        gathered.contents[key] = _Content(candidate, [place], len(data))
-        gathered.submitted.append(key)
-        contents.append(data)
-        size += len(data)
-        if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:
-            yield _Task(tuple(contents))
-            contents, size = [], 0
+        elif isinstance(candidate, Found) and gathered.meet(candidate, data):
+            contents.append(data)
+            size += len(data)
+            if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:
+                yield tuple(contents)
+                contents, size = [], 0
     if contents:
-        yield _Task(tuple(contents))
+        yield tuple(contents)

@@ -55,9 +55,10 @@ def recover(
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
     from grammar import GrammarError, read_file
     from grammar.generate import GRAMMAR
+    from recovery.causes import no_judge
     from recovery.cluster import cluster
     from recovery.ingest import IngestError
-    from recovery.judge import judge_of, no_judge
+    from recovery.judge import judge_of
     from recovery.negatives import NegativeError, load
     from recovery.record import record_of
     from recovery.survey import survey
@@ -71,7 +72,9 @@ def recover(
     try:
         chosen = read_file(grammar or GRAMMAR)
         with progress_bar("surveying") as bar:
-            found = survey(roots, chosen, jobs=jobs, on_found=bar.expect, on_done=bar)
+            found = survey(
+                roots, chosen, jobs=jobs, cache=out / "cache", on_found=bar.expect, on_done=bar
+            )
         judge = judge_of(found.grammar, load(negatives)) if negatives.is_dir() else no_judge
         with progress_bar("finding causes") as bar:
             clusters = cluster(found, judge=judge, on_found=bar.expect, on_done=bar)

@@ -1,0 +1,131 @@
+"""Results kept from one survey to the next, by content and grammar.
+
+A file whose bytes and whose grammar are unchanged is not read again. Results lie in one SQLite file
+a folder; a damaged or foreign one is put aside and begun anew, never trusted: what is in it can
+always be worked out again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterable, Iterator
+from dataclasses import astuple
+from importlib import resources
+from pathlib import Path
+from types import TracebackType
+
+from grammar.failures import Form
+from grammar.g4 import Grammar
+from recovery.outcome import Failed
+
+__all__ = ["Kept", "Memory", "key_of"]
+
+#: What is kept of a content: its failures with their forms, or why it is no KRL.
+Kept = tuple[tuple[Failed, ...], tuple[Form, ...]] | str
+
+# Modules whose change may change a result.
+_READING = ("grammar", "failures.py", "lexer.py", "network.py", "recognizer.py", "sentences.py")
+
+
+def key_of(grammar: Grammar) -> str:
+    """What results depend on besides the content: the grammar and the code that reads."""
+    code = hashlib.sha256()
+    package, *modules = _READING
+    for module in modules:
+        code.update(resources.files(package).joinpath(module).read_bytes())
+    code.update(resources.files("recovery").joinpath("decode.py").read_bytes())
+    code.update(resources.files("recovery").joinpath("outcome.py").read_bytes())
+    return hashlib.sha256(f"{grammar.sha256} {code.hexdigest()}".encode()).hexdigest()
+
+
+class Memory:
+    """Results of one grammar; use as a context manager, so that what is new is kept."""
+
+    def __init__(self, folder: Path, key: str) -> None:
+        self._key = key
+        self._file = folder / "results.sqlite"
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            self._base = self._opened()
+        except sqlite3.DatabaseError:
+            with contextlib.suppress(OSError):
+                self._file.replace(self._file.with_suffix(".damaged"))
+            self._base = self._opened()
+
+    def _opened(self) -> sqlite3.Connection:
+        base = sqlite3.connect(self._file, timeout=30)
+        try:
+            base.execute("PRAGMA journal_mode=WAL")
+            base.execute(
+                "CREATE TABLE IF NOT EXISTS result"
+                " (key TEXT, digest TEXT, body BLOB, PRIMARY KEY (key, digest)) WITHOUT ROWID"
+            )
+            base.execute("SELECT key, digest, body FROM result LIMIT 1").fetchall()
+        except sqlite3.DatabaseError:
+            base.close()
+            raise
+        return base
+
+    def __enter__(self) -> Memory:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._base.commit()  # what is done is done, even where the survey was broken off
+        self._base.close()
+
+    def recall(self, digest: str) -> Kept | None:
+        """What was found in a content, or ``None`` where it is new or its entry is damaged."""
+        try:
+            row = self._base.execute(
+                "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
+            ).fetchone()
+            return None if row is None else _read(row[0])
+        except (sqlite3.DatabaseError, zlib.error, ValueError, TypeError, KeyError, IndexError):
+            return None
+
+    def keep(self, results: Iterable[tuple[str, Kept]]) -> None:
+        """Remember results by the digest of their content."""
+        with contextlib.suppress(sqlite3.DatabaseError), self._base:
+            self._base.executemany(
+                "INSERT OR REPLACE INTO result VALUES (?, ?, ?)",
+                ((self._key, digest, _written(kept)) for digest, kept in results),
+            )
+
+
+def _written(kept: Kept) -> bytes:
+    body: object = kept
+    if not isinstance(kept, str):
+        failures, forms = kept
+        body = [[astuple(f) for f in failures], [astuple(form) for form in forms]]
+    return zlib.compress(json.dumps(body, separators=(",", ":")).encode(), 1)
+
+
+def _read(body: bytes) -> Kept:
+    data = json.loads(zlib.decompress(body))
+    if isinstance(data, str):
+        return data
+    failures, forms = data
+    return tuple(_failed(f) for f in failures), tuple(_forms(forms))
+
+
+def _failed(values: list[object]) -> Failed:
+    line, column, token, source, words, form, follows = values
+    assert isinstance(words, list)
+    return Failed(line, column, token, source, tuple(words), form, follows)  # type: ignore[arg-type]
+
+
+def _forms(forms: list[list[object]]) -> Iterator[Form]:
+    for before, kinds, index in forms:
+        assert isinstance(before, list)
+        assert isinstance(kinds, list)
+        assert isinstance(index, int)
+        yield Form(tuple(map(tuple, before)), tuple(kinds), index)
