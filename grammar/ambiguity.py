@@ -2,7 +2,7 @@
 
 The recogniser follows all readings at once and forgets how it came to a configuration. Here the
 ways are kept: where one configuration is reached in two ways, the text between has two readings.
-Alternatives of one rule with the same tokens are one reading, as the rule's automaton has them once.
+Alternatives of one rule with the same tokens are one reading: the rule's automaton has them once.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from grammar.model import (
     MAX_CODE_POINT,
@@ -193,7 +194,7 @@ def _minimal(table: list[list[int]], accepting: list[bool], cuts: list[int]) -> 
         if here in done:
             continue
         done.add(here)
-        for (low, high), target in zip(zip(cuts, cuts[1:], strict=False), row, strict=True):
+        for (low, high), target in zip(pairwise(cuts), row, strict=True):
             if target >= 0:
                 edges[here].setdefault(number[block[target]], []).append((low, high - 1))
     return CharAutomaton(

@@ -116,11 +116,12 @@ class Anchors:
         found: dict[tuple[Core, Tail], State] = {}
         for rule in sentences.reachable:
             for sentence in sentences.through(rule):
-                state: State | None = recognizer.start
+                state = recognizer.start
                 for name in sentence:
-                    state = recognizer.step(state, kind_of[name])
-                    if state is None:  # a rule that only fits with more around it
+                    following = recognizer.step(state, kind_of[name])
+                    if following is None:  # a rule that only fits with more around it
                         break
+                    state = following
                     if kind_of[name] == recognizer.line_kind:
                         found.setdefault((state.core, state.tail), state)
         self.states = tuple(found.values())

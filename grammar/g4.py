@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput, UnexpectedToken
@@ -103,9 +104,9 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
     try:
         return _reader(start).parse(text)
     except UnexpectedInput as error:
-        ended = isinstance(error, UnexpectedToken) and error.token.type == "$END"
-        start = len(text) if ended or error.pos_in_stream is None else error.pos_in_stream
-        found = text[start : start + 12].splitlines()
+        ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
+        place = len(text) if ended else error.pos_in_stream or 0
+        found = text[place : place + 12].splitlines()
         what = f"unexpected {found[0]!r}" if found else "unexpected end"
         raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
 
@@ -114,7 +115,8 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
 
 
 def _rule(node: Tree[Token], text: str, offset: int, source: str) -> Rule:
-    fragment, name, alternatives, *commands = node.children
+    parts: list[Any] = list(node.children)
+    fragment, name, alternatives, *commands = parts
     assert isinstance(alternatives, Tree)
     try:
         return Rule(
@@ -129,7 +131,8 @@ def _rule(node: Tree[Token], text: str, offset: int, source: str) -> Rule:
 
 
 def _command(node: Tree[Token]) -> str:
-    name, argument = node.children
+    parts: list[Any] = list(node.children)
+    name, argument = parts
     if (name, argument is None) not in (("skip", True), ("channel", False)):
         raise GrammarError(f"the command {name} is not of our style")
     return str(name) if argument is None else f"{name}({argument})"

@@ -68,7 +68,8 @@ def check(grammar: Path = GRAMMAR, folder: Path = GENERATED) -> str | None:
     """Why the generated parser is stale, or ``None`` where it is not. Needs no Java."""
     try:
         manifest = (folder / MANIFEST).read_text(encoding="utf-8")
-        recorded = dict(reversed(line.split("  ", 1)) for line in manifest.splitlines())
+        pairs = (line.split("  ", 1) for line in manifest.splitlines())
+        recorded = {name: digest for digest, name in pairs}
         for name, digest in _digests(grammar, folder):
             if recorded.get(name) != digest:
                 return f"{name} is not what the generated parser was made from; run 'make grammar'"

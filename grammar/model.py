@@ -50,6 +50,7 @@ class Reference:
 
     @property
     def is_token(self) -> bool:
+        """Whether it names a token."""
         return self.name[0].isupper()
 
 
@@ -63,7 +64,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class CharSet:
-    """One character out of sorted, disjoint ranges (``[a-z]``, ``~[\\r\\n]``, ``'a'..'z'``, ``.``)."""
+    """One character out of sorted, disjoint ranges: ``[a-z]``, ``~["]``, ``'a'..'z'``, ``.``."""
 
     ranges: tuple[CharRange, ...]
     span: Span = field(compare=False)
@@ -110,6 +111,7 @@ class Rule:
 
     @property
     def is_lexer(self) -> bool:
+        """Whether it is a rule of the lexer."""
         return self.name[0].isupper()
 
     @property
@@ -136,6 +138,7 @@ class Grammar:
 
     @cached_property
     def by_name(self) -> dict[str, Rule]:
+        """The rules by their names."""
         return {rule.name: rule for rule in self.rules}
 
     @property
@@ -145,6 +148,7 @@ class Grammar:
 
     @property
     def case_insensitive(self) -> bool:
+        """Whether letters match in either case."""
         return ("caseInsensitive", "true") in self.options
 
     @cached_property

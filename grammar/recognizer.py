@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from operator import length_hint
 
 from grammar.lexer import EOF, SKIPPED
 from grammar.model import Grammar
@@ -131,7 +132,7 @@ class Recognizer:
             except KeyError:
                 stepped = self._step(core, tail, kind)
                 if stepped is None:
-                    return State(core, tail), len(kinds) - following.__length_hint__() - 1
+                    return State(core, tail), len(kinds) - length_hint(following) - 1
                 core, tail = stepped
         return State(core, tail), None
 

@@ -26,7 +26,7 @@ class Refusal:
     message: str
 
 
-class _FirstError(ErrorListener):  # type: ignore[misc]
+class _FirstError(ErrorListener):
     """Keeps the first error; the lexer reports here what it cannot match."""
 
     def __init__(self) -> None:
@@ -36,6 +36,7 @@ class _FirstError(ErrorListener):  # type: ignore[misc]
     def syntaxError(  # noqa: N802 - ANTLR's signature
         self, recognizer: Any, symbol: Any, line: int, column: int, message: str, error: Any
     ) -> None:
+        del recognizer, symbol, error
         if self.found is None:
             self.found = Refusal(line, column, message)
 
@@ -58,7 +59,7 @@ def refusal(text: str) -> Refusal | None:
     try:
         parser.module()
     except ParseCancellationException as cancelled:
-        token = getattr(cancelled.args[0], "offendingToken", None) or tokens.LT(1)
+        token: Any = getattr(cancelled.args[0], "offendingToken", None) or tokens.LT(1)
         return errors.found or Refusal(token.line, token.column, f"unexpected {token.text!r}")
     return errors.found
 

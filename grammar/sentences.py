@@ -6,9 +6,9 @@ reproducers and tell where lines may begin; the random ones feed the comparison 
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from random import Random
 
 from grammar.lexer import lexer_of
 from grammar.model import (
@@ -147,16 +147,14 @@ class Sentences:
 
     # --------------------------------------------------------------------------- random
 
-    def random(self, chance: random.Random, size: int = 60) -> list[str]:
+    def random(self, chance: Random, size: int = 60) -> list[str]:
         """Token names of a random program of some ``size`` tokens."""
         budget = [size]
         out: list[str] = []
         self._random(Reference(self.grammar.start, (0, 0)), chance, budget, out)
         return out
 
-    def _random(
-        self, element: Element, chance: random.Random, budget: list[int], out: list[str]
-    ) -> None:
+    def _random(self, element: Element, chance: Random, budget: list[int], out: list[str]) -> None:
         if budget[0] <= 0:
             tokens = list(self._shortest(element))
             out += tokens
@@ -182,7 +180,7 @@ class Sentences:
     def _random_of(
         self,
         alternatives: tuple[Alternative, ...],
-        chance: random.Random,
+        chance: Random,
         budget: list[int],
         out: list[str],
     ) -> None:
@@ -206,14 +204,14 @@ class Speller:
     def _sample(self, name: str) -> str:
         text = "".join(self._spell(Reference(name, (0, 0))))
         kind = self.lexer.kind_of[name]
-        chance = random.Random(name)
+        chance = Random(name)
         for _ in range(200):  # the shortest text may be a keyword or belong to an earlier rule
             if self.lexer.kinds[text] == kind:
                 break
             text = "".join(self._spell(Reference(name, (0, 0)), chance))
         return text
 
-    def _spell(self, element: Element, chance: random.Random | None = None) -> Iterator[str]:
+    def _spell(self, element: Element, chance: Random | None = None) -> Iterator[str]:
         match element:
             case Reference(name=name):
                 yield from self._spell_any(self.grammar.by_name[name].alternatives, chance)
@@ -234,7 +232,7 @@ class Speller:
                     yield from self._spell(item, chance)
 
     def _spell_any(
-        self, alternatives: tuple[Alternative, ...], chance: random.Random | None
+        self, alternatives: tuple[Alternative, ...], chance: Random | None
     ) -> Iterator[str]:
         alternative = alternatives[0] if chance is None else chance.choice(alternatives)
         for element in alternative.elements:

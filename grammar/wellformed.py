@@ -134,23 +134,25 @@ def _left_recursion(grammar: Grammar) -> list[str] | None:
         }
         for rule in grammar.rules
     }
+    return _cycle(edges)
+
+
+def _cycle(edges: Mapping[str, set[str]]) -> list[str] | None:
+    """A way through ``edges`` that comes back to where it began, or ``None``."""
     done: set[str] = set()
-    for root in edges:
-        path: list[str] = []
-        stack: list[tuple[str, Iterator[str]]] = [(root, iter(edges[root]))]
-        path.append(root)
+    for root, first in edges.items():
+        path = [root]
+        stack: list[Iterator[str]] = [iter(first)]
         while stack:
-            name, following = stack[-1]
-            step = next((n for n in following if n in edges and n not in done), None)
+            step = next((n for n in stack[-1] if n in edges and n not in done), None)
             if step is None:
-                done.add(name)
                 stack.pop()
-                path.pop()
+                done.add(path.pop())
             elif step in path:
                 return [*path[path.index(step) :], step]
             else:
-                stack.append((step, iter(edges[step])))
                 path.append(step)
+                stack.append(iter(edges[step]))
     return None
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from krl import door
-from krl.commands import bench, corpus, recover
+from krl.commands import bench, construct, corpus, recover
 
 __all__ = ["app", "main"]
 
@@ -18,6 +18,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.command("recover")(recover.recover)
+app.add_typer(construct.app, name="construct")
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")
 

@@ -1,4 +1,4 @@
-"""What a survey says in the terminal: figures, the clusters that hold back most, where the page is."""
+"""What a survey says in the terminal: figures, what holds back most, where the page is."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,6 +14,7 @@ from krl.door import one_line
 __all__ = ["print_survey"]
 
 _ROWS = 15
+_WORDS = 12
 
 
 def print_survey(record: Mapping[str, Any], page: Path) -> None:
@@ -33,6 +34,11 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
         console.print(_advice(record))
     elif files:
         console.print("Nothing is missing: every file parses under this grammar.")
+    if record["swallowed"]:
+        words = ", ".join(s["word"] for s in record["swallowed"][:_WORDS])
+        console.print(
+            f"Read as names everywhere and bound nowhere, perhaps keywords: {one_line(words)}"
+        )
     console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
 
 

@@ -25,6 +25,9 @@ __all__ = ["Cause", "Judge", "Proposal", "find_causes", "no_judge"]
 # that a first trial looks at: what is kept after it is tried on everything.
 _SPECIMENS = 3
 _MOST_TRIED = 90
+# Behind the groups that hold back most a quicker look has to do.
+_HEAVY_GROUPS = 30
+_MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
 _KEPT = 5
 _MOST_JUDGED = 30
@@ -80,7 +83,8 @@ def find_causes(
     """
     search = _Search(recognizer, lines, weights, judge)
     causes: list[Cause] = []
-    for group in groups:
+    for place, group in enumerate(groups):
+        search.thorough = place < _HEAVY_GROUPS
         left = [n for n in group if n in search.open]
         for _ in range(_ROUNDS):
             if not left:
@@ -111,6 +115,7 @@ class _Search:
         self.judge = judge
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
+        self.thorough = True
         self.open = set(range(len(lines)))
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
         for number in sorted(self.open, key=lambda n: (-weights[n], n)):
@@ -129,10 +134,11 @@ class _Search:
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
-        specimens = _spread(heavy, _SPECIMENS)
+        specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
+        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
         tried: dict[tuple[Edit, ...], Candidate] = {}
         for number in specimens:
-            for candidate in self.finder.find(self.lines[number])[:_MOST_TRIED]:
+            for candidate in self.finder.find(self.lines[number])[:most]:
                 tried.setdefault(candidate.edits, candidate)
         sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
         sample |= set(_spread(self._alike(specimens[0]), _FIRST_TRIAL))
@@ -226,11 +232,11 @@ def _merged(candidates: Sequence[Candidate]) -> list[Candidate]:
             frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
             families[*frame, edit.text[-1]][word] = candidate
     out = []
-    for frame, members in families.items():
+    for family, members in families.items():
         if len(members) < 2:
             continue
         words = sorted(members)
-        left, right = frame[3], frame[4]
+        left, right = family[3], family[4]
         assert isinstance(left, tuple)
         assert isinstance(right, tuple)
         choice = words[0] if len(words) == 1 else f"({' | '.join(words)})"

@@ -160,7 +160,7 @@ def _assembled(
             alone[next(iter(wanted))] += len(file.places)
     titles = _titles([_heaviest(cause, groups) for cause in causes], groups.shapes)
     clusters = [
-        _cluster(number, cause, titles[number], members[number], alone[number], groups, needs)
+        _cluster(cause, titles[number], members[number], alone[number], groups, needs)
         for number, cause in enumerate(causes)
     ]
     order = _greedy(found.files, [(f, wanted) for f, _, wanted in needs], clusters)
@@ -178,7 +178,6 @@ def _heaviest(cause: Cause, groups: _Lines) -> int:
 
 
 def _cluster(
-    number: int,
     cause: Cause,
     title: str,
     members: Sequence[Member],

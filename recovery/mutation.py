@@ -17,6 +17,7 @@ from typing import Any
 
 from grammar.edits import (
     AddAlternative,
+    Address,
     Edit,
     Insert,
     MakeOptional,
@@ -30,6 +31,7 @@ from grammar.edits import (
 )
 from grammar.g4 import Grammar, GrammarError, Literal, Reference, Repeat, read
 from grammar.model import walk
+from grammar.lexer import lexer_of
 from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
 from recovery.causes import Judge
@@ -37,6 +39,7 @@ from recovery.cluster import Clusters, cluster
 from recovery.progress import Progress, unheard
 from recovery.reduce import Reducer
 from recovery.survey import survey_texts
+from recovery.swallowed import suspects
 from recovery.trial import edited
 
 __all__ = ["Mutant", "Verdict", "assess", "bench", "combined", "mutants"]
@@ -52,6 +55,13 @@ class Mutant:
     edits: tuple[Edit, ...]
     rules: frozenset[str]
     grammar: Grammar
+
+    @property
+    def keywords(self) -> frozenset[str]:
+        """Keywords it no longer knows."""
+        return frozenset(
+            e.rule for e in self.edits if isinstance(e, RemoveRule) and e.rule[0].isupper()
+        )
 
     def title(self, whole: Grammar) -> str:
         """What was taken out, for a person."""
@@ -69,7 +79,6 @@ class Verdict:
     repair_rank: int | None
     clusters: int
     false_accepts: int
-    negatives: int
     reproducer_tokens: tuple[int, ...]
     seconds: float
 
@@ -91,14 +100,10 @@ def mutants(grammar: Grammar) -> Iterator[Mutant]:
                 )
         for address, alternative in sequences(rule):
             for place, element in enumerate(alternative.elements, 1):
-                if isinstance(element, Repeat) and element.operator != "+":
-                    if len(alternative.elements) > 1:
-                        yield from _made(
-                            "optional part",
-                            grammar,
-                            [RemoveElement(rule.name, (*address, place))],
-                            {rule.name},
-                        )
+                optional = isinstance(element, Repeat) and element.operator != "+"
+                if optional and len(alternative.elements) > 1:
+                    removal = RemoveElement(rule.name, (*address, place))
+                    yield from _made("optional part", grammar, [removal], {rule.name})
     yield from _without_keywords(grammar)
 
 
@@ -215,7 +220,8 @@ def assess(
 ) -> Verdict:
     """Survey ``shown`` (path, text) under the mutant and see how the tool does.
 
-    - detected: some program that ``whole`` reads fails.
+    - detected: some program that ``whole`` reads fails, or the lost keyword is suspected
+      (`recovery.swallowed`) where it is read as a name.
     - rule_rank, item_rank: the first of the proposals of all clusters, taken in the order of the
       page (every cluster's best first), whose edit is in the right rule, or at the right place.
     - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again.
@@ -225,66 +231,16 @@ def assess(
     found = survey_texts(shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
-        return Verdict(mutant, False, None, None, None, 0, 0, 0, (), time.perf_counter() - began)
-    clusters = cluster(found, judge=judge(mutant.grammar))
-    seconds = time.perf_counter() - began
-    base = Recognizer(mutant.grammar)
-    ordered = list(_proposals(clusters))
-    reducer = Reducer(base)
-    tokens = []
-    for entry in clusters.ranked[:_CLUSTERS_LOOKED_AT]:
-        reproducer = reducer.reduce(entry.line, entry.example.failed.words)
-        if reproducer is not None:
-            tokens.append(reproducer.beyond)
-    texts = [text for _, text in shown] + list(held_out)
-    best = edited(base, ordered[0]) if ordered else None
-    return Verdict(
-        mutant,
-        True,
-        _rank(ordered, lambda edits: _names(edits, mutant, whole)),
-        _rank(ordered, lambda edits: _same_place(edits, mutant, base)),
-        _rank(ordered, lambda edits: _repairs(base, edits, texts)),
-        len(clusters.ranked),
-        0 if best is None else negatives(best),
-        1,
-        tuple(tokens),
-        seconds,
-    )
-
-
-def _proposals(clusters: Clusters) -> Iterator[tuple[Edit, ...]]:
-    """Proposals in the order a person meets them."""
-    ranked = clusters.ranked[:_CLUSTERS_LOOKED_AT]
-    for depth in range(_CLUSTERS_LOOKED_AT):
-        for entry in ranked:
-            if depth < len(entry.proposals):
-                yield entry.proposals[depth].edits
-
-
-def _rank(
-    ordered: Sequence[tuple[Edit, ...]], good: Callable[[Sequence[Edit]], bool]
-) -> int | None:
-    return next((i for i, edits in enumerate(ordered[:5], 1) if good(edits)), None)
-
-
-def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
-    """Whether an edit is in a rule that something was taken out of (or the caller of a lost rule)."""
-    damaged = {getattr(e, "rule", "") for e in mutant.edits} | mutant.rules
-    callers = {
-        r.name
-        for r in whole.rules
-        if not r.is_lexer
-        and any(
-            isinstance(e, Reference) and e.name in mutant.rules
-            for a in r.alternatives
-            for e in walk(a)
-        )
+        swallowed = suspects((("", text) for _, text in shown), lexer_of(mutant.grammar))
+        noticed = any(s.word in mutant.keywords for s in swallowed)
+        seconds = time.perf_counter() - began
+        return Verdict(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
     }
     place = getattr(edits[-1], "rule", "")
     return place in damaged or (mutant.kind in ("rule", "keyword") and place in callers)
 
 
-def _same_place(edits: Sequence[Edit], mutant: Mutant, base: Recognizer) -> bool:
+def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
     """Whether an edit is where something was taken out: same rule, same place in it.
 
     A taken alternative comes back as an alternative of that rule; a taken part between the
@@ -297,16 +253,22 @@ def _same_place(edits: Sequence[Edit], mutant: Mutant, base: Recognizer) -> bool
                 edit.rule == removed.rule
             ):
                 return True
-        elif isinstance(removed, RemoveElement):
-            if isinstance(edit, Insert | Widen) and edit.rule == removed.rule:
-                here = edit.at
-                if here[: len(removed.at) - 1] == removed.at[:-1] and (
-                    abs(here[len(removed.at) - 1] - removed.at[-1]) <= 1
-                    if len(here) >= len(removed.at)
-                    else False
-                ):
-                    return True
+        elif (
+            isinstance(removed, RemoveElement)
+            and isinstance(edit, Insert | Widen)
+            and edit.rule == removed.rule
+            and _adjacent(edit.at, removed.at)
+        ):
+            return True
     return False
+
+
+def _adjacent(here: Address, there: Address) -> bool:
+    """Whether two places are in the same sequence with at most one element between them."""
+    depth = len(there) - 1
+    return (
+        len(here) > depth and here[:depth] == there[:depth] and abs(here[depth] - there[depth]) <= 1
+    )
 
 
 def _repairs(base: Recognizer, edits: Sequence[Edit], texts: Sequence[str]) -> bool:

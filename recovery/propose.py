@@ -1,4 +1,4 @@
-"""Proposals as people review them: the edit, what it brings, what it costs, the difference it makes."""
+"""Proposals as people review them: the edit, what it brings and costs, the difference it makes."""
 
 from __future__ import annotations
 
@@ -14,12 +14,23 @@ from recovery.causes import Proposal
 from recovery.cluster import Cluster, Clusters
 from recovery.ingest import Skipped, decode, read
 from recovery.survey import Survey
+from recovery.swallowed import Suspect, suspects
 from recovery.trial import edited
 
 __all__ = ["Reviewer"]
 
 # Mended lines looked at for second readings; the first of them are the shortest.
 _LINES_READ = 60
+
+
+class _Program:
+    """A program that parses: in how many files it is, the origin of the first, its text."""
+
+    def __init__(self, places: int, origin: str, text: str) -> None:
+        self.places = places
+        self.origin = origin
+        self.text = text
+        self.folded = text.upper()
 
 
 class Reviewer:
@@ -30,7 +41,7 @@ class Reviewer:
         self.clusters = clusters
         self.recognizer = Recognizer(found.grammar)
         self._paths = Paths(self.recognizer.network)
-        self._parsed: list[tuple[int, str]] | None = None
+        self._parsed: list[_Program] | None = None
 
     def records(self, cluster: Cluster) -> list[dict[str, Any]]:
         """The proposals of a cluster as plain data, the best first."""
@@ -73,7 +84,7 @@ class Reviewer:
         if wider is None:
             return 0
         lines = sorted(
-            (self.clusters.lines[n] for n in proposal.mended), key=lambda l: len(l.form.kinds)
+            (self.clusters.lines[n] for n in proposal.mended), key=lambda line: len(line.form.kinds)
         )
         count = 0
         for line in lines[:_LINES_READ]:
@@ -94,13 +105,18 @@ class Reviewer:
         wider = self.wider(proposal)
         assert wider is not None
         return sum(
-            places
-            for places, text in self._texts()
-            if any(word in text.upper() for word in words) and not wider.accepts(text)
+            program.places
+            for program in self._programs()
+            if any(word in program.folded for word in words) and not wider.accepts(program.text)
         )
 
-    def _texts(self) -> Sequence[tuple[int, str]]:
-        """The programs that parse, with how many files each is."""
+    def swallowed(self) -> list[Suspect]:
+        """Words of the programs that parse which may be keywords the grammar lacks."""
+        programs = ((p.origin, p.text) for p in self._programs())
+        return suspects(programs, self.recognizer.lexer)
+
+    def _programs(self) -> Sequence[_Program]:
+        """The programs that parse."""
         if self._parsed is None:
             self._parsed = []
             for file in self.found.files:
@@ -108,5 +124,7 @@ class Reviewer:
                     data = read(file.found)
                     source = None if isinstance(data, Skipped) else decode(data)
                     if source is not None and not isinstance(source, str):
-                        self._parsed.append((len(file.places), source.text))
+                        self._parsed.append(
+                            _Program(len(file.places), file.places[0][1], source.text)
+                        )
         return self._parsed

@@ -63,6 +63,7 @@ def record_of(
         "origins": _origins(files),
         "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
+        "swallowed": [asdict(suspect) for suspect in reviewer.swallowed()],
         "clusters": written,
         "failures": _failures(found, clusters, recognizer),
     }

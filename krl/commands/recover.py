@@ -1,7 +1,6 @@
 """`krl recover`: what the grammar is missing, over a corpus."""
 
 import json
-import os
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -103,4 +102,4 @@ def _write_json(record: dict[str, Any], target: Path) -> None:
     with scratch.open("w", encoding="utf-8", newline="\n") as stream:
         json.dump(record, stream, ensure_ascii=False, allow_nan=False)
         stream.write("\n")
-    os.replace(scratch, target)
+    scratch.replace(target)
