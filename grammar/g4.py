@@ -105,7 +105,7 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
         return _reader(start).parse(text)
     except UnexpectedInput as error:
         ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
-        place = len(text) if ended else error.pos_in_stream or 0
+        place = len(text) if ended else int(error.pos_in_stream or 0)
         found = text[place : place + 12].splitlines()
         what = f"unexpected {found[0]!r}" if found else "unexpected end"
         raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None

@@ -180,7 +180,9 @@ class Reducer:
         """Tokens to places where a line can begin, and to the very place where this one began."""
         yield from self._places.values()
         for frames in line.form.before[:_MOST_CONFIGURATIONS]:
-            yield self._paths.prefix(frames)
+            way = self._paths.prefix(frames)
+            yield way
+            yield [*way, self.recognizer.line_kind]  # a position need not show that a line ended
 
     @cached_property
     def _places(self) -> dict[State, list[int]]:

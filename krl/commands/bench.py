@@ -1,6 +1,7 @@
 """`krl bench`: how good and how fast the tools themselves are."""
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,6 +17,21 @@ from krl.progress import progress_bar
 __all__ = ["app"]
 
 _DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
+_NEGATIVES = Path("corpus", "negatives")
+_AIMS = (
+    ("mutants", ""),
+    ("detected", "0.99"),
+    ("rule_top1", "0.85"),
+    ("rule_top5", "0.97"),
+    ("item_top1", "0.65"),
+    ("item_top5", "0.90"),
+    ("repair_top1", "0.80"),
+    ("repair_top5", "0.92"),
+    ("clusters_per_cause", "1.3"),
+    ("false_accept", "0.005"),
+    ("reproducer_median_tokens", "6"),
+    ("seconds_per_mutant", ""),
+)
 _MB = 1_000_000
 _LARGEST = 2_000
 
@@ -71,6 +87,71 @@ def recover(
         _write(record, json_file)
     _print_speed(record)
     return FINE
+
+
+@app.command("mutation")
+def mutation(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[PATH]...", help="Programs; default: those in corpus/programs."),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    grammar: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
+    ] = None,
+    negatives: Annotated[
+        Path, typer.Option(metavar="DIR", help="Programs that must stay rejected.")
+    ] = _NEGATIVES,
+    singles: Annotated[
+        int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
+    ] = 0,
+    multiple: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
+    ] = 200,
+    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
+    from grammar import GrammarError, read_file
+    from grammar.generate import GRAMMAR
+    from recovery.assessment import examine
+    from recovery.ingest import IngestError
+    from recovery.negatives import NegativeError, load
+    from recovery.specimens import choose, material_for
+
+    roots = paths or [_DEFAULT_CORPUS[0]]
+    try:
+        whole = read_file(grammar or GRAMMAR)
+        material = material_for(whole, roots, load(negatives), seed)
+        chosen = choose(whole, singles, multiple, seed)
+        with progress_bar("assessing", len(chosen)) as bar:
+            record = examine(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
+    except (GrammarError, IngestError, NegativeError) as error:
+        raise Unusable(str(error)) from error
+    record = {
+        "bench": "mutation",
+        "grammar": (grammar or GRAMMAR).name,
+        "shown": len(material.shown),
+        "held_out": len(material.held_out),
+        **record,
+    }
+    if json_file is not None:
+        _write(record, json_file)
+    Console(highlight=False).print(_mutation_table(record))
+    return FINE
+
+
+def _mutation_table(record: Mapping[str, Any]) -> Table:
+    kinds = record["by_kind"]
+    rows = []
+    for name, aim in _AIMS:
+        values = [record[name], *(figures[name] for figures in kinds.values())]
+        rows.append((name, aim, *("–" if v is None else f"{v:g}" for v in values)))
+    return _table(("figure", "aim", "all", *kinds), rows)
 
 
 def _sizes(given: str) -> list[float]:
