@@ -105,7 +105,7 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
         return _reader(start).parse(text)
     except UnexpectedInput as error:
         ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
-        place = len(text) if ended else int(error.pos_in_stream or 0)
+        place = len(text) if ended else int(getattr(error, "pos_in_stream", None) or 0)
         found = text[place : place + 12].splitlines()
         what = f"unexpected {found[0]!r}" if found else "unexpected end"
         raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
@@ -142,7 +142,8 @@ def _alternatives(node: Tree[Token], offset: int) -> tuple[Alternative, ...]:
     out: list[Alternative] = []
     for child in node.children:
         assert isinstance(child, Tree)
-        *elements, label = child.children
+        parts: list[Any] = list(child.children)
+        *elements, label = parts
         converted = tuple(_element(e, offset) for e in elements if isinstance(e, Tree))
         span = (converted[0].span[0], converted[-1].span[1]) if converted else (0, 0)
         out.append(Alternative(converted, None if label is None else str(label), span))

@@ -37,24 +37,26 @@ _LONGEST_REMEMBERED = 48
 _MOST_REMEMBERED = 400_000
 
 
+#: Place among the rules and kind: of two rules that match the same text the first one wins.
+_Ranked = tuple[int, int]
+
+
 class _Kinds(dict[str, int]):
     """Kind by lexeme, filled as lexemes are met."""
 
-    __slots__ = ("fold", "literals", "others", "other_kinds", "rank")
+    __slots__ = ("fold", "literals", "others", "other_ranks")
 
     def __init__(
         self,
-        literals: Mapping[str, int],
+        literals: Mapping[str, _Ranked],
         others: re.Pattern[str],
-        other_kinds: Sequence[int],
-        rank: Mapping[int, int],
+        other_ranks: Sequence[_Ranked],
         fold: Callable[[str], str],
     ) -> None:
         self.literals = literals
         self.others = others
-        self.other_kinds = other_kinds
+        self.other_ranks = other_ranks
         self.fold = fold
-        self.rank = rank  # of two rules that match the same text the first one wins
 
     def __missing__(self, lexeme: str) -> int:
         kind = self._classify(lexeme)
@@ -68,14 +70,12 @@ class _Kinds(dict[str, int]):
         if not lexeme:
             return SKIPPED
         found = self.others.fullmatch(lexeme)
-        other = self.other_kinds[found.lastindex - 1] if found and found.lastindex else None
+        ways = [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
         # literals are ASCII or exact: str.upper would also fold letters that ANTLR keeps apart
         literal = self.literals.get(self.fold(lexeme) if lexeme.isascii() else lexeme)
-        if literal is None:
-            return ERROR if other is None else other
-        if other is None or other == SKIPPED:
-            return literal
-        return min(literal, other, key=self.rank.__getitem__)
+        if literal is not None:
+            ways.append(literal)
+        return min(ways)[1] if ways else ERROR
 
 
 class Lexer:
@@ -96,16 +96,15 @@ class Lexer:
             self.kind_of[name] for name, text in texts.items() if text[0].isalpha()
         )
         literals = {
-            text: SKIPPED if grammar.by_name[name].is_skipped else self.kind_of[name]
+            text: self._ranked(grammar.by_name[name])
             for text, name in grammar.literal_tokens.items()
         }
         names_of_literals = set(grammar.literal_tokens.values())
         others = [r for r in rules if r.name not in names_of_literals]
         classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
-        other_kinds = [SKIPPED if r.is_skipped else self.kind_of[r.name] for r in others]
-        rank = {kind: kind for kind in self.kind_of.values()}
+        ranks = [self._ranked(rule) for rule in others]
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
-        self.kinds = _Kinds(literals, classify, other_kinds, rank, fold)
+        self.kinds = _Kinds(literals, classify, ranks, fold)
         # A literal that another rule matches whole (a keyword that could be a name) adds nothing
         # to where tokens end, and leaving it out keeps the automaton small.
         cutting = [
@@ -115,6 +114,10 @@ class Lexer:
         ]
         self._automaton = automaton_of(grammar, cutting)
         self._pattern = self._pattern_for(grammar, cutting)
+
+    def _ranked(self, rule: Rule) -> _Ranked:
+        kind = self.kind_of[rule.name]
+        return kind, SKIPPED if rule.is_skipped else kind
 
     def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | None:
         """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do."""
@@ -146,11 +149,7 @@ class Lexer:
         wider._keywords = self._keywords | {kind}
         old = self.kinds
         wider.kinds = _Kinds(
-            {**old.literals, word: kind},
-            old.others,
-            old.other_kinds,
-            {**old.rank, kind: 0},
-            old.fold,
+            {**old.literals, word: (0, kind)}, old.others, old.other_ranks, old.fold
         )
         return wider
 

@@ -17,6 +17,7 @@ from dataclasses import astuple
 from importlib import resources
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 from grammar.failures import Form
 from grammar.g4 import Grammar
@@ -27,19 +28,18 @@ __all__ = ["Kept", "Memory", "key_of"]
 #: What is kept of a content: its failures with their forms, or why it is no KRL.
 Kept = tuple[tuple[Failed, ...], tuple[Form, ...]] | str
 
-# Modules whose change may change a result.
-_READING = ("grammar", "failures.py", "lexer.py", "network.py", "recognizer.py", "sentences.py")
-
 
 def key_of(grammar: Grammar) -> str:
-    """What results depend on besides the content: the grammar and the code that reads."""
-    code = hashlib.sha256()
-    package, *modules = _READING
-    for module in modules:
-        code.update(resources.files(package).joinpath(module).read_bytes())
-    code.update(resources.files("recovery").joinpath("decode.py").read_bytes())
-    code.update(resources.files("recovery").joinpath("outcome.py").read_bytes())
-    return hashlib.sha256(f"{grammar.sha256} {code.hexdigest()}".encode()).hexdigest()
+    """What results depend on besides the content: the grammar, and the code that reads and judges.
+
+    Any change to a module of ours counts: a stale result would be worse than one worked out again.
+    """
+    code = hashlib.sha256(grammar.sha256.encode())
+    for package in ("grammar", "recovery"):
+        modules = (m for m in resources.files(package).iterdir() if m.name.endswith(".py"))
+        for module in sorted(modules, key=lambda m: m.name):
+            code.update(module.read_bytes())
+    return code.hexdigest()
 
 
 class Memory:
@@ -91,6 +91,25 @@ class Memory:
             return None if row is None else _read(row[0])
         except (sqlite3.DatabaseError, zlib.error, ValueError, TypeError, KeyError, IndexError):
             return None
+
+    def recall_record(self, digest: str) -> dict[str, Any] | None:
+        """A whole record kept under a digest, or ``None``."""
+        try:
+            row = self._base.execute(
+                "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
+            ).fetchone()
+            record = None if row is None else json.loads(zlib.decompress(row[0]))
+        except (sqlite3.DatabaseError, zlib.error, ValueError):
+            return None
+        return record if isinstance(record, dict) else None
+
+    def keep_record(self, digest: str, record: dict[str, Any]) -> None:
+        """Remember a whole record."""
+        body = zlib.compress(json.dumps(record, ensure_ascii=False).encode(), 1)
+        with contextlib.suppress(sqlite3.DatabaseError), self._base:
+            self._base.execute(
+                "INSERT OR REPLACE INTO result VALUES (?, ?, ?)", (self._key, digest, body)
+            )
 
     def keep(self, results: Iterable[tuple[str, Kept]]) -> None:
         """Remember results by the digest of their content."""

@@ -14,7 +14,6 @@ from grammar.failures import FailureFinder
 from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer
 from recovery.cluster import Cluster, Clusters, Member
-from recovery.progress import Progress, unheard
 from recovery.propose import Reviewer
 from recovery.reduce import Reducer
 from recovery.survey import Survey, SurveyedFile
@@ -32,20 +31,15 @@ def record_of(
     clusters: Clusters,
     *,
     grammar_name: str,
-    on_done: Progress = unheard,
 ) -> dict[str, Any]:
     """Everything a survey found, as plain data.
 
     Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
-    name the first place of a content, ``copies`` the others. ``on_done`` is told of each cluster.
+    name the first place of a content, ``copies`` the others.
     """
     recognizer = Recognizer(found.grammar)
     reviewer = Reviewer(found, clusters)
     reducer = Reducer(recognizer)
-    written = []
-    for entry in clusters.ranked:
-        written.append(_cluster(entry, reviewer, reducer))
-        on_done(1)
     files = found.files
     parsed = [f for f in files if not f.failures]
     return {
@@ -64,7 +58,7 @@ def record_of(
         "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
         "swallowed": [asdict(suspect) for suspect in reviewer.swallowed()],
-        "clusters": written,
+        "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
         "failures": _failures(found, clusters, recognizer),
     }
 

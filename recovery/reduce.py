@@ -20,7 +20,7 @@ from grammar.recognizer import Recognizer, State
 from grammar.sentences import Sentences
 from recovery.candidates import Line
 from recovery.shrink import shrunk, without_loops, without_stretches
-from recovery.spelling import Spelling, Token
+from recovery.spelling import FRAME, Spelling, Token
 
 __all__ = ["Reducer", "Reproducer"]
 
@@ -376,6 +376,8 @@ class _Test:
         context = self._finder.context(state)
         if _way(recognizer, kinds[first:end], meant, index - first, context) != self._way:
             return False
+        if any(t.name == FRAME and t.kind != recognizer.line_kind for t in tokens[index + 1 : end]):
+            return False  # the next line is one of its own
         if wider is not None:
             if wider.run(wider.start, [*_kinds_in(wider, tokens), EOF])[1] is not None:
                 return False

@@ -16,7 +16,10 @@ from grammar.recognizer import Recognizer
 from grammar.sentences import Speller
 from recovery.candidates import Line
 
-__all__ = ["Spelling", "Token"]
+__all__ = ["FRAME", "Spelling", "Token"]
+
+#: What tokens around a failing line are named; names that occur in one are in upper case.
+FRAME = "frame"
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 # How names, numbers and texts may look; of each kind the first that the lexer takes for it is used.
@@ -88,7 +91,7 @@ class Spelling:
         own = len(self.lexer.names)
         names = () if wider is None else wider.lexer.names
         return [
-            Token(kind, "frame") if kind < own else Token(self._name, "", names[kind])
+            Token(kind, FRAME) if kind < own else Token(self._name, FRAME, names[kind])
             for kind in kinds
         ]
 

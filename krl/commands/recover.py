@@ -54,12 +54,9 @@ def recover(
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
     from grammar import GrammarError, read_file
     from grammar.generate import GRAMMAR
-    from recovery.causes import no_judge
-    from recovery.cluster import cluster
+    from recovery.analysis import analyse
     from recovery.ingest import IngestError
-    from recovery.judge import judge_of
     from recovery.negatives import NegativeError, load
-    from recovery.record import record_of
     from recovery.survey import survey
     from reports import write_survey_page
 
@@ -68,19 +65,23 @@ def recover(
     roots = paths or [_DEFAULT_CORPUS]
     if not paths and not _DEFAULT_CORPUS.is_dir():
         raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    cache = out / "cache"
     try:
         chosen = read_file(grammar or GRAMMAR)
+        judges = load(negatives) if negatives.is_dir() else ()
         with progress_bar("surveying") as bar:
-            found = survey(
-                roots, chosen, jobs=jobs, cache=out / "cache", on_found=bar.expect, on_done=bar
-            )
-        judge = judge_of(found.grammar, load(negatives)) if negatives.is_dir() else no_judge
+            found = survey(roots, chosen, jobs=jobs, cache=cache, on_found=bar.expect, on_done=bar)
         with progress_bar("finding causes") as bar:
-            clusters = cluster(found, judge=judge, on_found=bar.expect, on_done=bar)
+            record = analyse(
+                found,
+                judges,
+                grammar_name=_grammar_name(grammar),
+                cache=cache,
+                on_found=bar.expect,
+                on_done=bar,
+            )
     except (GrammarError, IngestError, NegativeError) as error:
         raise Unusable(str(error)) from error
-    with progress_bar("reducing and reviewing", len(clusters.ranked)) as bar:
-        record = record_of(found, clusters, grammar_name=_grammar_name(grammar), on_done=bar)
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_survey_page(record, out)

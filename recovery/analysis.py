@@ -1,0 +1,71 @@
+"""From a survey to its record: causes found, reproducers reduced, proposals reviewed.
+
+Where the same files were analysed before under the same grammar, with the same negatives and the
+same code, the record is taken from there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from recovery.causes import no_judge
+from recovery.cluster import cluster
+from recovery.judge import judge_of
+from recovery.memory import Memory, key_of
+from recovery.negatives import Negative
+from recovery.progress import Progress, unheard
+from recovery.record import record_of
+from recovery.survey import Survey
+
+__all__ = ["analyse"]
+
+
+def analyse(
+    found: Survey,
+    negatives: Sequence[Negative],
+    *,
+    grammar_name: str,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> dict[str, Any]:
+    """The record of a survey (`recovery.record`); ``negatives`` judge the proposals.
+
+    ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
+    """
+    if cache is None:
+        return _worked_out(found, negatives, grammar_name, on_found, on_done)
+    digest = _digest(found, negatives, grammar_name)
+    with Memory(cache, key_of(found.grammar)) as memory:
+        record = memory.recall_record(digest)
+        if record is None:
+            record = _worked_out(found, negatives, grammar_name, on_found, on_done)
+            memory.keep_record(digest, record)
+    return {**record, "seconds": round(found.seconds, 3)}
+
+
+def _worked_out(
+    found: Survey,
+    negatives: Sequence[Negative],
+    grammar_name: str,
+    on_found: Progress,
+    on_done: Progress,
+) -> dict[str, Any]:
+    judge = judge_of(found.grammar, negatives) if negatives else no_judge
+    clusters = cluster(found, judge=judge, on_found=on_found, on_done=on_done)
+    return record_of(found, clusters, grammar_name=grammar_name)
+
+
+def _digest(found: Survey, negatives: Sequence[Negative], grammar_name: str) -> str:
+    """What the record depends on besides the grammar and the code."""
+    code = hashlib.sha256(grammar_name.encode())
+    for file in found.files:
+        code.update(repr((file.digest, file.places)).encode())
+    for skipped in found.skipped:
+        code.update(repr((skipped.path, skipped.reason)).encode())
+    for negative in negatives:
+        code.update(negative.text.encode())
+    return code.hexdigest()
