@@ -105,12 +105,13 @@ class Lexer:
         ranks = [self._ranked(rule) for rule in others]
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
         self.kinds = _Kinds(literals, classify, ranks, fold)
-        # A literal that another rule matches whole (a keyword that could be a name) adds nothing
+        # A literal that another token matches whole (a keyword that could be a name) adds nothing
         # to where tokens end, and leaving it out keeps the automaton small.
+        tokens = re.compile("|".join(_translate(grammar, r) for r in others if not r.is_skipped))
         cutting = [
             r
             for r in rules
-            if r.name not in names_of_literals or not classify.fullmatch(_only_literal(r))
+            if r.name not in names_of_literals or not tokens.fullmatch(_only_literal(r))
         ]
         self._automaton = automaton_of(grammar, cutting)
         self._pattern = self._pattern_for(grammar, cutting)

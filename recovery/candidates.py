@@ -87,8 +87,24 @@ class CandidateFinder:
             state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[:start])
             for site in sorted(recognizer.sites(state), key=lambda c: (c[0], c[1].depth)):
                 yield from self._at_site(state, site, words, start)
+        if form.index:
+            # the last token may have been read as what the line leaves out
+            start = form.index - 1
+            state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[:start])
+            for site in sorted(recognizer.sites(state), key=lambda c: (c[0], c[1].depth)):
+                for place in self._places(site):
+                    if place[-1] <= len(self._sequence_at(site, place).elements):
+                        yield from self._omissions(state, site, place, words, start)
         if form.index and 0 not in starts:
             yield from self._as_new_line(recognizer.restore(form.before), words)
+
+    def _places(self, site: Configuration) -> list[Address]:
+        network = self.recognizer.network
+        rule = network.rule[site[0]]
+        return sorted(network.automata[rule].places[site[0] - network.entry[rule]])
+
+    def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
+        return self._sequence(self.recognizer.network.rule[site[0]], place[:-1])
 
     def _as_new_line(
         self, before: State, words: list[Word]
@@ -200,8 +216,7 @@ class CandidateFinder:
         kind, keyword = words[0]
         if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
-            rank = self._width(rule) + self.phraser.breadth((before.name,)) + 8
-            yield rank, self._with_tokens(words, Insert(rule, place, text))
+            yield self._width(rule) + 4, self._with_tokens(words, Insert(rule, place, text))
 
     def _blocks(
         self, rule: str, place: Address, words: Sequence[Word]
@@ -230,7 +245,7 @@ class CandidateFinder:
             for symbols in self.phraser.phrases(words, self._near(element.name)):
                 yield self._alternative(element.name, symbols, words)
         for symbols in self.phraser.phrases(words, self._near(rule)):
-            if place == (1, 1) and len(self._sequence(rule, (1,)).elements) == 1:
+            if len(place) == 2 and len(self._sequence(rule, place[:-1]).elements) == 1:
                 continue  # the same as an alternative of the rule
             rank = self._width(rule) + self.phraser.breadth(symbols) + 10
             if isinstance(element, Repeat):

@@ -30,7 +30,7 @@ _HEAVY_GROUPS = 30
 _MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
 _KEPT = 5
-_MOST_JUDGED = 30
+_MOST_JUDGED = 15
 _ROUNDS = 4
 # An edit that mends nearly as much as the best is preferred when it lets in less.
 _AS_GOOD = 0.99
@@ -180,12 +180,13 @@ class _Search:
         """The most gainful candidates, first those that let in no negatives."""
         useful = [(c, o) for c, o in outcomes if o.mended or o.advanced]
         best = max((self._gain(o) for _, o in useful), default=0)
-        useful.sort(
-            key=lambda co: (self._gain(co[1]) < _AS_GOOD * best, co[0].breadth, -self._gain(co[1]))
-        )
+        near = [co for co in useful if self._gain(co[1]) >= _AS_GOOD * best]
+        near.sort(key=lambda co: (co[0].breadth, -self._gain(co[1])))
+        others = [co for co in useful if self._gain(co[1]) < _AS_GOOD * best]
+        others.sort(key=lambda co: (-self._gain(co[1]), co[0].breadth))
         clean: list[tuple[Candidate, int]] = []
         costly: list[tuple[Candidate, int]] = []
-        for candidate, _ in useful[:_MOST_JUDGED]:
+        for candidate, _ in near[:_MOST_JUDGED] + others[:_MOST_JUDGED]:
             negatives = self.judge(candidate.edits)
             (costly if negatives else clean).append((candidate, negatives))
             if len(clean) == _KEPT:

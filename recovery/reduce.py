@@ -119,7 +119,7 @@ class Reducer:
         self, line: Line, tokens: list[Token], wider: Recognizer | None
     ) -> Iterator[list[_Program]]:
         """Programs around the line, those at one place together, the shortest ways there first."""
-        recognizer, form = self.recognizer, line.form
+        recognizer, form, line_kind = self.recognizer, line.form, self.recognizer.line_kind
         ways_out = None if wider is None else Paths(wider.network)
         for prefix in self._prefixes(line):
             start, failed = recognizer.run(recognizer.start, prefix)
@@ -135,6 +135,10 @@ class Reducer:
                     continue
                 body, end = read
                 way = ways_out.completion(wider.frames(end))[:-1]
+                if body[-1:] != tokens[-1:]:  # the line has an end of its own
+                    cut = next((i for i, k in enumerate(way, 1) if k == line_kind), len(way))
+                    body = body + self._spelling.frame(way[:cut], wider, name="end of line")
+                    way = way[cut:]
                 beyond.append(self._spelling.frame(way, wider))
             for bodies in (self._shortened(start, before, body, wider), [body]):
                 yield [
@@ -170,7 +174,7 @@ class Reducer:
         state, index = self.recognizer.run(start, kinds)
         if index is None:  # what fails is the end of the file
             return _Broken(len(kinds), state, 0, start)
-        for gap in range(1, min(len(kinds) - index, _LONGEST_GAP) + 1):
+        for gap in range(1, min(len(kinds) - index, _LONGEST_GAP + 1)):
             end, failed = self.recognizer.run(state, kinds[index + gap :])
             if failed is None:
                 return _Broken(index, state, gap, end)
@@ -205,14 +209,12 @@ class Reducer:
 
     def _endings(self, start: State, line: list[Token]) -> list[list[Token]]:
         """How a program goes on behind the line: as without it, or as if it had been read."""
-        recognizer = self.recognizer
-        broken = self._broken(start, line)
+        broken, frames = self._broken(start, line), self.recognizer.frames
         if broken.index == len(line):
             return [[]]
-        states = (start, broken.end)
-        ways = {tuple(self._paths.completion(recognizer.frames(s)))[:-1] for s in states}
-        if line[-1].kind != recognizer.line_kind:  # the last line of a file
-            ways |= {(recognizer.line_kind, *way) for way in ways}
+        ways = {tuple(self._paths.completion(frames(s)))[:-1] for s in (start, broken.end)}
+        if line[-1].kind != self.recognizer.line_kind:  # the last line of a file
+            ways |= {(self.recognizer.line_kind, *way) for way in ways}
         return [self._spelling.frame(way) for way in sorted(ways, key=lambda w: (len(w), w))]
 
 
@@ -248,7 +250,8 @@ def _readable(
 ) -> tuple[list[Token], State] | None:
     """The line as a wider grammar reads it, and the state behind it.
 
-    Tokens at which that fails, further on than the line did, are left out.
+    Where that fails too, further on than the line did, the tokens there are left out, or else the
+    rest of the line.
     """
     start, failed = wider.run(wider.start, _kinds_in(wider, before))
     if failed is not None:
@@ -259,11 +262,11 @@ def _readable(
         return line, state
     if failed <= index:
         return None
-    for gap in range(1, min(len(kinds) - failed, _LONGEST_GAP) + 1):
+    for gap in range(1, min(len(kinds) - failed, _LONGEST_GAP + 1)):
         end, left = wider.run(state, kinds[failed + gap :])
         if left is None:
             return line[:failed] + line[failed + gap :], end
-    return None
+    return line[:failed], state
 
 
 def _states(
@@ -388,7 +391,7 @@ class _Test:
     def _is_right_without(self, kinds: list[int], first: int, index: int, end: int) -> bool:
         """Whether it is a program without the failing line, or without tokens at the failure."""
         cuts = [(first, end), (max(0, first - 1), end)]
-        cuts += [(index, index + gap) for gap in range(1, min(end - index, _LONGEST_GAP))]
+        cuts += [(index, index + gap) for gap in range(1, min(end - index, _LONGEST_GAP + 1))]
         run, start = self.recognizer.run, self.recognizer.start
         return any(run(start, kinds[:i] + kinds[j:])[1] is None for i, j in cuts)
 

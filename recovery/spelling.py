@@ -86,12 +86,14 @@ class Spelling:
             if kind != EOF
         ]
 
-    def frame(self, kinds: Iterable[int], wider: Recognizer | None = None) -> list[Token]:
-        """Tokens around a line; a kind that only the wider grammar has is a keyword there."""
+    def frame(
+        self, kinds: Iterable[int], wider: Recognizer | None = None, *, name: str = FRAME
+    ) -> list[Token]:
+        """Tokens that nobody wrote; a kind that only the wider grammar has is a keyword there."""
         own = len(self.lexer.names)
         names = () if wider is None else wider.lexer.names
         return [
-            Token(kind, FRAME) if kind < own else Token(self._name, FRAME, names[kind])
+            Token(kind, name) if kind < own else Token(self._name, name, names[kind])
             for kind in kinds
         ]
 

@@ -106,6 +106,12 @@ def test_what_fails_for_another_reason_goes(bench: Bench) -> None:
     assert bench.reduce(text, "VEL", edits=VELOCITY).text == "DEF A()\n  PTP B VEL = 1\nEND"
 
 
+def test_a_construct_that_breaks_off_is_finished(bench: Bench) -> None:
+    """Where the mended grammar fails further on, the line ends there as it would have it."""
+    text = body("PTP HOME VEL = PTP HOME")
+    assert bench.reduce(text, "VEL", edits=VELOCITY).text == "DEF A()\n  PTP B VEL = 1\nEND"
+
+
 def test_a_grammar_that_does_not_read_the_line_is_left_out(bench: Bench) -> None:
     """An edit that mends something else asks nothing of the reproducer."""
     text = body("SWITCH MODE")
@@ -152,7 +158,7 @@ def test_the_statement_stays_that_does_not_go_on(bench: Bench) -> None:
 
 def test_blocks_around_the_line_go(bench: Bench) -> None:
     """A line fails in any block as it does in the routine itself."""
-    text = body("IF DONE THEN", "LOOP", "I = I +", "ENDLOOP", "ENDIF")
+    text = body("IF DONE THEN", "LOOP", "I = K +", "ENDLOOP", "ENDIF")
     assert bench.reduce(text).text == "DEF A()\n  B = C +\nEND"
 
 
