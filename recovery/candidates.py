@@ -130,6 +130,8 @@ class CandidateFinder:
         network = self.recognizer.network
         position, stack = site
         rule = network.rule[position]
+        if rule in self._line_ends:
+            return
         base = network.entry[rule]
         automaton = network.automata[rule]
         here = self.recognizer.at(site, state)
@@ -283,6 +285,21 @@ class CandidateFinder:
     def _width(self, rule: str) -> int:
         """How many rules lead to this one: an edit counts wherever they are used."""
         return self._ancestors[rule]
+
+    @cached_property
+    def _line_ends(self) -> frozenset[str]:
+        """Rules that only say where a line ends: nothing of a line belongs there."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and all(
+                isinstance(e, Reference) and e.name == "NEWLINE"
+                for a in rule.alternatives
+                for e in walk(a)
+                if not isinstance(e, Repeat | Group)
+            )
+        )
 
     @cached_property
     def _ancestors(self) -> dict[str, int]:
