@@ -243,20 +243,24 @@ class CandidateFinder:
     def _replacements(
         self, rule: str, place: Address, element: object, words: Sequence[Word]
     ) -> Iterator[tuple[int, tuple[Edit, ...]]]:
+        elements = self._sequence(rule, place[:-1]).elements
+        whole = len(place) == 2 and len(elements) == 1  # an alternative that is one element
+        here = len(self.grammar.by_name[rule].alternatives)
         if isinstance(element, Reference) and not element.is_token:
-            for symbols in self.phraser.phrases(words, self._near(element.name)):
-                yield self._alternative(element.name, symbols, words)
+            there = len(self.grammar.by_name[element.name].alternatives)
+            # one of many kinds of statement is no place for another kind: its caller is
+            if there >= _HUB or not (whole and here >= _HUB):
+                for symbols in self.phraser.phrases(words, self._near(element.name)):
+                    yield self._alternative(element.name, symbols, words)
+        leading = place[-1] == 1 and self._is_keyword(element)
+        if whole or (leading and len(words) > 1):
+            return  # the same as an alternative; the word that says what a line is
         for symbols in self.phraser.phrases(words, self._near(rule)):
-            if len(place) == 2 and len(self._sequence(rule, place[:-1]).elements) == 1:
-                continue  # the same as an alternative of the rule
             rank = self._width(rule) + self.phraser.breadth(symbols) + 10
             if isinstance(element, Repeat):
                 rank += _UNLIKELY  # one more thing in a loop made for something else
-            elements = self._sequence(rule, place[:-1]).elements
-            if self._is_keyword(element) and (
-                len(words) > 1 or place[-1] == 1 or place[-1] == len(elements)
-            ):
-                rank += _UNLIKELY  # the words that say what a line is say nothing else
+            if self._is_keyword(element) and (len(words) > 1 or place[-1] == len(elements)):
+                rank += _UNLIKELY  # the words that close a line or a block say nothing else
             yield rank, self._with_tokens(words, Widen(rule, place, " ".join(symbols)))
 
     def _is_keyword(self, element: object) -> bool:

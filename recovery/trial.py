@@ -85,7 +85,7 @@ class Trial:
         """Lines that the edits might mend."""
         keywords = [e.name for e in edits if isinstance(e, AddToken)]
         if keywords:
-            found = set.intersection(*(self._by_keyword.get(k, set()) for k in keywords))
+            found = set.union(*(self._by_keyword.get(k, set()) for k in keywords))
             return sorted(found)
         if any(isinstance(e, AddRule) for e in edits):
             return list(range(len(self.lines)))

@@ -135,7 +135,7 @@ def test_lines_are_mended_that_whole_programs_say_are(name: str) -> None:
 def test_the_edits_tell_lines_apart() -> None:
     """The examples above do mend lines, each its own, and leave others as they are."""
     outcomes = [trial().outcome(edits) for edits in EDITS.values()]
-    assert len({o.mended for o in outcomes}) > 10
+    assert len({o.mended for o in outcomes}) > 6
     assert not any(len(o.mended) == len(FAILING) for o in outcomes)
     assert any(o.advanced for o in outcomes)
 
