@@ -256,7 +256,7 @@ class CandidateFinder:
         if whole or (leading and len(words) > 1):
             return  # the same as an alternative; the word that says what a line is
         for symbols in self.phraser.phrases(words, self._near(rule)):
-            rank = self._width(rule) + self.phraser.breadth(symbols) + 10
+            rank = self._width(rule) + self.phraser.breadth(symbols) + (22 if leading else 10)
             if isinstance(element, Repeat):
                 rank += _UNLIKELY  # one more thing in a loop made for something else
             if self._is_keyword(element) and (len(words) > 1 or place[-1] == len(elements)):

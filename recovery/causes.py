@@ -29,8 +29,10 @@ _MOST_TRIED = 90
 _HEAVY_GROUPS = 30
 _MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
-_KEPT = 5
+_KEPT = 8
 _MOST_JUDGED = 15
+_ALIKE = 4
+_SHOWN = 5
 _ROUNDS = 4
 # An edit that mends nearly as much as the best is preferred when it lets in less.
 _AS_GOOD = 0.99
@@ -161,7 +163,7 @@ class _Search:
                     negatives,
                 )
             )
-        return self._ranked(proposals)
+        return self._ranked(proposals)[:_SHOWN]
 
     def _alike(self, number: int) -> list[int]:
         """Other lines that fail at the same token, whatever else they look like."""
@@ -178,7 +180,7 @@ class _Search:
 
     def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
         """The most gainful candidates, first those that let in no negatives."""
-        useful = [(c, o) for c, o in outcomes if o.mended or o.advanced]
+        useful = self._diverse(outcomes)
         best = max((self._gain(o) for _, o in useful), default=0)
         near = [co for co in useful if self._gain(co[1]) >= _AS_GOOD * best]
         near.sort(key=lambda co: (co[0].breadth, -self._gain(co[1])))
@@ -192,6 +194,20 @@ class _Search:
             if len(clean) == _KEPT:
                 break
         return clean + costly[: _KEPT - len(clean)]
+
+    def _diverse(
+        self, outcomes: list[tuple[Candidate, Outcome]]
+    ) -> list[tuple[Candidate, Outcome]]:
+        """Candidates that do something; of those that do the same the most restrictive few."""
+        alike: dict[Outcome, list[tuple[Candidate, Outcome]]] = defaultdict(list)
+        for candidate, outcome in outcomes:
+            if outcome.mended or outcome.advanced:
+                alike[outcome].append((candidate, outcome))
+        return [
+            pair
+            for same in alike.values()
+            for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[:_ALIKE]
+        ]
 
     def _ranked(self, proposals: list[Proposal]) -> list[Proposal]:
         """No negatives first; then by gain, those nearly as good by what they let in."""

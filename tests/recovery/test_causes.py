@@ -68,10 +68,15 @@ def together(found: Sequence[Cause]) -> list[set[int]]:
 ALL = [STEPS, LISTS, RETURNS, HOPELESS, VOLATILE]
 
 
-def test_every_line_has_one_cause() -> None:
+@pytest.fixture(scope="module")
+def all_causes() -> list[Cause]:
+    return causes(ALL)
+
+
+def test_every_line_has_one_cause(all_causes: list[Cause]) -> None:
     """Each line is in exactly one cause, those that no edit mends too."""
     count = sum(map(len, ALL))
-    assert list(range(count)) == sorted(n for cause in causes(ALL) for n in cause.lines)
+    assert list(range(count)) == sorted(n for cause in all_causes for n in cause.lines)
 
 
 def test_lines_mended_by_one_edit_have_one_cause() -> None:
@@ -99,12 +104,12 @@ def test_lines_that_nothing_mends_stay_together_without_a_proposal() -> None:
     assert ((0, 1), ()) == (found.lines, found.proposals)
 
 
-def test_proposals_mend_what_they_say() -> None:
+def test_proposals_mend_what_they_say(all_causes: list[Cause]) -> None:
     """The best proposal mends lines of its cause only, and each tells all lines it mends."""
     lines = lines_of(*(text for group in ALL for text in group))
     trial = Trial(RECOGNIZER, lines)
     gone: set[int] = set()
-    for cause in causes(ALL):
+    for cause in all_causes:
         for proposal in cause.proposals:
             # lines that have their cause already are not asked again
             assert trial.outcome(proposal.edits).mended - gone == proposal.mended
@@ -115,13 +120,13 @@ def test_proposals_mend_what_they_say() -> None:
         gone |= set(cause.lines)
 
 
-def test_proposals_differ() -> None:
+def test_proposals_differ(all_causes: list[Cause]) -> None:
     """No proposal is made twice for one cause."""
-    for cause in causes(ALL):
+    for cause in all_causes:
         assert len({proposal.edits for proposal in cause.proposals}) == len(cause.proposals)
 
 
-@pytest.mark.parametrize("salt", range(4))
+@pytest.mark.parametrize("salt", range(3))
 def test_what_lets_in_negatives_comes_last(salt: int) -> None:
     """Whatever the judge says, proposals are ordered by it first, and tell what it said."""
 
@@ -147,9 +152,11 @@ def test_an_edit_that_lets_in_no_negative_is_preferred() -> None:
     assert best.mended == careful.proposals[0].mended
 
 
-def test_among_equals_the_most_restrictive_is_proposed_first() -> None:
+def test_among_equals_the_most_restrictive_comes_first(all_causes: list[Cause]) -> None:
     """Of edits that mend the same lines and let in no negatives, the narrowest comes first."""
-    for cause in causes([STEPS, LISTS, RETURNS]):
+    for cause in all_causes:
+        if not cause.proposals:
+            continue
         best = cause.proposals[0]
         equals = [p for p in cause.proposals if p.mended == best.mended]
         assert min(p.breadth for p in equals) == best.breadth
@@ -165,7 +172,7 @@ def test_every_group_is_reported_done() -> None:
 
 def test_ten_runs_find_the_same() -> None:
     """Nothing is left to chance."""
-    first, *others = [causes(ALL) for _ in range(10)]
+    first, *others = [causes([STEPS[:2], LISTS, RETURNS]) for _ in range(10)]
     assert all(first == other for other in others)
 
 
@@ -173,7 +180,7 @@ def test_the_order_of_lines_in_a_group_does_not_decide_who_belongs_together() ->
     """Shuffled, the same lines have the same causes."""
     texts = [*STEPS, *LISTS, *RETURNS]
     expected = {frozenset(texts[n] for n in cause.lines) for cause in causes([texts])}
-    for seed in range(3):
+    for seed in range(2):
         shuffled = Random(seed).sample(texts, len(texts))
         found = {frozenset(shuffled[n] for n in cause.lines) for cause in causes([shuffled])}
         assert expected == found
