@@ -253,14 +253,15 @@ class CandidateFinder:
                 for symbols in self.phraser.phrases(words, self._near(element.name)):
                     yield self._alternative(element.name, symbols, words)
         leading = place[-1] == 1 and self._is_keyword(element)
-        if whole or (leading and len(words) > 1):
-            return  # the same as an alternative; the word that says what a line is
+        closing = place[-1] == len(elements) and self._is_keyword(element)
+        if whole or ((leading or closing) and len(words) > 1):
+            return  # the same as an alternative; the words that begin and close a line or a block
         for symbols in self.phraser.phrases(words, self._near(rule)):
             rank = self._width(rule) + self.phraser.breadth(symbols) + (22 if leading else 10)
             if isinstance(element, Repeat):
                 rank += _UNLIKELY  # one more thing in a loop made for something else
-            if self._is_keyword(element) and (len(words) > 1 or place[-1] == len(elements)):
-                rank += _UNLIKELY  # the words that close a line or a block say nothing else
+            if self._is_keyword(element) and (len(words) > 1 or closing):
+                rank += _UNLIKELY
             yield rank, self._with_tokens(words, Widen(rule, place, " ".join(symbols)))
 
     def _is_keyword(self, element: object) -> bool:

@@ -30,8 +30,8 @@ _HEAVY_GROUPS = 30
 _MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
 _KEPT = 8
-_MOST_JUDGED = 15
-_ALIKE = 4
+_MOST_JUDGED = 24
+_ALIKE = 12
 _SHOWN = 5
 _ROUNDS = 4
 # An edit that mends nearly as much as the best is preferred when it lets in less.

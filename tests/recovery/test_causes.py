@@ -170,15 +170,14 @@ def test_every_group_is_reported_done() -> None:
     assert 3 == sum(done)
 
 
-def test_ten_runs_find_the_same() -> None:
+def test_another_run_finds_the_same(all_causes: list[Cause]) -> None:
     """Nothing is left to chance."""
-    first, *others = [causes([STEPS[:2], LISTS, RETURNS]) for _ in range(10)]
-    assert all(first == other for other in others)
+    assert all_causes == causes(ALL)
 
 
 def test_the_order_of_lines_in_a_group_does_not_decide_who_belongs_together() -> None:
     """Shuffled, the same lines have the same causes."""
-    texts = [*STEPS, *LISTS, *RETURNS]
+    texts = [*STEPS[:2], *LISTS, *RETURNS[1:]]
     expected = {frozenset(texts[n] for n in cause.lines) for cause in causes([texts])}
     for seed in range(2):
         shuffled = Random(seed).sample(texts, len(texts))

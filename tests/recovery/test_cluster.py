@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -96,7 +97,7 @@ def test_what_only_follows_belongs_to_its_cause() -> None:
 # ----------------------------------------------------------------- laws, on corpora by chance
 
 
-@pytest.fixture(scope="module", params=range(4))
+@pytest.fixture(scope="module", params=range(3))
 def corpus(request: pytest.FixtureRequest) -> tuple[Survey, Clusters]:
     """A small corpus of random programs, some of them alike, and its clusters."""
     chance = Random(request.param)
@@ -198,23 +199,16 @@ def test_identities_and_titles_are_unique(corpus: tuple[Survey, Clusters]) -> No
     assert len({c.title for c in clusters.ranked}) == len(clusters.ranked)
 
 
-def test_copies_count(corpus: tuple[Survey, Clusters]) -> None:
-    """A file that lies in three places counts three times, and changes nothing else."""
-    found, clusters = corpus
-    path, origin = found.files[0].places[0]
-    copies = tuple((f"{path}.{n}", origin) for n in range(3))
-    first = SurveyedFile(
-        found.files[0].found,
-        copies,
-        found.files[0].digest,
-        found.files[0].size,
-        found.files[0].failures,
-    )
-    more = Survey(found.grammar, (first, *found.files[1:]), (), found.forms, 0)
-    again = cluster(more)
-    parsed = count(more, again, set())
-    for c in again.ranked:
-        assert count(more, again, {c.id}) - parsed == c.unlocks
+def test_copies_count() -> None:
+    """A file that lies in three places is three files to be mended."""
+    found = surveyed(program("RETURN 1"), program("DECL INT A,B"), program("HALT"))
+    first, *others = found.files
+    copies = tuple((f"{n}/a.src", f"{n}") for n in range(3))
+    more = replace(found, files=(replace(first, places=copies), *others))
+    clusters = cluster(more)
+    assert [3, 1] == [c.unlocks for c in clusters.ranked]
+    assert [4, 5] == [parsed for _, parsed in clusters.order]
+    assert [1, 1] == [len(c.files) for c in clusters.ranked]
 
 
 # --------------------------------------------------------------------------- the same result
@@ -241,27 +235,33 @@ print(json.dumps([
 
 def told(clusters: Clusters) -> object:
     """What a program in another process tells of clusters."""
-    ranked = [
-        [c.id, c.title, c.unlocks, len(c.members), [*c.restores], [repr(p.edits) for p in c.proposals]]
-        for c in clusters.ranked
-    ]
+    ranked = []
+    for c in clusters.ranked:
+        edits = [repr(p.edits) for p in c.proposals]
+        ranked.append([c.id, c.title, c.unlocks, len(c.members), list(c.restores), edits])
     return [ranked, [[c.id, parsed] for c, parsed in clusters.order]]
 
 
 def varied() -> Sequence[tuple[str, str]]:
     chance = Random(11)
-    return [(f"{n}.src", program(*chance.choices(PIECES, k=3))) for n in range(16)]
+    return [(f"{n}.src", program(*chance.choices(PIECES, k=2))) for n in range(10)]
 
 
-def test_ten_runs_give_the_same() -> None:
+@pytest.fixture(scope="module")
+def usual() -> object:
+    """What this process tells of the varied programs."""
+    return told(cluster(survey_texts(varied(), PRELIMINARY)))
+
+
+def test_ten_runs_give_the_same(usual: object) -> None:
     """The same failures give the same clusters, proposals and order, time after time."""
     found = survey_texts(varied(), PRELIMINARY)
-    first, *others = [told(cluster(found)) for _ in range(10)]
-    assert all(first == other for other in others)
+    for _ in range(9):
+        assert usual == told(cluster(found))
 
 
 @pytest.mark.parametrize("seed", ["0", "1", "4711"])
-def test_hashing_does_not_matter(seed: str) -> None:
+def test_hashing_does_not_matter(usual: object, seed: str) -> None:
     """Python's hashing is another in every process; the clusters are not."""
     done = subprocess.run(
         [sys.executable, "-c", TELL],
@@ -272,4 +272,4 @@ def test_hashing_does_not_matter(seed: str) -> None:
         check=True,
         encoding="utf-8",
     )
-    assert told(cluster(survey_texts(varied(), PRELIMINARY))) == json.loads(done.stdout)
+    assert usual == json.loads(done.stdout)

@@ -1,6 +1,6 @@
 """The bench of the survey: what it records, never how fast it was."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ import pytest
 from grammar import read_file
 from grammar.g4 import Grammar
 from grammar.generate import GRAMMAR
+from recovery import speed
 from recovery.ingest import IngestError
 from recovery.speed import measure, steps
 
@@ -91,23 +92,23 @@ def test_steps_are_told_beforehand(record: dict[str, Any]) -> None:
     assert steps(SIZES, rounds=1) == record["told"]
 
 
-def test_unchanged_is_a_plain_second_survey_without_kept_results(record: dict[str, Any]) -> None:
-    """Without kept results the figure is that of the warm survey, and says so."""
-    assert not record["cached"]
-    assert pytest.approx(1e6 / record["warm_bytes_per_s"]) == record["unchanged_s_per_mb"]
+def test_unchanged_files_are_not_read_again(
+    corpus: Path, grammar: Grammar, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The figure for unchanged files is of surveys that follow one with the same cache."""
+    caches: list[Path | None] = []
 
+    def noting(function: Callable[..., float], *arguments: Any) -> float:
+        if function is speed._kept:
+            caches.append(arguments[2])
+            return [9.0, 3.0, 2.0][len(caches) - 1]
+        return function(*arguments)
 
-def test_unchanged_takes_the_survey_that_keeps_results(corpus: Path, grammar: Grammar) -> None:
-    """A survey that keeps its results is called twice with the roots and the grammar."""
-    calls: list[tuple[Sequence[Path], Grammar]] = []
-
-    def cached(roots: Sequence[Path], under: Grammar) -> None:
-        calls.append((roots, under))
-
-    record = measure([corpus], grammar, sizes=(), rounds=1, cached=cached)
-    assert [([corpus], grammar)] * 2 == calls
-    assert record["cached"]
-    assert 0 < record["unchanged_s_per_mb"] < 1e6 / record["warm_bytes_per_s"]
+    monkeypatch.setattr(speed, "_apart", noting)
+    record = measure([corpus], grammar, sizes=(), rounds=2)
+    assert 3 == len(caches)
+    assert 1 == len(set(caches))
+    assert pytest.approx(2e6 / record["bytes"]) == record["unchanged_s_per_mb"]
     assert ([], None, None) == (record["scaling"], record["linear"], record["memory_growth_mb"])
 
 
