@@ -31,6 +31,8 @@ _MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
 _KEPT = 8
 _MOST_JUDGED = 24
+_MOST_JUDGED_LIGHT = 10
+_GOOD_ENOUGH = 0.7
 _ALIKE = 12
 _SHOWN = 5
 _ROUNDS = 4
@@ -186,14 +188,16 @@ class _Search:
         near.sort(key=lambda co: (co[0].breadth, -self._gain(co[1])))
         others = [co for co in useful if self._gain(co[1]) < _AS_GOOD * best]
         others.sort(key=lambda co: (-self._gain(co[1]), co[0].breadth))
-        clean: list[tuple[Candidate, int]] = []
-        costly: list[tuple[Candidate, int]] = []
-        for candidate, _ in near[:_MOST_JUDGED] + others[:_MOST_JUDGED]:
-            negatives = self.judge(candidate.edits)
-            (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == _KEPT:
-                break
-        return clean + costly[: _KEPT - len(clean)]
+        most = _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
+        judged = [(c, o, self.judge(c.edits)) for c, o in near[:most] + others[:most]]
+        clean = [(c, o) for c, o, negatives in judged if not negatives]
+        costly = [(c, negatives) for c, _, negatives in judged if negatives]
+        kept = {c.edits: c for c, _ in clean[: _KEPT // 2]}
+        good = [c for c, o in clean if self._gain(o) >= _GOOD_ENOUGH * best]
+        for candidate in sorted(good, key=lambda c: (c.breadth, str(c.edits))):
+            if len(kept) < _KEPT:
+                kept[candidate.edits] = candidate
+        return [(c, 0) for c in kept.values()] + costly[: _KEPT - len(kept)]
 
     def _diverse(
         self, outcomes: list[tuple[Candidate, Outcome]]

@@ -58,9 +58,9 @@ def measure(
     In the record, ``bytes_per_s`` and ``warm_bytes_per_s`` are for a first and a second survey, all
     failures found, ``recognise_bytes_per_s`` for a yes or no to each file, the best of ``rounds``
     each; ``unchanged_s_per_mb`` is for a survey in a new process that finds its results kept from
-    the one before. ``ratio_vs_antlr_python`` is how many times as long ANTLR takes for the same valid texts,
-    ``linear`` the speed on the last of ``scaling`` over that on the first, ``memory_growth_mb``
-    how much more memory the last took at most; ``None`` where it could not be measured.
+    the one before. ``ratio_vs_antlr_python`` is how many times as long ANTLR takes for the same
+    valid texts, ``linear`` the speed on the last of ``scaling`` over that on the first, and
+    ``memory_growth_mb`` how much more memory the last took at most; ``None`` where not measured.
 
     Raises `recovery.ingest.IngestError` where there is nothing to measure on.
     """

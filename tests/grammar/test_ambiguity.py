@@ -19,18 +19,28 @@ RandomGrammar = Callable[[Random], Grammar]
 TOKENS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\n"
 
 
+class EndlessError(Exception):
+    """A rule that may be empty repeats itself: no count of its readings ends."""
+
+
 def readings(network: Network, kinds: Sequence[int]) -> int:
     """How many ways through the network have these tokens, counted straight from its edges."""
+
+    active: set[tuple[int, int]] = set()
 
     @cache
     def ways(position: int, start: int) -> dict[int, int]:
         """For every end, in how many ways the rest of a rule has the tokens from ``start``."""
+        if (position, start) in active:
+            raise EndlessError
+        active.add((position, start))
         found = {start: 1} if network.final[position] else {}
         if start < len(kinds) and kinds[start] in network.shifts[position]:
             add(found, ways(network.shifts[position][kinds[start]], start + 1), 1)
         for entry, back in network.calls[position]:
             for end, count in ways(entry, start).items():
                 add(found, ways(back, end), count)
+        active.remove((position, start))
         return found
 
     def add(found: dict[int, int], more: dict[int, int], times: int) -> None:
@@ -78,7 +88,10 @@ def test_two_readings_are_found(chance: Random, random_grammar: RandomGrammar) -
         after = recognizer.step(state, kind)
         assert after is not None
         state = after
-    expected = readings(recognizer.network, kinds) > 1
+    try:
+        expected = readings(recognizer.network, kinds) > 1
+    except EndlessError:
+        return
     assert expected == is_ambiguous(recognizer, recognizer.start, kinds)
 
 

@@ -297,7 +297,7 @@ def result_of(grammar: Grammar, edit: Edit) -> Grammar:
     return changed
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_an_edit_touches_its_rule_only(chance: Random) -> None:
     """All other text stays as it was, and reading the new text gives the edited data."""
@@ -315,7 +315,7 @@ def test_an_edit_touches_its_rule_only(chance: Random) -> None:
     assert old == new or old.text != new.text
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_widening_rejects_nothing(chance: Random) -> None:
     """What a grammar accepts it still accepts after an alternative or an option more."""
@@ -327,7 +327,7 @@ def test_widening_rejects_nothing(chance: Random) -> None:
         assert wider.run(wider.start, kinds)[1] is None
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_narrowing_accepts_nothing_new(chance: Random) -> None:
     """What a grammar accepts without one alternative it accepted with it."""

@@ -24,7 +24,7 @@ LexerEnds = Callable[[Grammar, Rule, str, int], frozenset[int]]
 #: Name of the token, its text, its offset.
 Tokens = list[tuple[str, str, int]]
 
-QUICK = settings(max_examples=100, deadline=None)
+QUICK = settings(max_examples=60, deadline=None)
 NASTY = [
     *("1", ".", "1.", "1.5.2", ".5", "0x", "E3", "1.0E-3", "007"),
     *("'B01", "'", "'B01'", "'HfF'", "'H'", "'b2'", '"', '"a', '""', '"a""b"', '";"', '"\n'),
@@ -129,7 +129,7 @@ def random_grammar(chance: Random) -> Grammar:
     return lexer_grammar("\n".join(rules), folded=chance.random() < 0.5)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(chance=st.randoms(use_true_random=True))
 def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
     """The same holds for rules put together at random, patterns or not, skipped or not."""

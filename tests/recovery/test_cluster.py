@@ -73,10 +73,10 @@ def test_failures_mended_by_different_edits_are_different_clusters() -> None:
 
 
 def test_a_line_of_another_shape_joins_when_the_same_edit_mends_it() -> None:
-    """``FOR`` with a step fails in one shape or another; it is one cause all the same."""
-    pieces = [f"FOR {i}=1 TO 9 STEP {n}\nENDFOR" for i, n in zip("ABCD", "1XYZ", strict=True)]
-    (found,) = clusters_of(*pieces, "FOR I=F(A) TO (9) STEP (2)\nENDFOR").ranked
-    assert 5 == len(found.files)
+    """A second index fails in assignments, conditions and waits; it is one cause all the same."""
+    pieces = ("X[1,2]=3", "A=X[I,J]", "IF X[1,2]==3 THEN\nENDIF", "WAIT FOR Y[1,J]")
+    (found,) = clusters_of(*pieces).ranked
+    assert 4 == len(found.files)
 
 
 def test_a_program_without_failures_is_in_no_cluster() -> None:
