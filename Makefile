@@ -16,8 +16,9 @@ help:
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
+	@echo 'make bench        measure the tools; records go to reports/out/bench (ARGS="PATH")'
 	@echo 'make clean        remove .venv, caches and reports/out'
-	@echo 'make conformance, make nightly, make bench: not built yet'
+	@echo 'make conformance, make nightly: not built yet'
 
 setup: $(DEV)
 
@@ -41,8 +42,9 @@ grammar: $(DEV)
 conformance nightly:
 	@echo 'make $@: not built yet, it comes with the interpreters' >&2; exit 2
 
-bench:
-	@echo 'make bench: not built yet, it comes with the recovery engine' >&2; exit 2
+bench: $(BASE)
+	@$(BIN)/krl bench recover --json reports/out/bench/recover.json $(ARGS)
+	@$(BIN)/krl bench mutation --json reports/out/bench/mutation.json $(ARGS)
 
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache

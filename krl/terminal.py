@@ -19,7 +19,7 @@ _WORDS = 12
 
 def print_survey(record: Mapping[str, Any], page: Path) -> None:
     """Print the figures of `record`, its first clusters, and `page`."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False, emoji=False)
     files, parsed = record["files"], record["parsed"]
     console.print(
         f"{files:,} files, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "

@@ -30,14 +30,14 @@ _HEAVY_GROUPS = 30
 _MOST_TRIED_LIGHT = 40
 _FIRST_TRIAL = 24
 _KEPT = 8
-_MOST_JUDGED = 24
-_MOST_JUDGED_LIGHT = 10
-_GOOD_ENOUGH = 0.7
+_MOST_JUDGED = 40
+_MOST_JUDGED_LIGHT = 15
 _ALIKE = 12
 _SHOWN = 5
 _ROUNDS = 4
-# An edit that mends nearly as much as the best is preferred when it lets in less.
-_AS_GOOD = 0.99
+# What an edit loses of its worth for each step in breadth: of two that mend nearly as much, the
+# one that lets in less is preferred.
+_BREADTH_COSTS = 0.995
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,24 +180,22 @@ class _Search:
         further = sum(self.weights[n] for n in outcome.advanced)
         return whole + further / 4
 
+    def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
+        """Gain, less a little for all that an edit lets in besides."""
+        return self._gain(outcome) * _BREADTH_COSTS**candidate.breadth
+
     def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
-        """The most gainful candidates, first those that let in no negatives."""
+        """The most worthwhile candidates, first those that let in no negatives."""
         useful = self._diverse(outcomes)
-        best = max((self._gain(o) for _, o in useful), default=0)
-        near = [co for co in useful if self._gain(co[1]) >= _AS_GOOD * best]
-        near.sort(key=lambda co: (co[0].breadth, -self._gain(co[1])))
-        others = [co for co in useful if self._gain(co[1]) < _AS_GOOD * best]
-        others.sort(key=lambda co: (-self._gain(co[1]), co[0].breadth))
-        most = _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
-        judged = [(c, o, self.judge(c.edits)) for c, o in near[:most] + others[:most]]
-        clean = [(c, o) for c, o, negatives in judged if not negatives]
-        costly = [(c, negatives) for c, _, negatives in judged if negatives]
-        kept = {c.edits: c for c, _ in clean[: _KEPT // 2]}
-        good = [c for c, o in clean if self._gain(o) >= _GOOD_ENOUGH * best]
-        for candidate in sorted(good, key=lambda c: (c.breadth, str(c.edits))):
-            if len(kept) < _KEPT:
-                kept[candidate.edits] = candidate
-        return [(c, 0) for c in kept.values()] + costly[: _KEPT - len(kept)]
+        useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
+        clean: list[tuple[Candidate, int]] = []
+        costly: list[tuple[Candidate, int]] = []
+        for candidate, _ in useful[: _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT]:
+            negatives = self.judge(candidate.edits)
+            (costly if negatives else clean).append((candidate, negatives))
+            if len(clean) == _KEPT:
+                break
+        return clean + costly[: _KEPT - len(clean)]
 
     def _diverse(
         self, outcomes: list[tuple[Candidate, Outcome]]
@@ -214,20 +212,10 @@ class _Search:
         ]
 
     def _ranked(self, proposals: list[Proposal]) -> list[Proposal]:
-        """No negatives first; then by gain, those nearly as good by what they let in."""
-        out: list[Proposal] = []
-        left = sorted(proposals, key=lambda p: (-self._gain(p), p.breadth))
-        while left:
-            fewest = min(p.accepts_negatives for p in left)
-            clean = [p for p in left if p.accepts_negatives == fewest]
-            enough = _AS_GOOD * max(map(self._gain, clean))
-            best = min(
-                (p for p in clean if self._gain(p) >= enough),
-                key=lambda p: (p.breadth, -self._gain(p), str(p.edits)),
-            )
-            out.append(best)
-            left.remove(best)
-        return out
+        """No negatives first; then by worth."""
+        return sorted(
+            proposals, key=lambda p: (p.accepts_negatives, -self._worth(p, p), str(p.edits))
+        )
 
 
 _T = TypeVar("_T")

@@ -144,7 +144,7 @@ def test_git_ignores_what_is_not_ours(name: str) -> None:
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make here")
-@pytest.mark.parametrize("target", ["conformance", "nightly", "bench"])
+@pytest.mark.parametrize("target", ["conformance", "nightly"])
 def test_unbuilt_targets_say_so(target: str) -> None:
     """A target whose part is not built yet says so in one line and fails."""
     done = subprocess.run(

@@ -25,7 +25,6 @@ class EndlessError(Exception):
 
 def readings(network: Network, kinds: Sequence[int]) -> int:
     """How many ways through the network have these tokens, counted straight from its edges."""
-
     active: set[tuple[int, int]] = set()
 
     @cache
