@@ -184,9 +184,7 @@ class Reducer:
         """Tokens to places where a line can begin, and to the very place where this one began."""
         yield from self._places.values()
         for frames in line.form.before[:_MOST_CONFIGURATIONS]:
-            way = self._paths.prefix(frames)
-            yield way
-            yield [*way, self.recognizer.line_kind]  # a position need not show that a line ended
+            yield self._paths.prefix(frames)
 
     @cached_property
     def _places(self) -> dict[State, list[int]]:

@@ -44,9 +44,12 @@ def recover(
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler (not built yet).")
     ] = None,
     negatives: Annotated[
-        Path,
-        typer.Option(metavar="DIR", help="Programs that every proposal must keep rejected."),
-    ] = _DEFAULT_NEGATIVES,
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Programs that every proposal must keep rejected; default: corpus/negatives.",
+        ),
+    ] = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 when a file does not parse.")
     ] = False,
@@ -65,10 +68,15 @@ def recover(
     roots = paths or [_DEFAULT_CORPUS]
     if not paths and not _DEFAULT_CORPUS.is_dir():
         raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    if out.exists() and not out.is_dir():  # said before the work, not after it
+        raise Unusable(f"{out}: not a folder")
+    if json_file is not None and json_file.is_dir():
+        raise Unusable(f"{json_file}: a folder, not a file")
     cache = out / "cache"
     try:
         chosen = read_file(grammar or GRAMMAR)
-        judges = load(negatives) if negatives.is_dir() else ()
+        given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
+        judges = load(given) if given else ()
         with progress_bar("surveying") as bar:
             found = survey(roots, chosen, jobs=jobs, cache=cache, on_found=bar.expect, on_done=bar)
         with progress_bar("finding causes") as bar:

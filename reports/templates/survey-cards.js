@@ -123,7 +123,7 @@ function proposals(cluster) {
         return el("td", `num${state}`, value === null ? "–" : number(value));
       })));
   }
-  return part("", el("div", "heading", el("h3", "", "Proposals, most restrictive first"),
+  return part("", el("div", "heading", el("h3", "", "Proposals, the best first"),
     copyButton(`krl construct propose ${cluster.id}`, "Copy command")),
   el("table", "proposals", el("thead", "", head), body));
 }

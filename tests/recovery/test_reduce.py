@@ -148,6 +148,12 @@ def test_a_meant_word_before_the_failure_stays(bench: Bench) -> None:
     assert bench.reduce(text, "B_NOT").text == "DEF A()\n  B = B_NOT C\nEND"
 
 
+def test_a_meant_word_that_begins_the_line_stays(bench: Bench) -> None:
+    """Whatever goes, the line is still of the kind that its first word says."""
+    text = body("WITH.SPEED[1] = 2 3")
+    assert bench.reduce(text, "WITH").text == "DEF A()\n  WITH = 1 2\nEND"
+
+
 def test_the_statement_stays_that_does_not_go_on(bench: Bench) -> None:
     """Where the line could have ended, its first word says what has one token too many."""
     text = body("TRIGGER WHEN DISTANCE = 0 DELAY = 5 DO TOGGLE(LAMP) PRIO = -1")

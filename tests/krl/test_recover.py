@@ -1,0 +1,373 @@
+"""`krl recover` from the outside: statuses, files written, and what reaches the terminal."""
+
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grammar.generate import GRAMMAR
+from krl.cli import main
+
+PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
+FINE = b"DEF A()\nHALT\nEND\n"
+STEP = b"DEF A()\r\nFOR I=1 TO 9 STEP %s\r\nENDFOR\r\nEND\r\n"
+RETURN = b"DEF B()\nRETURN 1\nEND\n"
+posix_only = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
+
+
+def lay(root: Path, **files: bytes) -> Path:
+    """Make `root` a folder with programs, each in a folder of its own."""
+    for name, data in files.items():
+        (root / name).mkdir(parents=True, exist_ok=True)
+        (root / name / f"{name}.src").write_bytes(data)
+    return root
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working directory of its own, in which nothing lies."""
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    monkeypatch.delenv("KRL_TRACEBACK", raising=False)
+    return folder
+
+
+@pytest.fixture
+def corpus(tmp_path: Path) -> Path:
+    """Three causes in four files, one file that is fine, and one that is no KRL."""
+    steps = {f"step{n}": STEP % word for n, word in enumerate((b"2", b"K", b"LONG"))}
+    return lay(tmp_path / "corpus", **steps, back=RETURN, fine=FINE, junk=bytes(range(256)) * 9)
+
+
+def recover(*arguments: str | Path, grammar: Path = PRELIMINARY) -> int:
+    """Run `krl recover` in this process."""
+    return main(["recover", "--grammar", str(grammar), "--jobs", "1", *map(str, arguments)])
+
+
+def record(folder: Path) -> dict[str, Any]:
+    loaded = json.loads((folder / "survey.json").read_text("utf-8"))
+    assert isinstance(loaded, dict)
+    return loaded
+
+
+def settled(data: dict[str, Any]) -> dict[str, Any]:
+    """A record without what differs from run to run."""
+    return {key: value for key, value in data.items() if key not in ("seconds", "generated")}
+
+
+def tree(root: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(root)): p.read_bytes() for p in root.rglob("*") if p.is_file()}
+
+
+# -------------------------------------------------------------------------------- statuses
+
+
+def test_failures_are_what_a_survey_is_for(corpus: Path, tmp_path: Path) -> None:
+    """A completed survey is fine, whatever it found; `--strict` makes failures findings."""
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    assert 1 == recover(corpus, "--out", tmp_path / "out", "--strict")
+
+
+def test_strict_is_content_where_every_file_parses(tmp_path: Path) -> None:
+    """What is skipped is no finding."""
+    root = lay(tmp_path / "corpus", fine=FINE, junk=b"\0\1\2" * 99)
+    assert 0 == recover(root, "--out", tmp_path / "out", "--strict")
+
+
+#: Command lines that cannot be carried out, by what is wrong with them.
+WRONG = {
+    "a missing place": ["{here}/nowhere"],
+    "one missing place of two": ["{here}/corpus", "{here}/nowhere"],
+    "a folder without KRL": ["{here}/empty"],
+    "a file that is no KRL by its name": ["{here}/notes.txt"],
+    "a truncated archive": ["{here}/cut.zip"],
+    "no corpus to fall back on": [],
+    "a missing grammar": ["{here}/corpus", "--grammar", "{here}/nowhere.g4"],
+    "a grammar that ends too early": ["{here}/corpus", "--grammar", "{here}/cut.g4"],
+    "a grammar that is no text": ["{here}/corpus", "--grammar", "{here}/noise.g4"],
+    "a left-recursive grammar": ["{here}/corpus", "--grammar", "{here}/left.g4"],
+    "a grammar that is a folder": ["{here}/corpus", "--grammar", "{here}/empty"],
+    "missing negatives": ["{here}/corpus", "--negatives", "{here}/nowhere"],
+    "an unknown option": ["{here}/corpus", "--fast"],
+    "no process": ["{here}/corpus", "--jobs", "0"],
+    "no number of processes": ["{here}/corpus", "--jobs", "many"],
+    "a scheduler, which is not built": ["{here}/corpus", "--scheduler", "tcp://localhost:1"],
+    "a file as output folder": ["{here}/corpus", "--out", "{here}/notes.txt"],
+    "a folder as record": ["{here}/corpus", "--json", "{here}/empty"],
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_input_is_one_clear_line(
+    what: str, tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One line on stderr, status 2, nothing on stdout, and nothing written."""
+    lay(tmp_path / "corpus", fine=FINE)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "notes.txt").write_text("no KRL", encoding="utf-8")
+    (tmp_path / "cut.zip").write_bytes(b"PK\x03\x04 and no more")
+    (tmp_path / "cut.g4").write_text("grammar X;\ns : A", encoding="utf-8")
+    (tmp_path / "noise.g4").write_bytes(b"\xff\xfe\x00\x01")
+    (tmp_path / "left.g4").write_text("grammar X;\ns : s A | A ;\nA : 'A' ;\n", encoding="utf-8")
+    before = tree(tmp_path)
+    assert 2 == main(["recover", *(word.format(here=tmp_path) for word in WRONG[what])])
+    said, complaint = capsys.readouterr()
+    assert "" == said
+    assert complaint.startswith("krl")
+    assert 1 == complaint.count("\n")
+    assert complaint.strip().isprintable()
+    assert "defect" not in complaint
+    assert before == tree(tmp_path)
+    assert [] == list(elsewhere.iterdir())
+
+
+def test_bad_files_among_good_ones_are_skipped(corpus: Path, tmp_path: Path) -> None:
+    """Binary junk and a truncated archive cost nothing but themselves, and are named."""
+    (corpus / "cut.zip").write_bytes(b"PK\x03\x04 and no more")
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    data = record(tmp_path / "out")
+    assert 5 == data["files"]
+    assert {"cut.zip", "junk.src"} == {s["path"].split("/")[-1] for s in data["skipped"]}
+    assert all(s["reason"] for s in data["skipped"])
+
+
+# ---------------------------------------------------------------------------- what it writes
+
+
+def test_page_and_record_are_written_to_the_output_folder(corpus: Path, tmp_path: Path) -> None:
+    """The page is one file with its clusters in it, the record is JSON, and neither is a part."""
+    out = tmp_path / "new" / "out"
+    assert 0 == recover(corpus, "--out", out)
+    page = (out / "index.html").read_text("utf-8")
+    data = record(out)
+    assert 2 == len(data["clusters"])
+    assert all(entry["id"] in page for entry in data["clusters"])
+    assert [] == list(out.rglob("*.part"))
+
+
+def test_the_record_says_what_was_surveyed(corpus: Path, tmp_path: Path) -> None:
+    """Counts, causes and the grammar are those of the corpus named."""
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    data = record(tmp_path / "out")
+    assert PRELIMINARY.as_posix() == data["grammar"]
+    assert (5, 1, 1) == (data["files"], data["parsed"], len(data["skipped"]))
+    assert [("FOR … STEP", 3), ("RETURN … INTEGER", 1)] == [
+        (entry["title"], entry["unlocks"]) for entry in data["clusters"]
+    ]
+
+
+def test_json_is_the_record_too(corpus: Path, tmp_path: Path) -> None:
+    """`--json` writes the same record where it is wanted, into folders made for it."""
+    target = tmp_path / "a" / "b" / "record.json"
+    assert 0 == recover(corpus, "--out", tmp_path / "out", "--json", target)
+    assert record(tmp_path / "out") == json.loads(target.read_text("utf-8"))
+    assert ["record.json"] == [p.name for p in target.parent.iterdir()]
+
+
+def test_json_replaces_what_was_there(corpus: Path, tmp_path: Path) -> None:
+    """An older record is replaced whole."""
+    target = tmp_path / "record.json"
+    target.write_text("x" * 100_000, encoding="utf-8")
+    assert 0 == recover(corpus, "--out", tmp_path / "out", "--json", target)
+    assert record(tmp_path / "out") == json.loads(target.read_text("utf-8"))
+
+
+def test_nothing_is_written_but_to_the_output_folder(
+    corpus: Path, tmp_path: Path, elsewhere: Path
+) -> None:
+    """The corpus, the working directory and all around them stay as they were."""
+    before = tree(tmp_path)
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    after = tree(tmp_path)
+    assert before == {name: data for name, data in after.items() if not name.startswith("out")}
+    assert [] == list(elsewhere.iterdir())
+
+
+def test_a_second_survey_of_the_same_is_the_same(corpus: Path, tmp_path: Path) -> None:
+    """What is kept from one survey to the next changes nothing but the time."""
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    first = record(tmp_path / "out")
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    assert settled(first) == settled(record(tmp_path / "out"))
+
+
+def test_a_second_survey_sees_what_has_changed(corpus: Path, tmp_path: Path) -> None:
+    """A file mended since the last survey parses in the next one."""
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    (corpus / "back" / "back.src").write_bytes(FINE)
+    (corpus / "fine" / "fine.src").write_bytes(RETURN)
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    data = record(tmp_path / "out")
+    assert {"fine.src"} == {
+        failure["path"].split("/")[-1]
+        for failure in data["failures"]
+        if failure["rule"] != "forStatement"
+    }
+
+
+# ------------------------------------------------------------------------------- the options
+
+
+def test_jobs_make_no_difference(corpus: Path, tmp_path: Path) -> None:
+    """Two processes find what one finds."""
+    for jobs in ("1", "2"):
+        out = str(tmp_path / jobs)
+        assert 0 == recover(corpus, "--out", out, "--jobs", jobs)
+    assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
+
+
+def test_files_folders_and_archives_can_be_named_together(corpus: Path, tmp_path: Path) -> None:
+    """Each thing named is surveyed, once, in any order."""
+    archive = tmp_path / "cell.zip"
+    with zipfile.ZipFile(archive, "w") as stream:
+        stream.writestr("KRC/R1/Program/a.src", RETURN + b"\n")
+    places = [corpus / "step0", archive, corpus / "back" / "back.src"]
+    assert 0 == recover(*places, "--out", tmp_path / "1")
+    assert 0 == recover(*places[::-1], places[0], "--out", tmp_path / "2")
+    assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
+    assert 3 == record(tmp_path / "1")["files"]
+
+
+def test_another_grammar_finds_something_else(corpus: Path, tmp_path: Path) -> None:
+    """The grammar named is the one that is read under."""
+    wider = tmp_path / "wider.g4"
+    text = PRELIMINARY.read_text("utf-8").replace(": RETURN\n", ": RETURN expression?\n")
+    wider.write_text(text, encoding="utf-8")
+    assert 0 == recover(corpus, "--out", tmp_path / "out", "--grammar", wider)
+    assert ["FOR … STEP"] == [entry["title"] for entry in record(tmp_path / "out")["clusters"]]
+
+
+def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
+    """A proposal that lets in a program of the folder named says so; without one none does."""
+    corpus = lay(tmp_path / "corpus", back=RETURN)
+    folder = tmp_path / "negatives"
+    folder.mkdir()
+    head = b";@ reason: no procedure returns a value\n;@ phase: parse\n"
+    (folder / "returned.src").write_bytes(head + RETURN.replace(b"1", b"7"))
+    accepted = []
+    for options in ([], ["--negatives", str(folder)]):
+        assert 0 == recover(corpus, "--out", tmp_path / "out", *options)
+        (entry,) = record(tmp_path / "out")["clusters"]
+        accepted.append({p["accepts_negatives"] for p in entry["proposals"] if p["restores"]})
+    assert [{0}, {1}] == accepted
+
+
+def test_the_working_directory_makes_no_difference(corpus: Path, tmp_path: Path) -> None:
+    """As a process of its own, from any folder, absolute paths are all it needs."""
+    outs = [tmp_path / "one", tmp_path / "two"]
+    for out, folder in zip(outs, (tmp_path, corpus), strict=True):
+        options = ["--out", str(out), "--jobs", "1", "--grammar", str(PRELIMINARY)]
+        done = subprocess.run(
+            [sys.executable, "-m", "krl", "recover", str(corpus), *options],
+            cwd=folder,
+            capture_output=True,
+            check=False,
+        )
+        assert (0, b"") == (done.returncode, done.stderr)
+    assert settled(record(outs[0])) == settled(record(outs[1]))
+
+
+def test_the_default_grammar_is_found_from_anywhere(corpus: Path, tmp_path: Path) -> None:
+    """Without `--grammar` the grammar in force is read, wherever one stands."""
+    assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    assert "grammar/KRL.g4" == record(tmp_path / "out")["grammar"]
+
+
+def test_the_default_corpus_is_that_of_the_folder(elsewhere: Path) -> None:
+    """Without a path `corpus/` is surveyed, and the page goes below `reports/out`."""
+    lay(elsewhere / "corpus", back=RETURN)
+    assert 0 == recover()
+    (page,) = (elsewhere / "reports" / "out").rglob("index.html")
+    assert 1 == record(page.parent)["files"]
+
+
+# ------------------------------------------------------------------------------ the terminal
+
+
+def test_the_terminal_shows_the_figures_and_the_first_causes(
+    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Files, share that parses, each cluster with its identity, and where the page is."""
+    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    said, complaint = capsys.readouterr()
+    assert "" == complaint
+    assert said.startswith("5 files, ")
+    assert "parsed 1 (20.0 % of files" in said
+    assert "skipped 1" in said
+    assert all(entry["id"] in said for entry in record(tmp_path / "out")["clusters"])
+    assert said.endswith(f"Page: {tmp_path / 'out' / 'index.html'}\n")
+
+
+def test_a_corpus_that_parses_is_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where nothing is missing there is no table."""
+    lay(tmp_path / "corpus", fine=FINE)
+    assert 0 == recover(tmp_path / "corpus", "--out", tmp_path / "out")
+    assert "Nothing is missing" in capsys.readouterr().out
+
+
+HOSTILE = (
+    "\x1b[2J\x1b]0;owned\x07 A = [red]B[/red] 1",
+    "\u009b31m X \u202e Y \u2066 Z",
+    "[/bold] [link=file:///]A[/link] :smile: 3 4",
+    "A=1\x08\x08\x08\x00 9 9",
+)
+
+
+def test_source_cannot_steer_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Escape sequences, bidirectional marks and markup of a program are shown, never obeyed."""
+    texts = {f"p{n}": f"DEF A()\n{line}\nEND\n".encode() for n, line in enumerate(HOSTILE)}
+    lay(tmp_path / "corpus", **texts)
+    assert 0 == recover(tmp_path / "corpus", "--out", tmp_path / "out")
+    said, complaint = capsys.readouterr()
+    assert "" == complaint
+    assert [] == [line for line in said.splitlines() if not line.isprintable()]
+    assert len(record(tmp_path / "out")["failures"]) >= 3
+
+
+@posix_only
+def test_names_cannot_steer_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file may be called anything; what is said of it stays on its line."""
+    root = tmp_path / "corpus"
+    root.mkdir()
+    for name in ("a\x1b[31m.src", "b\nc.src", "d\u202e.src", "[-e].src"):
+        (root / name).write_bytes(RETURN)
+    (root / "f\x1b]0;x\x07.src").write_bytes(b"\0" * 99)
+    assert 0 == recover(root, "--out", tmp_path / "out")
+    said, complaint = capsys.readouterr()
+    assert [] == [line for line in (said + complaint).splitlines() if not line.isprintable()]
+    data = record(tmp_path / "out")
+    paths = [data["failures"][0]["path"], *(c["path"] for c in data["copies"])]
+    assert 4 == len(paths)
+    assert all(path.isprintable() for path in paths + [s["path"] for s in data["skipped"]])
+
+
+def test_an_output_folder_may_be_called_anything(
+    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Brackets and colons in a name are no markup."""
+    out = tmp_path / "[bold]out[-b] :smile:"
+    if os.name == "nt":
+        out = tmp_path / "[bold]out[-b]"
+    assert 0 == recover(corpus, "--out", out)
+    assert f"Page: {out / 'index.html'}" in capsys.readouterr().out
+
+
+@posix_only
+def test_a_missing_place_cannot_steer_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    """What is complained about is quoted, never obeyed."""
+    assert 2 == recover("no\x1b[2Jwhere\nat all.src")
+    complaint = capsys.readouterr().err
+    assert 1 == complaint.count("\n")
+    assert complaint.strip().isprintable()
