@@ -61,8 +61,8 @@ Configuration = tuple[int, Stack]
 #: A state without the automaton that holds it: each configuration as its position and the frames
 #: below it from the top down, sorted. Means the same in every recogniser of the same grammar.
 Frames = tuple[tuple[int, ...], ...]
-#: Frames below a core, the next one first: ``(position, rest)`` or ``()``.
-Tail = tuple[int, "Tail"] | tuple[()]
+#: Frames below a core, the next one on top.
+Tail = Stack
 
 
 class Core(dict[int, "Core"]):
@@ -102,7 +102,10 @@ class Recognizer:
         self.line_kind = self.lexer.kind_of.get("NEWLINE", -99)
         self._bottom = Stack(-1, None)
         self._cores: dict[frozenset[Configuration], Core] = {}
-        self.start = State(self._core(frozenset([(self.network.start, self._bottom)])), ())
+        self._no_tail = Stack(-1, None)
+        self.start = State(
+            self._core(frozenset([(self.network.start, self._bottom)])), self._no_tail
+        )
 
     # ------------------------------------------------------------------------ reading
 
@@ -147,17 +150,13 @@ class Recognizer:
 
     def frames(self, state: State) -> Frames:
         """The state as data: see `Frames`."""
-        below: list[int] = []
-        tail = state.tail
-        while tail:
-            below.append(tail[0])
-            tail = tail[1]
+        below = state.tail.positions()
         return tuple(sorted((p, *stack.positions(), *below) for p, stack in state.core.kernel))
 
     def restore(self, frames: Frames) -> State:
         """The state that `frames` describes, in a recogniser of the same grammar."""
         kernel = frozenset((p, self._restack(below, self._bottom)) for p, *below in frames)
-        return State(self._core(kernel), ())
+        return State(self._core(kernel), self._no_tail)
 
     def sites(self, state: State) -> frozenset[Configuration]:
         """Every configuration the state stands for, calls and returns followed."""
@@ -171,7 +170,8 @@ class Recognizer:
 
     def at_rule(self, rule: str) -> State:
         """The state at the start of a rule, nothing around it."""
-        return State(self._core(frozenset([(self.network.entry[rule], self._bottom)])), ())
+        kernel = frozenset([(self.network.entry[rule], self._bottom)])
+        return State(self._core(kernel), self._no_tail)
 
     def ends(self, state: State) -> bool:
         """Whether what was read from ``state`` on can end there, nothing more being needed."""
@@ -204,13 +204,13 @@ class Recognizer:
             pushed = core.pushes[kind] = (following, frames)
         following, frames = pushed
         for frame in frames:
-            tail = (frame, tail)
+            tail = tail.push(frame)
         return following, tail
 
     def _settled(self, core: Core, tail: Tail) -> tuple[Core, Tail]:
         """The same state with as many frames taken back as reading on needs."""
-        while core.is_open and tail:
-            frame, tail = tail
+        while core.is_open and tail.rest is not None:
+            frame, tail = tail.position, tail.rest
             absorbed = core.absorbed.get(frame)
             if absorbed is None:
                 absorbed = core.absorbed[frame] = self._core(self._on_frame(core, frame))

@@ -254,7 +254,8 @@ class CandidateFinder:
                     yield self._alternative(element.name, symbols, words)
         leading = place[-1] == 1 and self._is_keyword(element)
         closing = place[-1] == len(elements) and self._is_keyword(element)
-        if whole or ((leading or closing) and len(words) > 1):
+        word = len(words) == 1 and (words[0][1] or self.recognizer.lexer.is_keyword(words[0][0]))
+        if whole or ((leading or closing) and not word):
             return  # the same as an alternative; the words that begin and close a line or a block
         for symbols in self.phraser.phrases(words, self._near(rule)):
             rank = self._width(rule) + self.phraser.breadth(symbols) + (22 if leading else 10)

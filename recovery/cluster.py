@@ -174,7 +174,12 @@ def _assembled(
 
 
 def _heaviest(cause: Cause, groups: _Lines) -> int:
-    return max(cause.lines, key=lambda n: (groups.weights[n], -len(groups.lines[n].form.kinds), -n))
+    """The line that stands for a cause: the heaviest of those that its best proposal mends."""
+    mended = cause.proposals[0].mended & set(cause.lines) if cause.proposals else ()
+    return max(
+        mended or cause.lines,
+        key=lambda n: (groups.weights[n], -len(groups.lines[n].form.kinds), -n),
+    )
 
 
 def _cluster(

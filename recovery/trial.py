@@ -63,11 +63,21 @@ class Trial:
         for number, line in enumerate(lines):
             before = line.form.before
             if before not in self._prefix:
-                self._prefix[before] = min(map(paths.prefix, before), key=len)
+                self._prefix[before] = self._way_to(paths, before)
             for rule in self._rules_at_work(line):
                 self._by_rule[rule].append(number)
             for _, keyword in line.keywords:
                 self._by_keyword[keyword].add(number)
+
+    def _way_to(self, paths: Paths, before: Frames) -> list[int]:
+        """The shortest tokens after which a line can begin in this state, its line end included."""
+        prefix = min(map(paths.prefix, before), key=len)
+        line_kind = self.recognizer.line_kind
+        if prefix and prefix[-1] != line_kind:
+            ended = [*prefix, line_kind]
+            if self.recognizer.run(self.recognizer.start, ended)[1] is None:
+                return ended
+        return prefix
 
     def _rules_at_work(self, line: Line) -> set[str]:
         """Rules in which an edit could change how this line is read."""
