@@ -1,5 +1,6 @@
 """What a survey says in the terminal: figures, what holds back most, where the page is."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ __all__ = ["print_survey"]
 
 _ROWS = 15
 _WORDS = 12
+_SKIPPED = 5
 
 
 def print_survey(record: Mapping[str, Any], page: Path) -> None:
@@ -24,8 +26,13 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
     console.print(
         f"{files:,} files, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
         f"({_share(parsed, files)} of files, {_share(record['parsed_bytes'], record['bytes'])} "
-        f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s"
+        f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s",
+        soft_wrap=True,
     )
+    for skipped in record["skipped"][:_SKIPPED]:
+        console.print(
+            f"skipped {one_line(skipped['path'])}: {one_line(skipped['reason'])}", markup=False
+        )
     clusters = record["clusters"]
     if clusters:
         console.print(_table(clusters[:_ROWS]))
@@ -43,7 +50,8 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
 
 
 def _share(part: float, whole: float) -> str:
-    return f"{100 * part / whole:.1f} %" if whole else "–"
+    """Per cent, rounded down: all but one is not yet all."""
+    return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
 
 def _table(clusters: list[Mapping[str, Any]]) -> Table:

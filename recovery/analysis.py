@@ -7,6 +7,7 @@ same code, the record is taken from there.
 from __future__ import annotations
 
 import hashlib
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -54,9 +55,11 @@ def _worked_out(
     on_found: Progress,
     on_done: Progress,
 ) -> dict[str, Any]:
+    began = time.perf_counter()
     judge = judge_of(found.grammar, negatives) if negatives else no_judge
     clusters = cluster(found, judge=judge, on_found=on_found, on_done=on_done)
-    return record_of(found, clusters, grammar_name=grammar_name)
+    record = record_of(found, clusters, grammar_name=grammar_name)
+    return {**record, "analysis_seconds": round(time.perf_counter() - began, 3)}
 
 
 def _digest(found: Survey, negatives: Sequence[Negative], grammar_name: str) -> str:

@@ -158,7 +158,7 @@ def _examples(cluster: Cluster) -> list[Member]:
     first = cluster.example
     by_file: dict[str, Member] = {}
     for member in sorted(cluster.members, key=lambda m: (m.failed.follows, len(m.failed.source))):
-        if member is not first:
+        if member != first:
             by_file.setdefault(member.file.digest, member)
     return list(by_file.values())[:_EXAMPLES]
 

@@ -139,19 +139,21 @@ def mutation(
         "held_out": len(material.held_out),
         **record,
     }
+    kinds = record["by_kind"]
     if json_file is not None:
         _write(record, json_file)
-    Console(highlight=False).print(_mutation_table(record))
+    console = Console(highlight=False)
+    console.print(
+        _table(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
+    )
+    shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
+    rows = [(kind, *(_plain(figures[n]) for n in shown)) for kind, figures in kinds.items()]
+    console.print(_table(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
     return FINE
 
 
-def _mutation_table(record: Mapping[str, Any]) -> Table:
-    kinds = record["by_kind"]
-    rows = []
-    for name, aim in _AIMS:
-        values = [record[name], *(figures[name] for figures in kinds.values())]
-        rows.append((name, aim, *("–" if v is None else f"{v:g}" for v in values)))
-    return _table(("figure", "aim", "all", *kinds), rows)
+def _plain(value: float | None) -> str:
+    return "–" if value is None else f"{value:g}"
 
 
 def _sizes(given: str) -> list[float]:
