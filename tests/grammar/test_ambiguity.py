@@ -116,53 +116,53 @@ class Derivations:
     def __init__(self, grammar: Grammar, tokens: Sequence[str]) -> None:
         self.grammar = grammar
         self.tokens = tokens
-        self.known: dict[tuple[str, int], frozenset[tuple[Tree, int]]] = {}
+        self._known: dict[tuple[str, int], frozenset[tuple[Tree, int]]] = {}
 
     def __iter__(self) -> Iterator[Tree]:
-        whole = self.of_rule(self.grammar.start, 0)
+        whole = self._of_rule(self.grammar.start, 0)
         return (tree for tree, end in whole if end == len(self.tokens))
 
-    def of_rule(self, name: str, at: int) -> frozenset[tuple[Tree, int]]:
-        if (name, at) not in self.known:
+    def _of_rule(self, name: str, at: int) -> frozenset[tuple[Tree, int]]:
+        if (name, at) not in self._known:
             alternatives = self.grammar.by_name[name].alternatives
-            found = (t for a in alternatives for t in self.of_sequence(a.elements, at))
-            self.known[name, at] = frozenset(islice(found, 4_000))
-        return self.known[name, at]
+            found = (t for a in alternatives for t in self._of_sequence(a.elements, at))
+            self._known[name, at] = frozenset(islice(found, 4_000))
+        return self._known[name, at]
 
-    def of_sequence(self, elements: Sequence[Element], at: int) -> Iterator[tuple[Tree, int]]:
+    def _of_sequence(self, elements: Sequence[Element], at: int) -> Iterator[tuple[Tree, int]]:
         if not elements:
             yield (), at
             return
-        for first, middle in self.of(elements[0], at):
-            for rest, end in self.of_sequence(elements[1:], middle):
+        for first, middle in self._of(elements[0], at):
+            for rest, end in self._of_sequence(elements[1:], middle):
                 yield (*first, *rest), end
 
-    def of(self, element: Element, at: int) -> Iterator[tuple[Tree, int]]:
+    def _of(self, element: Element, at: int) -> Iterator[tuple[Tree, int]]:
         match element:
             case Group(alternatives=alternatives):
                 for alternative in alternatives:
-                    yield from self.of_sequence(alternative.elements, at)
+                    yield from self._of_sequence(alternative.elements, at)
             case Repeat(item=item, operator=operator):
                 if operator != "+":
                     yield (), at
-                yield from self.of(item, at) if operator == "?" else self.rounds(item, at, 2)
+                yield from self._of(item, at) if operator == "?" else self._rounds(item, at, 2)
             case Literal() | Reference():
-                yield from self.of_symbol(self.grammar.token_of(element), at)
+                yield from self._of_symbol(self.grammar.token_of(element), at)
             case _:
                 raise AssertionError(element)
 
-    def rounds(self, item: Element, at: int, idle: int) -> Iterator[tuple[Tree, int]]:
-        for first, middle in self.of(item, at):
+    def _rounds(self, item: Element, at: int, idle: int) -> Iterator[tuple[Tree, int]]:
+        for first, middle in self._of(item, at):
             left = 2 if middle != at else idle - 1
             if left >= 0:
                 yield first, middle
-                for rest, end in self.rounds(item, middle, left):
+                for rest, end in self._rounds(item, middle, left):
                     yield (*first, *rest), end
 
-    def of_symbol(self, name: str, at: int) -> Iterator[tuple[Tree, int]]:
+    def _of_symbol(self, name: str, at: int) -> Iterator[tuple[Tree, int]]:
         rule = self.grammar.by_name.get(name)
         if rule is not None and not rule.is_lexer:
-            for tree, end in self.of_rule(name, at):
+            for tree, end in self._of_rule(name, at):
                 yield ((name, tree),), end
         elif at < len(self.tokens) and self.tokens[at] == name:
             yield (name,), at + 1

@@ -58,7 +58,7 @@ def record(folder: Path) -> dict[str, Any]:
 
 def settled(data: dict[str, Any]) -> dict[str, Any]:
     """A record without what differs from run to run."""
-    return {key: value for key, value in data.items() if key not in ("seconds", "generated")}
+    return {k: v for k, v in data.items() if "seconds" not in k and k != "generated"}
 
 
 def tree(root: Path) -> dict[str, bytes]:

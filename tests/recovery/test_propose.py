@@ -82,6 +82,7 @@ class Reviewed:
         self.records = [(c, self.reviewer.records(c)) for c in self.clusters.ranked]
 
     def proposals(self) -> list[dict[str, Any]]:
+        """What is told of all proposals, cluster by cluster."""
         return [record for _, records in self.records for record in records]
 
     def parsing(self, grammar: Grammar) -> set[str]:
@@ -96,6 +97,7 @@ class Reviewed:
         return record
 
     def named(self, title: str) -> Cluster:
+        """The cluster whose title has these words."""
         return next(c for c in self.clusters.ranked if title in c.title)
 
 
