@@ -127,14 +127,14 @@ class _Search:
 
     def best_for(self, group: Sequence[int]) -> Cause | None:
         """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
-        proposals = self._proposals(group)
-        if not proposals:
-            return None
-        best = proposals[0]
         members = set(group)
-        # what an edit lets be read further has its first cause here, and others behind it
-        taken = (best.mended & self.open) | (best.advanced & members)
-        return Cause(tuple(sorted(taken)), tuple(proposals))
+        proposals = self._proposals(group)
+        for place, best in enumerate(proposals):
+            # what an edit lets be read further has its first cause here, and others behind it
+            taken = (best.mended & self.open) | (best.advanced & members)
+            if taken:
+                return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
+        return None
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
