@@ -16,11 +16,14 @@ Lines that can only be read because of guess 3, and the closers of openers that 
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, islice
 
-from grammar.lexer import EOF
+from grammar.lexer import SKIPPED, Lexer
+from grammar.linewise import LineReader, Spot
 from grammar.recognizer import Core, Frames, Recognizer, State, Tail
 from grammar.sentences import Sentences
 
@@ -47,6 +50,7 @@ _LONGEST_GAP = 64
 # How many lines that say something decide where reading goes on.
 _LINES_AHEAD = 4
 _MOST_REMEMBERED = 50_000
+_LINE_END = re.compile(r"\r\n|\r|\n")
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +108,7 @@ class _Broken:
 
     form: Form
     state: State
-    mended: State | None  # guess 1
+    mended: Spot | None  # guess 1
 
 
 class Anchors:
@@ -132,9 +136,16 @@ class FailureFinder:
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
-        self._broken: dict[tuple[Core, Tail, tuple[int, ...]], _Broken] = {}
+        self._reader = LineReader(recognizer)
         self._contexts: dict[tuple[Core, Tail], Context] = {}
-        self._framed: dict[tuple[Core, Tail], Frames] = {}
+        self._forget()
+
+    def _forget(self) -> None:
+        self._reader.forget()
+        self._framed: dict[Spot, Frames] = {}
+        self._broken: dict[tuple[Spot, int], _Broken] = {}
+        self._elsewhere: dict[int, Spot | None] = {}
+        self._resumed: dict[tuple[object, ...], Spot] = {}
 
     @cached_property
     def _anchors(self) -> Anchors:
@@ -142,11 +153,16 @@ class FailureFinder:
 
     def find(self, text: str) -> list[Failure]:
         """Failures in the order of the file; empty where the text is a program."""
-        kinds = self.recognizer.kinds(text)
-        _, index = self.recognizer.run(self.recognizer.start, kinds)
-        if index is None:
+        lexer = self.recognizer.lexer
+        lexemes = lexer.lexemes(text)
+        kinds = self.recognizer.kinds_of(lexemes)
+        if self.recognizer.run(self.recognizer.start, kinds)[1] is None:
             return []
-        return list(self._failures(text, kinds, index))
+        if not lexer.leaves_out_skipped:
+            lexemes = [lexeme for lexeme in lexemes if lexer.kinds[lexeme] != SKIPPED]
+        if len(self._reader) > _MOST_REMEMBERED:
+            self._forget()
+        return list(self._failures(text, lexemes, kinds))
 
     def context(self, state: State) -> Context:
         """Rule, rule stack and expected set in the state before an offending token."""
@@ -158,107 +174,100 @@ class FailureFinder:
 
     # ------------------------------------------------------------------------ reading on
 
-    def _failures(self, text: str, kinds: list[int], first: int) -> Iterator[Failure]:
-        lexer = self.recognizer.lexer
-        lexemes, offsets = lexer.lexemes(text), list(lexer.offsets(text))
-        if len(lexemes) >= len(kinds):  # what is skipped came as lexemes too
-            kept = [i for i, lexeme in enumerate(lexemes) if lexer.kinds[lexeme] != -1]
-            lexemes, offsets = [lexemes[i] for i in kept], [offsets[i] for i in kept]
-        place = _Places(text, offsets)
-        lines = list(_lines(kinds, self.recognizer.line_kind))
-        current = next(i for i, (start, end) in enumerate(lines) if start <= first < end)
-        state, _ = self.recognizer.run(self.recognizer.start, kinds[: lines[current][0]])
+    def _failures(self, text: str, lexemes: list[str], kinds: list[int]) -> Iterator[Failure]:
+        reader = self._reader
+        lines = reader.numbers(kinds)
+        starts = [0, *accumulate(len(reader.kinds[line]) for line in lines)]
+        ends = kinds.count(self.recognizer.line_kind)
+        place = _Places(text, self.recognizer.lexer, starts, ends)
+        spot = reader.spot(self.recognizer.start)
         opened: list[frozenset[str]] = []  # what closes the blocks that were dropped
         lost = False  # whether some dropped line may have changed the place we are at
-        for number in range(current, len(lines)):
-            start, end = lines[number]
-            line = tuple(kinds[start:end])
-            after, index = self.recognizer.run(state, line)
-            if index is None:
-                state = after
+        for number, line in enumerate(lines):
+            after = reader.after(spot, line)
+            if after is not None:
+                spot = after
                 continue
-            broken = self._break(state, line)
-            lead = _lead(lexemes[start:end])
+            broken = self._break(spot, line)
+            written = tuple(lexemes[starts[number] : starts[number + 1]])
+            lead = _lead(written)
             anchor = self._anchor(line) if lost or opened else None
             closes = next((b for b in reversed(opened) if lead in b), None)
-            follows = closes is not None or anchor is not None or (line == (EOF,) and lost)
+            is_end = number == len(lines) - 1
             yield Failure(
-                *place(start + broken.form.index),
-                lexemes=tuple(lexemes[start:end]),
+                *place(number, broken.form.index),
+                lexemes=written,
                 form=broken.form,
                 state=broken.state,
-                follows=follows,
+                follows=closes is not None or anchor is not None or (is_end and lost),
             )
             if closes is not None and (lead.startswith("END") or lead == "UNTIL"):
                 opened.remove(closes)
             elif closes is None and lead in BLOCKS and broken.mended is None:
                 opened.append(BLOCKS[lead])
                 lost = True
-            guesses = [broken.mended, state] if anchor is None else [anchor]
-            state = self._resume(guesses, kinds, lines[number + 1 :], lost=lost)
+            guesses = (broken.mended, spot) if anchor is None else (anchor,)
+            ahead = lines[number + 1 : number + 1 + _LINES_AHEAD * 4]
+            spot = self._resume(guesses, ahead, lost=lost)
 
-    def _break(self, before: State, line: tuple[int, ...]) -> _Broken:
-        key = (before.core, before.tail, line)
-        found = self._broken.get(key)
+    def _break(self, spot: Spot, line: int) -> _Broken:
+        found = self._broken.get((spot, line))
         if found is None:
-            if len(self._broken) >= _MOST_REMEMBERED:
-                self._broken.clear()
-            state, index = self.recognizer.run(before, line)
+            kinds = self._reader.kinds[line]
+            state, index = self.recognizer.run(spot.state, kinds)
             assert index is not None
             mended = None
             # something of the line has to stay: an empty line can be read nearly anywhere
-            widest = len(line) - index if index else len(line) - 2
+            widest = len(kinds) - index if index else len(kinds) - 2
             for gap in range(1, min(widest, _LONGEST_GAP + 1)):
-                after, failed = self.recognizer.run(state, line[index + gap :])
+                after, failed = self.recognizer.run(state, kinds[index + gap :])
                 if failed is None:
-                    mended = after
+                    mended = self._reader.spot(after)
                     break
-            form = Form(self._frames(before), line, index)
-            found = self._broken[key] = _Broken(form, state, mended)
+            if spot not in self._framed:
+                self._framed[spot] = self.recognizer.frames(spot.state)
+            form = Form(self._framed[spot], kinds, index)
+            found = self._broken[spot, line] = _Broken(form, state, mended)
         return found
 
-    def _frames(self, state: State) -> Frames:
-        key = (state.core, state.tail)
-        found = self._framed.get(key)
-        if found is None:
-            found = self._framed[key] = self.recognizer.frames(state)
-        return found
-
-    def _anchor(self, line: tuple[int, ...]) -> State | None:
+    def _anchor(self, line: int) -> Spot | None:
         """Where else this very line could be read."""
-        for anchor in self._anchors.states:
-            after, index = self.recognizer.run(anchor, line)
-            if index is None:
-                return after
-        return None
+        try:
+            return self._elsewhere[line]
+        except KeyError:
+            spots = map(self._reader.spot, self._anchors.states)
+            reached = (self._reader.after(spot, line) for spot in spots)
+            found = next((spot for spot in reached if spot is not None), None)
+            self._elsewhere[line] = found
+            return found
 
-    def _resume(
-        self,
-        guesses: Sequence[State | None],
-        kinds: list[int],
-        following: list[tuple[int, int]],
-        *,
-        lost: bool,
-    ) -> State:
+    def _resume(self, guesses: Sequence[Spot | None], ahead: list[int], *, lost: bool) -> Spot:
         """The guess under which most of the next lines can be read, the first of equals."""
+        key = (lost, *guesses, *ahead)
+        found = self._resumed.get(key)
+        if found is None:
+            found = self._resumed[key] = self._best(guesses, ahead, lost=lost)
+        return found
+
+    def _best(self, guesses: Sequence[Spot | None], ahead: list[int], *, lost: bool) -> Spot:
         known = [g for g in guesses if g is not None]
-        lines = [kinds[s:e] for s, e in following[: _LINES_AHEAD * 4]]
-        lines = [line for line in lines if line[0] != self.recognizer.line_kind][:_LINES_AHEAD]
+        kinds, blank = self._reader.kinds, self.recognizer.line_kind
+        lines = [line for line in ahead if kinds[line][0] != blank][:_LINES_AHEAD]
         if lost:
             known.reverse()
         if (len(known) == 1 and not lost) or self._readable(known[0], lines[:1]):
             return known[0]
         if lost:
-            known += self._anchors.states
-        return max(known, key=lambda state: self._readable(state, lines))
+            known += map(self._reader.spot, self._anchors.states)
+        return max(known, key=lambda spot: self._readable(spot, lines))
 
-    def _readable(self, state: State, lines: list[list[int]]) -> int:
-        """How many of the lines can be read from ``state``, those that cannot left out."""
+    def _readable(self, spot: Spot, lines: list[int]) -> int:
+        """How many of the lines can be read from ``spot``, those that cannot left out."""
         count = 0
         for line in lines:
-            after, index = self.recognizer.run(state, line)
-            if index is None:
-                state = after
+            after = self._reader.after(spot, line)
+            if after is not None:
+                spot = after
                 count += 1
         return count
 
@@ -282,19 +291,6 @@ class FailureFinder:
         return Context(rules[-1], rules, expected)
 
 
-def _lines(kinds: list[int], line_kind: int) -> Iterator[tuple[int, int]]:
-    """Start and end of each line in ``kinds``; the end of file is a line of its own."""
-    start, last = 0, len(kinds) - 1
-    while start < last:
-        try:
-            end = kinds.index(line_kind, start, last) + 1
-        except ValueError:
-            end = last
-        yield start, end
-        start = end
-    yield last, last + 1
-
-
 def _lead(lexemes: Sequence[str]) -> str:
     """The word that says what a line is, in upper case."""
     words = [w.upper() for w in lexemes[:2]]
@@ -304,19 +300,31 @@ def _lead(lexemes: Sequence[str]) -> str:
 
 
 class _Places:
-    """Line and column by token index; asked in ascending order."""
+    """Line, column and offset of a token, given by the number of its line and its index in it.
 
-    def __init__(self, text: str, offsets: list[int]) -> None:
-        self._end = len(text)
-        self._offsets = offsets
-        self._line = 1
-        self._start = 0  # offset of the current line
-        self._starts = (found.end() for found in re.finditer(r"\r\n|\r|\n", text))
-        self._next = next(self._starts, self._end + 1)
+    ``starts`` are the indices of the first token of each line and of what follows the last, and
+    ``ends`` is how many tokens are line ends. Only failing tokens are asked for: their offsets are
+    worked out from where their line begins in the text.
+    """
 
-    def __call__(self, index: int) -> tuple[int, int, int]:
-        offset = self._offsets[index] if index < len(self._offsets) else self._end
-        while self._next <= offset:
-            self._line += 1
-            self._start, self._next = self._next, next(self._starts, self._end + 1)
-        return self._line, offset - self._start + 1, offset
+    def __init__(self, text: str, lexer: Lexer, starts: Sequence[int], ends: int) -> None:
+        self._text = text
+        self._lexer = lexer
+        self._starts = starts
+        self._lines = [0, *(found.end() for found in _LINE_END.finditer(text))]
+        # where tokens hold line ends, or line ends are no tokens, all offsets have to be known
+        self._offsets: list[int] | None = None
+        if ends != len(self._lines) - 1 or not lexer.leaves_out_skipped:
+            self._offsets = lexer.offsets_of_tokens(text)
+
+    def __call__(self, number: int, index: int) -> tuple[int, int, int]:
+        offset = self._offset(number, index)
+        line = bisect_right(self._lines, offset)
+        return line, offset - self._lines[line - 1] + 1, offset
+
+    def _offset(self, number: int, index: int) -> int:
+        if number == len(self._starts) - 2:  # the end of the file
+            return len(self._text)
+        if self._offsets is not None:
+            return self._offsets[self._starts[number] + index]
+        return next(islice(self._lexer.offsets(self._text, self._lines[number]), index, None))

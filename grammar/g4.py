@@ -6,7 +6,7 @@ The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, import
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -95,6 +95,7 @@ def read_file(path: Path) -> Grammar:
     return read(text, source=str(path))
 
 
+@lru_cache(maxsize=1 << 14)
 def read_rule(text: str) -> Rule:
     """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
     return _rule(_parse(text, "rule", "rule"), text, 0, "rule")

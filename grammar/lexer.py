@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
+from itertools import takewhile
 
 from grammar.chars import automaton_of, both_cases, class_of, first_characters, overlap, pattern_of
 from grammar.model import (
@@ -114,6 +115,7 @@ class Lexer:
             if r.name not in names_of_literals or not tokens.fullmatch(_only_literal(r))
         ]
         self._automaton = automaton_of(grammar, cutting)
+        self._leaves_out_skipped = not any(r.is_skipped for r in rules)
         self._pattern = self._pattern_for(grammar, cutting)
 
     def _ranked(self, rule: Rule) -> _Ranked:
@@ -129,6 +131,7 @@ class Lexer:
             if not overlap(first_characters(skip), first_characters(token)):
                 skip_pattern, token_pattern = pattern_of(skip), pattern_of(token)
                 if skip_pattern and token_pattern:
+                    self._leaves_out_skipped = True
                     return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
         everything = pattern_of(self._automaton)
         return re.compile(f"({everything}|[\\s\\S])") if everything else None
@@ -158,21 +161,34 @@ class Lexer:
         """Whether the token is one word that the grammar reserves."""
         return kind in self._keywords
 
+    @property
+    def leaves_out_skipped(self) -> bool:
+        """Whether `lexemes` has tokens only."""
+        return self._leaves_out_skipped
+
     def lexemes(self, text: str) -> list[str]:
-        """The texts of the tokens in order; skipped ones may be among them, and empty ones."""
+        """The texts of the tokens in order; skipped ones may be among them."""
         if self._pattern is None:
             return [text[start:end] for start, end in self._spans(text)]
-        return self._pattern.findall(text)
+        found: list[str] = self._pattern.findall(text)
+        while found and not found[-1]:  # what is skipped at the end leads to no token
+            found.pop()
+        return found
 
-    def offsets(self, text: str) -> Iterator[int]:
-        """Where each of the `lexemes` begins in ``text``."""
+    def offsets(self, text: str, start: int = 0) -> Iterator[int]:
+        """Where each of the `lexemes` from ``start`` on begins in ``text``."""
         if self._pattern is None:
-            return (start for start, _ in self._spans(text))
-        return (found.start(1) for found in self._pattern.finditer(text))
+            return (begin for begin, _ in self._spans(text, start))
+        begins = (found.start(1) for found in self._pattern.finditer(text, start))
+        return takewhile(len(text).__gt__, begins)
 
-    def _spans(self, text: str) -> Iterator[tuple[int, int]]:
+    def offsets_of_tokens(self, text: str) -> list[int]:
+        """Where each token begins in ``text``."""
+        pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
+        return [offset for lexeme, offset in pairs if self.kinds[lexeme] != SKIPPED]
+
+    def _spans(self, text: str, start: int = 0) -> Iterator[tuple[int, int]]:
         """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
-        start = 0
         while start < len(text):
             end = max(self._automaton.longest(text, start), start + 1)
             yield start, end

@@ -8,8 +8,9 @@ that a candidate edit costs one rule.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from grammar.lexer import Lexer, lexer_of
 from grammar.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
@@ -33,6 +34,22 @@ class RuleAutomaton:
 
 
 @dataclass(frozen=True, slots=True)
+class Reach:
+    """What can be done from a position before its rule ends, calls followed.
+
+    ``moves`` maps each token kind that may come to the ways it can be read: the position after it,
+    and the positions to return to, the outermost first. ``sites`` are the positions reached without
+    reading, in the same form. ``ends`` says whether the rule may end without reading, and ``rules``
+    names the rules that have a part in all this.
+    """
+
+    moves: Mapping[int, Sequence[tuple[int, tuple[int, ...]]]]
+    sites: Sequence[tuple[int, tuple[int, ...]]]
+    ends: bool
+    rules: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
 class Network:
     """The whole grammar, positions numbered across rules.
 
@@ -49,6 +66,34 @@ class Network:
     rule: tuple[str, ...]
     entry: Mapping[str, int]
     start: int
+    known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
+
+    def reach(self, position: int) -> Reach:
+        """What can be done from a position. A grammar with left recursion has no answer."""
+        found = self.known.get(position)
+        return found or self._reach(position)
+
+    def _reach(self, position: int) -> Reach:
+        moves: dict[int, list[tuple[int, tuple[int, ...]]]] = defaultdict(list)
+        sites: list[tuple[int, tuple[int, ...]]] = []
+        rules = {self.rule[position]}
+        ends = False
+        todo = [position]
+        for here in todo:  # grows while it is walked
+            sites.append((here, ()))
+            ends = ends or self.final[here]
+            for kind, target in self.shifts[here].items():
+                moves[kind].append((target, ()))
+            for entry, back in self.calls[here]:
+                called = self.reach(entry)
+                rules |= called.rules
+                sites += [(site, (back, *returns)) for site, returns in called.sites]
+                for kind, ways in called.moves.items():
+                    moves[kind] += [(target, (back, *returns)) for target, returns in ways]
+                if called.ends and back not in todo:
+                    todo.append(back)
+        found = self.known[position] = Reach(dict(moves), sites, ends, frozenset(rules))
+        return found
 
 
 def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
@@ -111,6 +156,7 @@ def with_rule(network: Network, grammar: Grammar, rule: Rule, lexer: Lexer) -> N
         final=tuple(final),
         rule=(*network.rule, *(rule.name for _ in range(added))),
         automata={**network.automata, rule.name: automaton},
+        known={p: r for p, r in network.known.items() if rule.name not in r.rules},
     )
 
 

@@ -15,13 +15,13 @@ it takes frames back from the tail before it reads on.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import length_hint
 
 from grammar.lexer import EOF, SKIPPED
 from grammar.model import Grammar
-from grammar.network import Network, network_of
+from grammar.network import Network, Reach, network_of
 
 __all__ = ["Configuration", "Core", "Frames", "Recognizer", "State", "Tail"]
 
@@ -71,10 +71,10 @@ class Core(dict[int, "Core"]):
     Only steps that leave the tail alone are entries, so the plain look-up is always right.
     """
 
-    __slots__ = ("absorbed", "floor", "is_open", "kernel", "moves", "pushes")
+    __slots__ = ("absorbed", "floor", "is_open", "kernel", "pushes", "ways")
 
     kernel: frozenset[Configuration]
-    moves: dict[int, list[Configuration]]
+    ways: list[tuple[Reach, Stack]]
     is_open: bool
     floor: int
     absorbed: dict[int, Core]
@@ -111,7 +111,11 @@ class Recognizer:
 
     def kinds(self, text: str) -> list[int]:
         """Token kinds of a text, end of file included, skipped tokens left out."""
-        kinds = list(map(self.lexer.kinds.__getitem__, self.lexer.lexemes(text)))
+        return self.kinds_of(self.lexer.lexemes(text))
+
+    def kinds_of(self, lexemes: Iterable[str]) -> list[int]:
+        """Token kinds of `Lexer.lexemes`, end of file included, skipped tokens left out."""
+        kinds = list(map(self.lexer.kinds.__getitem__, lexemes))
         if SKIPPED in kinds:
             kinds = [kind for kind in kinds if kind != SKIPPED]
         kinds.append(EOF)
@@ -146,7 +150,8 @@ class Recognizer:
 
     def expected(self, state: State) -> frozenset[int]:
         """Every token kind that some program has next."""
-        return frozenset(self._settled(state.core, state.tail)[0].moves)
+        core = self._settled(state.core, state.tail)[0]
+        return frozenset(kind for reach, _ in core.ways for kind in reach.moves)
 
     def frames(self, state: State) -> Frames:
         """The state as data: see `Frames`."""
@@ -161,7 +166,7 @@ class Recognizer:
     def sites(self, state: State) -> frozenset[Configuration]:
         """Every configuration the state stands for, calls and returns followed."""
         core = self._settled(state.core, state.tail)[0]
-        return frozenset(self._close(core))
+        return frozenset(self._sites(core))
 
     def at(self, configuration: Configuration, state: State) -> State:
         """A state of one configuration, over the frames that lie below ``state`` when settled."""
@@ -191,10 +196,10 @@ class Recognizer:
             return known, tail
         pushed = core.pushes.get(kind)
         if pushed is None:
-            targets = core.moves.get(kind)
-            if targets is None:
+            targets = frozenset(self._targets(core, kind))
+            if not targets:
                 return None
-            following = self._core(frozenset(targets))
+            following = self._core(targets)
             frames: tuple[int, ...] = ()
             if kind == self.line_kind or any(s.depth > _DEEP for _, s in targets):
                 following, frames = self._cut(following)
@@ -239,36 +244,47 @@ class Recognizer:
             self._close(core)
         return core
 
-    def _close(self, core: Core) -> set[Configuration]:
-        """Follow calls and returns from the kernel; note the tokens and how deep returns reach."""
-        network, bottom = self.network, self._bottom
-        shifts, calls, final = network.shifts, network.calls, network.final
-        moves: dict[int, list[Configuration]] = {}
-        seen = set(core.kernel)
-        todo = list(seen)
-        floor = min(stack.depth for _, stack in todo)
-        is_open = False
-        while todo:
-            position, stack = todo.pop()
-            for kind, target in shifts[position].items():
-                moves.setdefault(kind, []).append((target, stack))
-            for entry, back in calls[position]:
-                configuration = (entry, stack.push(back))
-                if configuration not in seen:
-                    seen.add(configuration)
-                    todo.append(configuration)
-            if final[position]:
-                if stack is bottom:
-                    is_open = True
-                    continue
-                assert stack.rest is not None
-                configuration = (stack.position, stack.rest)
-                floor = min(floor, stack.rest.depth)
-                if configuration not in seen:
-                    seen.add(configuration)
-                    todo.append(configuration)
-        core.moves, core.is_open, core.floor = moves, is_open, floor
-        return seen
+    def _close(self, core: Core) -> None:
+        """Follow returns from the kernel: what may come from where, and how deep returns reach.
+
+        What calls lead to is the same for every stack: `Network.reach` knows.
+        """
+        configurations = list(core.kernel)
+        seen = set(configurations)
+        core.ways, core.is_open = [], False
+        core.floor = min(stack.depth for _, stack in configurations)
+        for position, stack in configurations:  # grows while it is walked
+            reach = self.network.reach(position)
+            core.ways.append((reach, stack))
+            if not reach.ends:
+                continue
+            if stack.rest is None:
+                core.is_open = True
+                continue
+            core.floor = min(core.floor, stack.rest.depth)
+            returned = (stack.position, stack.rest)
+            if returned not in seen:
+                seen.add(returned)
+                configurations.append(returned)
+
+    @staticmethod
+    def _targets(core: Core, kind: int) -> Iterator[Configuration]:
+        """The configurations after one more token."""
+        for reach, stack in core.ways:
+            for target, returns in reach.moves.get(kind, ()):
+                above = stack
+                for position in returns:
+                    above = above.push(position)
+                yield target, above
+
+    def _sites(self, core: Core) -> Iterator[Configuration]:
+        """Every configuration of a core, calls and returns followed; some more than once."""
+        for reach, stack in core.ways:
+            for position, returns in reach.sites:
+                above = stack
+                for back in returns:
+                    above = above.push(back)
+                yield position, above
 
     def _cut(self, core: Core) -> tuple[Core, tuple[int, ...]]:
         """The core without the frames that all its stacks share and no return has reached.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from grammar.failures import Failure, FailureFinder, Form
 
@@ -29,6 +30,12 @@ class Failed:
     form: int
     follows: bool
 
+    def with_form(self, form: int) -> Failed:
+        """The same with another number for its form (`dataclasses.replace` takes twice as long)."""
+        return Failed(
+            self.line, self.column, self.token, self.source, self.words, form, self.follows
+        )
+
 
 def failures_of(finder: FailureFinder, text: str, forms: dict[Form, int]) -> tuple[Failed, ...]:
     """The failing lines of a program; ``forms`` numbers their forms and is added to."""
@@ -38,18 +45,23 @@ def failures_of(finder: FailureFinder, text: str, forms: dict[Form, int]) -> tup
 
 
 def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> Failed:
-    lexemes, index = failure.lexemes, failure.form.index
-    words = tuple(lexeme.upper()[:40] for lexeme in lexemes[: max(_WORDS_KEPT, index + 1)])
+    words = failure.lexemes[: max(_WORDS_KEPT, failure.form.index + 1)]
     source = lines[failure.line - 1] if failure.line <= len(lines) else ""
     return Failed(
-        line=failure.line,
-        column=failure.column,
-        token=failure.text[:200],
-        source=source[:_LONGEST_LINE_KEPT],
-        words=words,
-        form=forms.setdefault(failure.form, len(forms)),
-        follows=failure.follows,
+        failure.line,
+        failure.column,
+        failure.text[:200],
+        source[:_LONGEST_LINE_KEPT],
+        tuple(map(_word, words)),
+        forms.setdefault(failure.form, len(forms)),
+        failure.follows,
     )
+
+
+@lru_cache(maxsize=1 << 16)
+def _word(lexeme: str) -> str:
+    """The token in upper case, cut; the same object each time, for there are many."""
+    return lexeme.upper()[:40]
 
 
 def source_lines(text: str) -> list[str]:

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -212,7 +212,7 @@ class _Gathered:
             return
         failures, forms = kept
         numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
-        self.contents[key].result = tuple(replace(f, form=numbers[f.form]) for f in failures)
+        self.contents[key].result = tuple([f.with_form(numbers[f.form]) for f in failures])
 
     def survey(self, grammar: g4.Grammar, seconds: float) -> Survey:
         files: list[SurveyedFile] = []
