@@ -31,8 +31,8 @@ class Cluster:
     """Failures with one cause.
 
     ``unlocks``: files that would parse if only it were mended. ``line`` is the failing line that
-    stands for it and ``example`` a failure of that line; ``restores`` says for each of the
-    ``proposals`` how many files parse with it alone.
+    stands for it and ``example`` a failure of that line; ``restores`` has for each of the
+    ``proposals`` the files in which it mends every line that fails by itself.
     """
 
     id: str
@@ -43,7 +43,7 @@ class Cluster:
     members: tuple[Member, ...]
     unlocks: int
     proposals: tuple[Proposal, ...]
-    restores: tuple[int, ...]
+    restores: tuple[tuple[SurveyedFile, ...], ...]
 
     @property
     def files(self) -> tuple[SurveyedFile, ...]:
@@ -202,7 +202,7 @@ def _cluster(
         unlocks=unlocks,
         proposals=cause.proposals,
         restores=tuple(
-            sum(len(file.places) for file, direct, _ in needs if direct <= proposal.mended)
+            tuple(file for file, direct, _ in needs if direct <= proposal.mended)
             for proposal in cause.proposals
         ),
     )

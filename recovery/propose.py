@@ -13,7 +13,7 @@ from grammar.recognizer import Recognizer
 from recovery.causes import Proposal
 from recovery.cluster import Cluster, Clusters
 from recovery.ingest import Skipped, decode, read
-from recovery.survey import Survey
+from recovery.survey import Survey, SurveyedFile
 from recovery.swallowed import Suspect, suspects
 from recovery.trial import edited
 
@@ -46,21 +46,21 @@ class Reviewer:
     def records(self, cluster: Cluster) -> list[dict[str, Any]]:
         """The proposals of a cluster as plain data, the best first."""
         return [
-            self._record(proposal, restores)
-            for proposal, restores in zip(cluster.proposals, cluster.restores, strict=True)
+            self._record(proposal, files)
+            for proposal, files in zip(cluster.proposals, cluster.restores, strict=True)
         ]
 
     def wider(self, proposal: Proposal) -> Recognizer | None:
         """A recogniser of the grammar with the proposal."""
         return edited(self.recognizer, proposal.edits)
 
-    def _record(self, proposal: Proposal, restores: int) -> dict[str, Any]:
+    def _record(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> dict[str, Any]:
         grammar = self.found.grammar
         last = proposal.edits[-1]
         return {
             "edit": "; ".join(describe(grammar, edit) for edit in proposal.edits),
             "kind": str(to_data(last)["edit"]),
-            "restores": restores,
+            "restores": self._restores(proposal, files),
             "mends": len(proposal.mended),
             "advances": len(proposal.advanced),
             "accepts_negatives": proposal.accepts_negatives,
@@ -77,6 +77,13 @@ class Reviewer:
             old.splitlines(), new.splitlines(), "KRL.g4", "KRL.g4", lineterm="", n=1
         )
         return "\n".join(lines)
+
+    def _restores(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> int:
+        """Files that really parse with the proposal alone: they are read again."""
+        wider = self.wider(proposal)
+        if wider is None:
+            return 0
+        return sum(len(f.places) for f in files if wider.accepts("\n".join(f.lines())))
 
     def _ambiguities(self, proposal: Proposal) -> int:
         """Of the lines the proposal mends, those that then have two readings."""

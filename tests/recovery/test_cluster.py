@@ -225,7 +225,7 @@ found = survey_texts([tuple(pair) for pair in json.load(sys.stdin)], grammar)
 clusters = cluster(found)
 print(json.dumps([
     [
-        [c.id, c.title, c.unlocks, len(c.members), c.restores, [repr(p.edits) for p in c.proposals]]
+        [c.id, c.title, c.unlocks, len(c.members), [repr(p.edits) for p in c.proposals]]
         for c in clusters.ranked
     ],
     [[c.id, parsed] for c, parsed in clusters.order],
@@ -238,7 +238,7 @@ def told(clusters: Clusters) -> object:
     ranked = []
     for c in clusters.ranked:
         edits = [repr(p.edits) for p in c.proposals]
-        ranked.append([c.id, c.title, c.unlocks, len(c.members), list(c.restores), edits])
+        ranked.append([c.id, c.title, c.unlocks, len(c.members), edits])
     return [ranked, [[c.id, parsed] for c, parsed in clusters.order]]
 
 

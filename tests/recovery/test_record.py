@@ -298,6 +298,15 @@ def test_a_survey_of_nothing_has_a_record() -> None:
     )
 
 
+@pytest.mark.parametrize("line", ["A=" + "(" * 900, "A ? " * 900, "A=F(" + "1," * 900])
+def test_monstrous_lines_have_a_record(line: str) -> None:
+    """A line far beyond what people write is a failure of a cluster like any other."""
+    found = survey_texts([("a.src", f"DEF A()\n{line}\nEND\n")], PRELIMINARY)
+    record = record_of(found, cluster(found), grammar_name="g")
+    assert [2] == [failure["line"] for failure in record["failures"]]
+    assert 1 == len(record["clusters"])
+
+
 def test_the_same_survey_has_the_same_record(found: Survey, record: dict[str, Any]) -> None:
     """Only the time may differ."""
     again = record_of(replace(found, seconds=0.0), cluster(found), grammar_name="grammar/some.g4")

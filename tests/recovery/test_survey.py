@@ -382,13 +382,14 @@ def test_junk_is_a_result_and_no_error(
     "line",
     [
         "A=" + "(" * 2_000 + "1" + ")" * 2_000,
+        "A=" + "(" * 2_000,
         "A=" + "-" * 5_000,
         "A" + ".B" * 5_000 + " C",
         "DECL INT " + ",".join("ABC" for _ in range(5_000)),
         "? " * 5_000,
         'A="' + "x" * 100_000,
     ],
-    ids=["parentheses", "signs", "members", "names", "unknown", "string"],
+    ids=["parentheses", "unclosed", "signs", "members", "names", "unknown", "string"],
 )
 def test_monstrous_lines_are_read(line: str) -> None:
     """A line far beyond what people write is a program or one failure, and takes no time."""
