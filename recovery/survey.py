@@ -31,6 +31,7 @@ __all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey
 # One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64
+_SMALL = 8 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +84,7 @@ def survey(
 ) -> Survey:
     """Read everything below ``roots`` under ``grammar``.
 
-    ``jobs`` is the number of processes, by default one a core. ``cache`` is the folder where
+    ``jobs`` is the number of processes, by default one a core, or one for a small corpus. ``cache`` is the folder where
     results are kept for the next time; without one nothing is kept. ``on_found`` is told how many
     candidates there are once they are known, ``on_done`` how many more have been dealt with.
 
@@ -95,11 +96,17 @@ def survey(
     with _memory(cache, grammar) as memory:
         gathered = _Gathered(memory)
         tasks = _tasks(candidates, gathered)
-        for done in _run(tasks, grammar.text, jobs or os.cpu_count() or 1):
+        for done in _run(tasks, grammar.text, jobs or _processes(candidates)):
             gathered.add(done)
             on_done(len(done))
     on_done(len(candidates) - gathered.read_now)
     return gathered.survey(grammar, time.perf_counter() - began)
+
+
+def _processes(candidates: Iterable[Found | Skipped]) -> int:
+    """As many as there are cores, but one where starting more would cost more than it saves."""
+    size = sum(c.size for c in candidates if isinstance(c, Found))
+    return 1 if size < _SMALL else os.cpu_count() or 1
 
 
 def _memory(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[Memory | None]:

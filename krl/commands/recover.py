@@ -38,7 +38,8 @@ def recover(
         Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+        int | None,
+        typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler (not built yet).")
@@ -109,6 +110,5 @@ def _write_json(record: dict[str, Any], target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
     scratch = target.with_name(target.name + ".part")
     with scratch.open("w", encoding="utf-8", newline="\n") as stream:
-        json.dump(record, stream, ensure_ascii=False, allow_nan=False)
-        stream.write("\n")
+        stream.write(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
     scratch.replace(target)
