@@ -84,9 +84,10 @@ def survey(
 ) -> Survey:
     """Read everything below ``roots`` under ``grammar``.
 
-    ``jobs`` is the number of processes, by default one a core, or one for a small corpus. ``cache`` is the folder where
-    results are kept for the next time; without one nothing is kept. ``on_found`` is told how many
-    candidates there are once they are known, ``on_done`` how many more have been dealt with.
+    ``jobs`` is the number of processes, by default one a core, or one for a small corpus.
+    ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
+    ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
+    more have been dealt with.
 
     Raises `recovery.ingest.IngestError` where there is nothing to survey.
     """
