@@ -112,7 +112,9 @@ class Lexer:
         cutting = [
             r
             for r in rules
-            if r.name not in names_of_literals or not tokens.fullmatch(_only_literal(r))
+            if r.is_skipped
+            or r.name not in names_of_literals
+            or not tokens.fullmatch(_only_literal(r))
         ]
         self._automaton = automaton_of(grammar, cutting)
         self._leaves_out_skipped = not any(r.is_skipped for r in rules)

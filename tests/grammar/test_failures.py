@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import grammar.failures
 from grammar.failures import BLOCKS, Failure, FailureFinder
-from grammar.g4 import read_file
+from grammar.g4 import read, read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
@@ -178,6 +178,49 @@ def check_one(finder: FailureFinder, text: str, failure: Failure) -> None:
     assert (recognizer.grammar.start, context.rule) == (context.rules[0], context.rules[-1])
 
 
+ODD = """grammar Odd;
+s : NEWLINE* (line NEWLINE+)* EOF ;
+line : NAME ('=' (NAME | TEXT))? ;
+NAME : [A-Z]+ ;
+EQUALS : '=' ;
+NEWLINE : '\\r\\n' | '\\n' | '\\r' ;
+TEXT : '"' %s '"' ;
+BLOCK : '{' ~'}'* '}' -> skip ;
+SPACE : ' '+ -> skip ;
+"""
+#: Tokens and skipped text that hold line ends; the last is cut by no pattern of ``re``.
+ODD_FINDERS = [
+    FailureFinder(Recognizer(read(ODD % body))) for body in ("~'\"'*", "(~'\"' | '\"\"')*")
+]
+
+
+@pytest.mark.parametrize("finder", ODD_FINDERS, ids=["plain", "doubled quotes"])
+@settings(max_examples=80, deadline=None)
+@given(chance=MANY)
+def test_line_ends_inside_tokens(finder: FailureFinder, chance: Random) -> None:
+    """Lines are counted right where strings and comments run over several of them."""
+    pieces = [
+        "A",
+        "=",
+        " ",
+        "\n",
+        "\r\n",
+        "\r",
+        '"',
+        '"X\nY"',
+        "{\r\n}",
+        "{ ",
+        "?",
+        "A=B\n",
+        "\n\n",
+    ]
+    text = "".join(chance.choice(pieces) for _ in range(30))
+    failures = finder.find(text)
+    assert finder.recognizer.accepts(text) == (not failures)
+    for failure in failures:
+        check_one(finder, text, failure)
+
+
 # ---------------------------------------------------------------------------- contexts
 
 
@@ -293,12 +336,12 @@ def test_the_end_of_a_file_inside_a_block() -> None:
 
 
 def test_deep_nesting_and_long_lines() -> None:
-    """Failures in 300 blocks, 2,000 parentheses and a line of 5,000 tokens are found in place."""
+    """Failures in 300 blocks, 20,000 parentheses and a line of 5,000 tokens are found in place."""
     depth = 300
     deep = program(*["IF X THEN"] * depth, "X= ?", *["ENDIF"] * depth, "X= ?")
     assert [(depth + 2, 4, "?"), (2 * depth + 3, 4, "?")] == found(deep)
-    line = "X=" + "(" * 2000
-    assert [(2, 2003, "\n")] == found(program(line))
+    line = "X=" + "(" * 20_000
+    assert [(2, 20_003, "\n")] == found(program(line))
     (failure,) = FINDER.find(program(line))
     assert FINDER.context(failure.state).rule == "primary"
     assert [(2, 5, "1")] == found(program("X=1 1" + " 1" * 5000))

@@ -121,6 +121,7 @@ def random_grammar(chance: Random) -> Grammar:
             "SPACE : [ \\t]+ -> skip ;",
             "COMMENT : ';' ~[\\n]* -> skip ;",
             "BLOCK : '<-' ~'>'* '>' -> skip ;",
+            "SIGNS : '<=' -> skip ;",
             "HIDDEN : 'a' 'a'+ -> channel(HIDDEN) ;",
         ],
         chance.randint(0, 3),
@@ -137,7 +138,11 @@ def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
     fragments = 'a bC A aa 1 1. .2 " < <= => - -= ; $ é _'.split()
     fragments += [" ", "\n"]
     text = "".join(chance.choice(fragments) for _ in range(25))
-    assert slow_tokens(made, text, lexer_ends) == tokens_of(Lexer(made), text)
+    lexer = Lexer(made)
+    assert slow_tokens(made, text, lexer_ends) == tokens_of(lexer, text)
+    assert [at for _, _, at in tokens_of(lexer, text)] == lexer.offsets_of_tokens(text)
+    if lexer.leaves_out_skipped:
+        assert SKIPPED not in map(lexer.kinds.__getitem__, lexer.lexemes(text))
 
 
 @QUICK
@@ -209,6 +214,9 @@ def test_only_ascii_letters_have_two_cases(preliminary: Grammar) -> None:
         assert [("FOR", word, 0)] == tokens_of(lexer, word)
     for letter in ("ſ", "ı", "İ", "\u212a", "é", "ß", "ﬁ"):
         assert [("ERROR", letter, 0)] == tokens_of(lexer, letter)
+    made = Lexer(lexer_grammar("IS : 'IS' ;\nNAME : [a-zıſ]+ ;"))
+    assert [("NAME", "ıs", 0)] == tokens_of(made, "ıs")
+    assert [("NAME", "iſ", 0)] == tokens_of(made, "iſ")
 
 
 def test_case_counts_where_the_grammar_does_not_say_otherwise() -> None:

@@ -27,6 +27,9 @@ from grammar.wellformed import problem
 RandomGrammar = Callable[[Random], Grammar]
 Mutated = Callable[[list[str], Random, list[str]], list[str]]
 
+#: A position with the positions to return to, the outermost first.
+Way = tuple[int, tuple[int, ...]]
+
 MANY = st.randoms(use_true_random=True)
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 TOKENS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\nNEWLINE : '\\n' ;\n"
@@ -125,6 +128,51 @@ def test_positions_are_the_states_of_all_rules(name: str, request: pytest.Fixtur
     assert positions == len(network.rule)
 
 
+def surroundings(network: Network, start: int) -> tuple[set[Way], set[tuple[str, Way]], bool]:
+    """What `Network.reach` tells, by taking one step after the other."""
+    sites: set[Way] = {(start, ())}
+    todo = list(sites)
+    for position, returns in todo:  # grows while it is walked
+        found = [(entry, (*returns, back)) for entry, back in network.calls[position]]
+        found += [(returns[-1], returns[:-1])] if network.final[position] and returns else []
+        todo += [way for way in found if way not in sites]
+        sites |= set(found)
+    moves = {
+        (network.lexer.names[kind], (target, returns))
+        for position, returns in sites
+        for kind, target in network.shifts[position].items()
+    }
+    return sites, moves, any(network.final[p] and not returns for p, returns in sites)
+
+
+@pytest.mark.parametrize("name", ["krl", "preliminary"])
+def test_the_reach_of_every_position(name: str, request: pytest.FixtureRequest) -> None:
+    """What is known of a position is what following calls and returns from it leads to."""
+    network = network_of(request.getfixturevalue(name))
+    for position in range(len(network.rule)):
+        check_reach(network, position)
+
+
+@settings(max_examples=60, deadline=None)
+@given(chance=MANY)
+def test_the_reach_in_random_grammars(chance: Random, random_grammar: RandomGrammar) -> None:
+    """The same where rules are empty, recursive and call one another in every way."""
+    network = network_of(random_grammar(chance))
+    for position in range(len(network.rule)):
+        check_reach(network, position)
+
+
+def check_reach(network: Network, position: int) -> None:
+    sites, moves, ends = surroundings(network, position)
+    reach = network.reach(position)
+    assert sites == set(reach.sites)
+    assert moves == {
+        (network.lexer.names[k], way) for k, ways in reach.moves.items() for way in ways
+    }
+    assert ends == reach.ends
+    assert reach.rules >= {network.rule[p] for p, _ in sites}
+
+
 @settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
@@ -133,6 +181,7 @@ def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
     text = chance.choice(["STRING", "WAIT NAME?", "'(' expression ')'", "ZZWORD (',' NAME)*"])
     changed = apply(PRELIMINARY, [AddToken("ZZWORD"), AddAlternative(rule.name, text)])
     old = network_of(PRELIMINARY)
+    accepts(old, [*Sentences(PRELIMINARY).random(chance, 40), "EOF"])  # old now knows its reach
     lexer = lexer_of(PRELIMINARY).with_keyword("ZZWORD")
     network = with_rule(old, changed, changed.by_name[rule.name], lexer)
     anew = network_of(changed, lexer)

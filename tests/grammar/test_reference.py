@@ -19,7 +19,7 @@ def test_a_program_is_accepted(capfd: pytest.CaptureFixture[str]) -> None:
     ("text", "line", "column", "message"),
     [
         ("DEF A()\nEND\n  DEF ]\n", 3, 6, "unexpected ']'"),
-        ("DEF A()\n ?\nEND\n", 2, 1, "token recognition error at: '?'"),
+        ("DEF A()\n ? ~\nEND\n", 2, 1, "token recognition error at: '?'"),
         ("DEF A()\nEND ?\n", 2, 4, "token recognition error at: '?'"),
         ("DEF", 1, 3, "unexpected '<EOF>'"),
         ("DEF A()\n ~ DEF", 2, 1, "token recognition error at: '~'"),

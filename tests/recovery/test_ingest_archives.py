@@ -314,6 +314,7 @@ def test_a_huge_directory_is_not_read(tmp_path: Path, monkeypatch: pytest.Monkey
         (packed(("a.src", A))[:-1], "truncated or damaged archive"),
         (packed(("a.txt", A)), "no .src, .dat or .sub file in it"),
     ],
+    ids=["empty", "text", "cut", "one byte short", "no KRL"],  # the bytes hold the time of day
 )
 def test_a_lone_archive_with_nothing_to_read_is_an_error(
     tmp_path: Path, data: bytes, reason: str
