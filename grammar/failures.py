@@ -253,8 +253,6 @@ class FailureFinder:
         known = [g for g in guesses if g is not None]
         kinds, blank = self._reader.kinds, self.recognizer.line_kind
         lines = [line for line in ahead if kinds[line][0] != blank][:_LINES_AHEAD]
-        if lost:
-            known.reverse()
         if (len(known) == 1 and not lost) or self._readable(known[0], lines[:1]):
             return known[0]
         if lost:

@@ -243,6 +243,15 @@ def test_skipped_text_may_begin_like_a_token() -> None:
     assert [("NAME", "a", 0), ("SLASH", "/", 1)] == tokens_of(lexer, "a/")
 
 
+def test_skipped_words_among_the_lexemes() -> None:
+    """Where a skipped word could be a token too, it is among the lexemes, and known as skipped."""
+    rules = "GAP : '<=' -> skip ;\nSIGN : [<=]+ ;\nSPACE : ' ' -> skip ;"
+    lexer = Lexer(lexer_grammar(rules))
+    assert [("SIGN", "<", 3), ("SIGN", "<=<", 5)] == tokens_of(lexer, "<= < <=< <=")
+    assert not lexer.leaves_out_skipped
+    assert lexer_of(GRAMMARS[1]).leaves_out_skipped
+
+
 def test_names_and_numbers_of_tokens(preliminary: Grammar) -> None:
     """Kind 0 is the end of the file, the others follow the rules; people read quoted text."""
     lexer = lexer_of(preliminary)

@@ -212,6 +212,17 @@ def test_one_rule_alone(recognizer: Recognizer) -> None:
     assert recognizer.step(state, EOF) is None
 
 
+def test_a_rule_alone_teaches_nothing_wrong() -> None:
+    """What a rule read on its own could go on with is not taken for all there is around it."""
+    rules = "s : r (A B)? EOF ;\nr : NEWLINE B A? ;\nA : 'a' ;\nB : 'b' ;\nNEWLINE : '\\n' ;\n"
+    recognizer = Recognizer(read(f"grammar T;\n{rules}"))
+    alone = recognizer.at_rule("r")
+    assert recognizer.run(alone, kinds_of(recognizer, ["NEWLINE", "B", "A"]))[1] is None
+    texts = ["ba", "bab", "baab", "bb"]
+    assert [True, True, True, False] == [recognizer.accepts(f"\n{text}") for text in texts]
+    assert recognizer.run(alone, kinds_of(recognizer, ["NEWLINE", "B", "A", "A"]))[1] == 3
+
+
 def test_a_rule_may_be_empty() -> None:
     """Rules that match nothing are passed, however many of them stand in a row."""
     recognizer = Recognizer(

@@ -147,8 +147,13 @@ def test_keywords_in_the_middle_of_a_line_are_told_with_their_places() -> None:
 
 
 def only_names(lines: Sequence[str], word: str) -> bool:
-    """Whether no shape of the lines, one a file, has the word."""
-    return not any(word in title.split() for title in titles(*each(*lines)))
+    """Whether the word is no keyword on any of the lines, one a file, and in no title."""
+    texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
+    found = survey_texts(texts, PRELIMINARY)
+    failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
+    shaper = Shaper(RECOGNIZER.lexer, failures)
+    meant = {said for _, failed, form in failures for _, said in shaper.keywords(failed, form)}
+    return word not in meant and not any(word in t.split() for t in titles(*each(*lines)))
 
 
 def test_a_name_beside_its_type_is_no_keyword() -> None:

@@ -203,13 +203,13 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """More files than one process is given at a time, failing in many ways, some of them copies."""
     chance = random.Random(7)
     root = tmp_path_factory.mktemp("many")
-    files = {
-        f"cell{number % 5}/p{number:03}.src": "\n".join(
-            ["DEF P()", *chance.choices(LINES, k=chance.randint(0, 4)), "END", ""]
-        ).encode()
-        for number in range(180)
-    }
-    return lay(root, files)
+    programs = [
+        "\n".join([f"DEF P{number}()", *chance.choices(LINES, k=chance.randint(0, 3)), "END", ""])
+        for number in range(400)
+    ]
+    programs += programs[::20]
+    named = {f"cell{n % 5}/p{n:03}.src": text.encode() for n, text in enumerate(programs)}
+    return lay(root, named)
 
 
 def test_processes_make_no_difference(many: Path) -> None:
