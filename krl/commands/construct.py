@@ -41,7 +41,7 @@ def propose(
         typer.echo(f"wrote {write(record, cluster, number, out).as_posix()}")
     except FileNotFoundError as error:
         raise Unusable(f"{survey}: no such survey; run krl recover first") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise Unusable(f"{survey}: not a survey that krl recover wrote") from error
     except LedgerError as error:
         raise Unusable(str(error)) from error

@@ -1,0 +1,90 @@
+"""`krl construct propose`: from a survey to a file ready for review."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from grammar import g4
+from grammar.edits import apply, from_data
+from grammar.recognizer import Recognizer
+from krl.cli import main
+
+PRELIMINARY = Path(g4.__file__).with_name("preliminary.g4")
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("survey")
+    for n, step in enumerate((2, 3, 5)):
+        text = f"DEF P{n}()\nFOR I=1 TO {n + 4} STEP {step}\nENDFOR\nEND\n"
+        (folder / f"p{n}.src").write_text(text, encoding="utf-8")
+    options = ["--grammar", str(PRELIMINARY), "--out", str(folder / "out"), "--jobs", "1"]
+    assert main(["recover", str(folder), *options]) == 0
+    return folder / "out"
+
+
+def propose(out: Path, target: Path, cluster: str = "c-", *more: str) -> int:
+    survey = ["--survey", str(out / "survey.json"), "--out", str(target)]
+    return main(["construct", "propose", cluster, *survey, *more])
+
+
+def test_the_file_can_be_read_and_its_edits_mend_the_example(out: Path, tmp_path: Path) -> None:
+    """Applied to the grammar, the edits accept the accept examples, which fail without them."""
+    assert propose(out, tmp_path) == 0
+    (file,) = tmp_path.iterdir()
+    assert file.name == "0001-for-step.toml"
+    construct = tomllib.loads(file.read_text(encoding="utf-8"))
+    grammar = g4.read_file(PRELIMINARY)
+    wider = g4.read(apply(grammar, [from_data(edit) for edit in construct["edit"]]).text)
+    (example,) = construct["examples"]["accept"]
+    assert construct["state"] == "proposed"
+    assert construct["evidence"]["files"] == 3
+    assert construct["effect"]["restores"] == 3
+    assert (False, True) == (
+        Recognizer(grammar).accepts(example),
+        Recognizer(wider).accepts(example),
+    )
+
+
+def test_a_file_is_never_replaced(out: Path, tmp_path: Path) -> None:
+    """Proposing again takes the next number."""
+    assert (0, 0) == (propose(out, tmp_path), propose(out, tmp_path))
+    assert sorted(f.name for f in tmp_path.iterdir()) == [
+        "0001-for-step.toml",
+        "0002-for-step.toml",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("cluster", "more", "said"),
+    [
+        ("c-none", (), "'c-none' is no cluster of this survey"),
+        ("c-", ("--proposal", "99"), "there is no 99"),
+    ],
+)
+def test_what_is_not_there_is_one_line(
+    out: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    cluster: str,
+    more: tuple[str, ...],
+    said: str,
+) -> None:
+    """An unknown cluster or proposal ends with status 2 and one line; nothing is written."""
+    assert propose(out, tmp_path / "ledger", cluster, *more) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "ledger").exists()
+
+
+def test_without_a_survey_it_says_what_to_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No survey, or a file that is none: status 2 and one line."""
+    assert propose(tmp_path, tmp_path) == 2
+    assert "run krl recover first" in capsys.readouterr().err
+    (tmp_path / "survey.json").write_text("[]", encoding="utf-8")
+    assert propose(tmp_path, tmp_path) == 2
+    assert "not a survey" in capsys.readouterr().err
