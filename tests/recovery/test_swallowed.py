@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from grammar import g4
-from grammar.edits import RemoveAlternative, RemoveRule, apply
+from grammar.edits import Edit, RemoveAlternative, RemoveRule, apply
 from grammar.lexer import lexer_of
 from recovery.swallowed import Suspect, suspects
 
@@ -15,7 +15,7 @@ def without_true() -> g4.Grammar:
     number = next(
         i for i, a in enumerate(rule.alternatives, 1) if rule.source_of(a).strip() == "TRUE"
     )
-    edits = [RemoveAlternative("literal", number), RemoveRule("TRUE")]
+    edits: list[Edit] = [RemoveAlternative("literal", number), RemoveRule("TRUE")]
     return g4.read(apply(PRELIMINARY, edits).text)
 
 
