@@ -32,6 +32,7 @@ __all__ = ["Candidate", "CandidateFinder", "Line"]
 
 _MOST_SKIPPED = 3
 _LONGEST_RUN = 24
+_LONGEST_LINE = 1_000
 #: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
 _HUB = 4
 _UNLIKELY = 8
@@ -43,6 +44,11 @@ class Line:
 
     form: Form
     keywords: tuple[tuple[int, str], ...]
+
+    @property
+    def is_enormous(self) -> bool:
+        """Whether it is too long to be worth a search: nobody wrote it."""
+        return len(self.form.kinds) > _LONGEST_LINE
 
     def words(self) -> list[Word]:
         """The tokens of the line."""

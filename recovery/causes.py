@@ -99,6 +99,7 @@ def find_causes(
             causes.append(cause)
             search.open.difference_update(cause.lines)
             left = [n for n in left if n in search.open]
+        left += [n for n in group if lines[n].is_enormous]
         if left:
             search.open.difference_update(left)
             causes.append(Cause(tuple(left), ()))
@@ -120,7 +121,7 @@ class _Search:
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.thorough = True
-        self.open = set(range(len(lines)))
+        self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
         for number in sorted(self.open, key=lambda n: (-weights[n], n)):
             self.same_token[self._token(number)].append(number)

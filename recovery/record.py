@@ -135,6 +135,8 @@ def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str
 
 
 def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any] | None:
+    if cluster.line.is_enormous:
+        return None
     best = next((p for p in cluster.proposals if p.mended), None)
     mended = reviewer.wider(best) if best is not None else None
     found = reducer.reduce(cluster.line, cluster.example.failed.words, mended=mended)

@@ -61,6 +61,8 @@ class Trial:
         self._by_rule: dict[str, list[int]] = defaultdict(list)
         self._by_keyword: dict[str, set[int]] = defaultdict(set)
         for number, line in enumerate(lines):
+            if line.is_enormous:
+                continue
             before = line.form.before
             if before not in self._prefix:
                 self._prefix[before] = self._way_to(paths, before)
