@@ -56,13 +56,15 @@ class Clusters:
     """All clusters of a survey, what holds back most first, and the greedy order of mending.
 
     ``order`` lists (cluster, files that parse once it and all before it are mended);
-    ``cluster_of`` maps (digest, index of a failure) to the cluster's id.
+    ``cluster_of`` maps (digest, index of a failure) to the cluster's id; ``contexts`` are those of
+    the survey's forms.
     """
 
     ranked: tuple[Cluster, ...]
     order: tuple[tuple[Cluster, int], ...]
     cluster_of: dict[tuple[str, int], str]
     lines: tuple[Line, ...]
+    contexts: tuple[Context, ...]
 
 
 def cluster(
@@ -170,6 +172,7 @@ def _assembled(
         tuple(order),
         {key: clusters[number].id for key, number in by_failure.items()},
         groups.lines,
+        tuple(groups.contexts),
     )
 
 

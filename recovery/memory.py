@@ -85,51 +85,54 @@ class Memory:
     def recall(self, digest: str) -> Kept | None:
         """What was found in a content, or ``None`` where it is new or its entry is damaged."""
         try:
-            row = self._base.execute(
-                "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
-            ).fetchone()
-            return None if row is None else _read(row[0])
-        except (sqlite3.DatabaseError, zlib.error, ValueError, TypeError, KeyError, IndexError):
+            data = self._recalled(digest)
+            return None if data is None else _read(data)
+        except (ValueError, TypeError, KeyError, IndexError, AssertionError):
             return None
 
     def recall_record(self, digest: str) -> dict[str, Any] | None:
         """A whole record kept under a digest, or ``None``."""
+        record = self._recalled(digest)
+        return record if isinstance(record, dict) else None
+
+    def keep(self, results: Iterable[tuple[str, Kept]]) -> None:
+        """Remember results by the digest of their content."""
+        self._keep((digest, _written(kept)) for digest, kept in results)
+
+    def keep_record(self, digest: str, record: dict[str, Any]) -> None:
+        """Remember a whole record."""
+        self._keep([(digest, record)])
+
+    def _recalled(self, digest: str) -> Any:
+        """What lies under a digest; ``None`` where nothing does, or nothing that can be read."""
         try:
             row = self._base.execute(
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
             ).fetchone()
-            record = None if row is None else json.loads(zlib.decompress(row[0]))
+            return None if row is None else json.loads(zlib.decompress(row[0]))
         except (sqlite3.DatabaseError, zlib.error, ValueError):
             return None
-        return record if isinstance(record, dict) else None
 
-    def keep_record(self, digest: str, record: dict[str, Any]) -> None:
-        """Remember a whole record."""
-        body = zlib.compress(json.dumps(record, ensure_ascii=False).encode(), 1)
-        with contextlib.suppress(sqlite3.DatabaseError), self._base:
-            self._base.execute(
-                "INSERT OR REPLACE INTO result VALUES (?, ?, ?)", (self._key, digest, body)
-            )
-
-    def keep(self, results: Iterable[tuple[str, Kept]]) -> None:
-        """Remember results by the digest of their content."""
+    def _keep(self, entries: Iterable[tuple[str, object]]) -> None:
         with contextlib.suppress(sqlite3.DatabaseError), self._base:
             self._base.executemany(
                 "INSERT OR REPLACE INTO result VALUES (?, ?, ?)",
-                ((self._key, digest, _written(kept)) for digest, kept in results),
+                ((self._key, digest, _packed(data)) for digest, data in entries),
             )
 
 
-def _written(kept: Kept) -> bytes:
-    body: object = kept
-    if not isinstance(kept, str):
-        failures, forms = kept
-        body = [[astuple(f) for f in failures], [astuple(form) for form in forms]]
-    return zlib.compress(json.dumps(body, separators=(",", ":")).encode(), 1)
+def _packed(data: object) -> bytes:
+    return zlib.compress(json.dumps(data, separators=(",", ":")).encode(), 1)
 
 
-def _read(body: bytes) -> Kept:
-    data = json.loads(zlib.decompress(body))
+def _written(kept: Kept) -> object:
+    if isinstance(kept, str):
+        return kept
+    failures, forms = kept
+    return [[astuple(f) for f in failures], [astuple(form) for form in forms]]
+
+
+def _read(data: Any) -> Kept:
     if isinstance(data, str):
         return data
     failures, forms = data

@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from grammar.failures import FailureFinder
 from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer
 from recovery.cluster import Cluster, Clusters, Member
@@ -83,14 +82,9 @@ def _origins(files: Iterable[SurveyedFile]) -> list[dict[str, Any]]:
 
 
 def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[dict[str, Any]]:
-    finder = FailureFinder(recognizer)
-    contexts = []
-    kinds = []
-    for form in found.forms:
-        state, _ = recognizer.run(recognizer.restore(form.before), form.kinds[: form.index])
-        contexts.append(finder.context(state))
-        kind = form.kinds[form.index]
-        kinds.append("unknown character" if kind == ERROR else recognizer.lexer.names[kind])
+    contexts, names = clusters.contexts, recognizer.lexer.names
+    offenders = [form.kinds[form.index] for form in found.forms]
+    kinds = ["unknown character" if kind == ERROR else names[kind] for kind in offenders]
     return [
         {
             "path": file.path,

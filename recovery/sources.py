@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from recovery.ingest import SUFFIXES
 from recovery.repository import (
     BlobReader,
     GitError,
@@ -35,7 +36,6 @@ __all__ = [
     "read_sources",
 ]
 
-KRL_SUFFIXES = (".src", ".dat", ".sub")
 """The file name endings of KRL, in lower case."""
 
 _COLUMNS = ["repository", "path", "bytes", "sha256", "kind", "quality"]
@@ -284,7 +284,7 @@ def _read_checksums(table: Path) -> dict[str, tuple[KrlFile, ...]]:
 
 def _unsafe(path: str) -> str | None:
     """Why `path` must not be written, on any system; None where it may."""
-    if not path.lower().endswith(KRL_SUFFIXES):
+    if not path.lower().endswith(SUFFIXES):
         return "is not a KRL file"
     for part in path.split("/"):
         if part in ("", ".", ".."):

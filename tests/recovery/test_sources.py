@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from recovery import sources
+from recovery.ingest import SUFFIXES
 from recovery.sources import KrlFile, PublicSource, SourceListError, absent, fetch, read_sources
 
 CORPUS = Path(__file__).parents[2] / "corpus"
@@ -176,7 +176,7 @@ def test_failed_write_leaves_no_krl_file(
     with pytest.raises(OSError, match=r"main\.src"):
         fetch(source, tmp_path / "open", tmp_path)
     left = [path for path in (tmp_path / "open").rglob("*") if path.is_file()]
-    assert all(path.suffix not in sources.KRL_SUFFIXES for path in left)
+    assert all(path.suffix not in SUFFIXES for path in left)
 
 
 def test_our_list_is_whole() -> None:
