@@ -1,41 +1,32 @@
 """Typed edits of a grammar: each changes the text of few rules and leaves all else as it was.
 
-Places in a rule are *addresses*: numbers from 1, alternately of an alternative and of an element in
-it. ``(2, 3)`` is the third element of the second alternative; where that element is a group, or a
-group with a suffix, ``(2, 3, 1, 4)`` is the fourth element of the group's first alternative. An
-element number one past the last means the end of the sequence.
+Places in a rule are addresses (`grammar.addresses`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
+from grammar.addresses import Address, element_at, sequence_at, sequences, spelled
 from grammar.g4 import read_rule
-from grammar.model import (
-    Alternative,
-    Element,
-    Grammar,
-    GrammarError,
-    Group,
-    Literal,
-    Reference,
-    Repeat,
-    Rule,
-)
+from grammar.model import Alternative, Element, Grammar, GrammarError, Group, Repeat, Rule
 
 __all__ = [
     "AddAlternative",
     "AddRule",
     "AddToken",
     "Address",
+    "Comment",
     "Edit",
     "Insert",
     "MakeOptional",
+    "Preamble",
     "RemoveAlternative",
     "RemoveElement",
     "RemoveRule",
+    "Replace",
     "Widen",
     "apply",
     "describe",
@@ -44,8 +35,6 @@ __all__ = [
     "sequences",
     "to_data",
 ]
-
-Address = tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +73,39 @@ class AddAlternative:
 
 
 @dataclass(frozen=True, slots=True)
+class Replace:
+    """Put ``text`` in place of the ``count`` elements from ``at`` on."""
+
+    rule: str
+    at: Address
+    text: str
+    count: int = 1
+
+
+@dataclass(frozen=True, slots=True)
 class AddRule:
-    """Add a parser rule, given as text from its name to ``;``, after the rule ``after``."""
+    """Add a rule, given as text from its name to ``;``, after the rule ``after``.
+
+    ``comment`` goes above it, as in `Comment`.
+    """
 
     after: str
+    text: str
+    comment: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """Give a rule the comment ``text``, without slashes, instead of the one it has."""
+
+    rule: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Preamble:
+    """Give the grammar the opening comment ``text``, without stars, instead of the one it has."""
+
     text: str
 
 
@@ -121,17 +139,11 @@ class RemoveRule:
     rule: str
 
 
-Edit = (
-    Insert
-    | Widen
-    | MakeOptional
-    | AddAlternative
-    | AddRule
-    | AddToken
-    | RemoveAlternative
-    | RemoveElement
-    | RemoveRule
+#: Edits within the text of one rule.
+EditOfRule = (
+    Insert | Widen | MakeOptional | Replace | AddAlternative | RemoveAlternative | RemoveElement
 )
+Edit = EditOfRule | AddRule | AddToken | Comment | Preamble | RemoveRule
 
 
 def apply(grammar: Grammar, edits: Sequence[Edit]) -> Grammar:
@@ -149,8 +161,14 @@ def _apply(grammar: Grammar, edit: Edit) -> Grammar:
     match edit:
         case AddToken(name=name):
             return _add_token(grammar, name)
-        case AddRule(after=after, text=text):
-            return _add_rule(grammar, _rule(grammar, after), text)
+        case AddRule(after=after, text=text, comment=comment):
+            grown = _add_rule(grammar, _rule(grammar, after), text)
+            added = grown.rules[grammar.rules.index(grammar.by_name[after]) + 1]
+            return _commented(grown, added, comment) if comment else grown
+        case Comment(rule=name, text=text):
+            return _commented(grammar, _rule(grammar, name), text)
+        case Preamble(text=text):
+            return _with_preamble(grammar, text)
         case RemoveRule(rule=name):
             return _remove_rule(grammar, _rule(grammar, name))
         case _:
@@ -165,10 +183,7 @@ def _rule(grammar: Grammar, name: str) -> Rule:
         raise GrammarError(f"there is no rule {name}") from None
 
 
-def _new_text(
-    rule: Rule,
-    edit: Insert | Widen | MakeOptional | AddAlternative | RemoveAlternative | RemoveElement,
-) -> str:
+def _new_text(rule: Rule, edit: EditOfRule) -> str:
     match edit:
         case AddAlternative(text=text):
             return _with_alternative(rule, text)
@@ -190,6 +205,9 @@ def _new_text(
             return _spliced(rule, element.span, new)
         case MakeOptional(at=at, count=count):
             return _with_optional(rule, at, count)
+        case Replace(at=at, text=text, count=count):
+            last = element_at(rule, (*at[:-1], at[-1] + count - 1))
+            return _spliced(rule, (element_at(rule, at).span[0], last.span[1]), text)
         case RemoveElement(at=at):
             start, end = element_at(rule, at).span
             while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " \r\n)":
@@ -213,12 +231,12 @@ def _with_optional(rule: Rule, at: Address, count: int) -> str:
 
 
 def _with_insertion(rule: Rule, at: Address, text: str) -> str:
-    sequence = _sequence_at(rule, at[:-1])
+    sequence = sequence_at(rule, at[:-1])
     elements, number = sequence.elements, at[-1]
     if not 1 <= number <= len(elements) + 1:
-        raise GrammarError(f"rule {rule.name} has no place {_spelled(at)}")
+        raise GrammarError(f"rule {rule.name} has no place {spelled(at)}")
     if not elements:
-        raise GrammarError(f"rule {rule.name}: an empty alternative at {_spelled(at)}")
+        raise GrammarError(f"rule {rule.name}: an empty alternative at {spelled(at)}")
     if number <= len(elements):
         start = elements[number - 1].span[0]
         return rule.text[:start] + f"{text} " + rule.text[start:]
@@ -269,13 +287,38 @@ def _add_token(grammar: Grammar, name: str) -> Grammar:
     ]
     if not keywords:
         raise GrammarError("the grammar has no keywords yet")
-    before = [i for i in keywords if grammar.rules[i].name < name]
+    before = [i for i in keywords if _in_order(grammar.rules[i].name) < _in_order(name)]
     rule = read_rule(f"{name} : '{name}' ;")
     index = before[-1] + 1 if before else keywords[0]
     rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
     gap = index if before else index + 1
     gaps = (*grammar.gaps[:gap], "\n", *grammar.gaps[gap:])
     return replace(grammar, rules=rules, gaps=gaps)
+
+
+def _in_order(name: str) -> str:
+    """Words before longer words: C_PTP stands before CHAR."""
+    return name.replace("_", " ")
+
+
+def _commented(grammar: Grammar, rule: Rule, text: str) -> Grammar:
+    """The comment of a rule is what stands between it and the blank line above it."""
+    index = grammar.rules.index(rule)
+    above, blank, _ = grammar.gaps[index].rpartition("\n\n")
+    if not blank:
+        raise GrammarError(f"rule {rule.name} has no blank line above it, so no comment of its own")
+    lines = "".join(f"// {line}".rstrip() + "\n" for line in text.splitlines())
+    gaps = (*grammar.gaps[:index], above + blank + lines, *grammar.gaps[index + 1 :])
+    return replace(grammar, gaps=gaps)
+
+
+def _with_preamble(grammar: Grammar, text: str) -> Grammar:
+    found = re.match(r"\s*/\*.*?\*/\s*", grammar.gaps[0], re.DOTALL)
+    rest = grammar.gaps[0][found.end() :] if found else grammar.gaps[0]
+    if "*/" in text:
+        raise GrammarError("a preamble cannot hold the end of a comment")
+    lines = "".join(f" * {line}".rstrip() + "\n" for line in text.splitlines())
+    return replace(grammar, gaps=(f"/*\n{lines} */\n{rest}", *grammar.gaps[1:]))
 
 
 def _remove_rule(grammar: Grammar, rule: Rule) -> Grammar:
@@ -294,9 +337,12 @@ _KINDS: dict[str, type[Edit]] = {
     "insert": Insert,
     "widen": Widen,
     "make-optional": MakeOptional,
+    "replace": Replace,
     "add-alternative": AddAlternative,
     "add-rule": AddRule,
     "add-token": AddToken,
+    "comment": Comment,
+    "preamble": Preamble,
     "remove-alternative": RemoveAlternative,
     "remove-element": RemoveElement,
     "remove-rule": RemoveRule,
@@ -337,91 +383,48 @@ def from_data(data: Mapping[str, object]) -> Edit:
         raise GrammarError(f"edit {data['edit']}: something is missing") from None
 
 
-# ------------------------------------------------------------------------------- addresses
-
-
-def _spelled(at: Address) -> str:
-    return ".".join(map(str, at))
-
-
-def _group_of(element: Element) -> Group | None:
-    if isinstance(element, Repeat):
-        element = element.item
-    return element if isinstance(element, Group) else None
-
-
-def _sequence_at(rule: Rule, address: Address) -> Alternative:
-    """The alternative at an address of odd length."""
-    alternatives: tuple[Alternative, ...] = rule.alternatives
-    for place, number in enumerate(address):
-        if place % 2 == 0:
-            if not 1 <= number <= len(alternatives):
-                break
-            sequence = alternatives[number - 1]
-        else:
-            inside = sequence.elements[number - 1 : number] if number > 0 else ()
-            group = _group_of(inside[0]) if inside else None
-            if group is None:
-                break
-            alternatives = group.alternatives
-    else:
-        if len(address) % 2:
-            return sequence
-    raise GrammarError(f"rule {rule.name} has no place {_spelled(address) or 'without a number'}")
-
-
-def element_at(rule: Rule, address: Address) -> Element:
-    """The element at an address; raises `GrammarError` where there is none."""
-    elements = _sequence_at(rule, address[:-1]).elements
-    if not 1 <= address[-1] <= len(elements):
-        raise GrammarError(f"rule {rule.name} has no place {_spelled(address)}")
-    return elements[address[-1] - 1]
-
-
-def sequences(rule: Rule) -> Iterator[tuple[Address, Alternative]]:
-    """Every alternative of a rule and of the groups in it, with its address."""
-
-    def within(
-        alternatives: tuple[Alternative, ...], address: Address
-    ) -> Iterator[tuple[Address, Alternative]]:
-        for number, alternative in enumerate(alternatives, 1):
-            here = (*address, number)
-            yield here, alternative
-            for place, element in enumerate(alternative.elements, 1):
-                group = _group_of(element)
-                if group is not None:
-                    yield from within(group.alternatives, (*here, place))
-
-    yield from within(rule.alternatives, ())
-
-
 def describe(grammar: Grammar, edit: Edit) -> str:
     """One line for a person: what the edit does, with the words around its place."""
     match edit:
         case AddToken(name=name):
             return f"reserve {name}"
+        case Comment(rule=rule):
+            return f"{rule}: its comment"
+        case Preamble():
+            return "the opening comment"
         case AddRule(text=text):
             return "new rule " + " ".join(text.split())
-        case AddAlternative(rule=rule, text=text):
-            return f"{rule}: or {text}"
         case RemoveRule(rule=rule):
             return f"without rule {rule}"
+        case _:
+            return f"{edit.rule}: {_change(grammar, edit)}"
+
+
+def _change(grammar: Grammar, edit: EditOfRule) -> str:
+    match edit:
+        case AddAlternative(text=text):
+            return f"or {text}"
         case RemoveAlternative(rule=rule, alternative=number):
             text = _source(grammar, rule, grammar.by_name[rule].alternatives[number - 1])
-            return f"{rule}: without the alternative {text}"
+            return f"without the alternative {text}"
         case Insert(rule=rule, at=at, text=text):
-            sequence = _sequence_at(grammar.by_name[rule], at[:-1])
+            sequence = sequence_at(grammar.by_name[rule], at[:-1])
             words = [_source(grammar, rule, e) for e in sequence.elements]
             words.insert(at[-1] - 1, f"»{text}«")
-            return f"{rule}: {' '.join(words[max(0, at[-1] - 4) : at[-1] + 3])}"
+            return " ".join(words[max(0, at[-1] - 4) : at[-1] + 3])
         case Widen(rule=rule, at=at, text=text):
-            return f"{rule}: »{text}« too where {_source_at(grammar, rule, at)} stands"
+            return f"»{text}« too where {_source_at(grammar, rule, at)} stands"
         case MakeOptional(rule=rule, at=at, count=count):
-            elements = _sequence_at(grammar.by_name[rule], at[:-1]).elements
+            elements = sequence_at(grammar.by_name[rule], at[:-1]).elements
             chosen = elements[at[-1] - 1 : at[-1] - 1 + count]
-            return f"{rule}: {' '.join(_source(grammar, rule, e) for e in chosen)} may be left out"
+            return f"{' '.join(_source(grammar, rule, e) for e in chosen)} may be left out"
+        case Replace(rule=rule, at=at, text=text, count=count):
+            elements = sequence_at(grammar.by_name[rule], at[:-1]).elements
+            chosen = elements[at[-1] - 1 : at[-1] - 1 + count]
+            old = " ".join(_source(grammar, rule, e) for e in chosen)
+            return f"»{text}« instead of {old}"
         case RemoveElement(rule=rule, at=at):
-            return f"{rule}: without {_source_at(grammar, rule, at)}"
+            return f"without {_source_at(grammar, rule, at)}"
 
 
 def _source(grammar: Grammar, rule: str, node: Element | Alternative) -> str:
@@ -430,12 +433,3 @@ def _source(grammar: Grammar, rule: str, node: Element | Alternative) -> str:
 
 def _source_at(grammar: Grammar, rule: str, at: Address) -> str:
     return _source(grammar, rule, element_at(grammar.by_name[rule], at))
-
-
-def symbol_of(element: Element) -> str | None:
-    """The one symbol an element is, where it is one."""
-    if isinstance(element, Reference):
-        return element.name
-    if isinstance(element, Literal):
-        return element.text
-    return None

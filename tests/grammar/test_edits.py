@@ -13,24 +13,26 @@ from grammar.edits import (
     AddAlternative,
     AddRule,
     AddToken,
+    Comment,
     Edit,
     Insert,
     MakeOptional,
+    Preamble,
     RemoveAlternative,
     RemoveElement,
     RemoveRule,
+    Replace,
     Widen,
     apply,
     describe,
     element_at,
     from_data,
     sequences,
-    symbol_of,
     to_data,
 )
 from grammar.g4 import read, read_file
 from grammar.generate import GRAMMAR
-from grammar.model import Grammar, GrammarError, Group, Literal, Repeat, Rule
+from grammar.model import Grammar, GrammarError, Group, Repeat, Rule
 from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences
 
@@ -95,6 +97,9 @@ def edited(rule: str, edit: Edit) -> str:
         ("s : (A B)* C ;", RemoveElement("s", (1, 1, 1, 1)), "s : (B)* C ;"),
         ("s\n    : A B\n    ;", RemoveElement("s", (1, 2)), "s\n    : A\n    ;"),
         ("s : A ;", RemoveElement("s", (1, 1)), "s : ;"),
+        (PLAIN, Replace("s", (1, 1), "C t"), "s : C t (B | C t)? B+ ;"),
+        (PLAIN, Replace("s", (1, 2), "C", 2), "s : A C ;"),
+        (PLAIN, Replace("s", (1, 2, 2, 2), "A"), "s : A (B | C A)? B+ ;"),
     ],
 )
 def test_edits_of_a_rule(rule: str, edit: Edit, expected: str) -> None:
@@ -106,6 +111,15 @@ def test_edits_of_a_rule(rule: str, edit: Edit, expected: str) -> None:
     ("edit", "old", "new"),
     [
         (AddRule("s", "u\n    : A\n    ;"), "s : C ;\n", "s : C ;\n\nu\n    : A\n    ;\n"),
+        (
+            AddRule("s", "u : A ;", "of u\nmore"),
+            "s : C ;\n",
+            "s : C ;\n\n// of u\n// more\nu : A ;\n",
+        ),
+        (Comment("s", "new\n\nmore"), "// of s\n", "// new\n//\n// more\n"),
+        (Comment("s", ""), "// of s\n", ""),
+        (Comment("t", "of t"), "\n\nt : B", "\n\n// of t\nt : B"),
+        (Preamble("one\ntwo"), "// top\n", "/*\n * one\n * two\n */\n// top\n"),
         (AddRule("t", "u : A ;"), "t : B | C ;\n", "t : B | C ;\n\nu : A ;\n"),
         (AddToken("AB"), "A : 'A' ;\n", "A : 'A' ;\nAB : 'AB' ;\n"),
         (AddToken("BC"), "B : 'B' ;\n", "B : 'B' ;\nBC : 'BC' ;\n"),
@@ -302,7 +316,7 @@ def result_of(grammar: Grammar, edit: Edit) -> Grammar:
 def test_an_edit_touches_its_rule_only(chance: Random) -> None:
     """All other text stays as it was, and reading the new text gives the edited data."""
     edit = chance.choice([a_widening, a_narrowing, an_omission])(chance, PRELIMINARY)
-    assert not isinstance(edit, AddToken | AddRule | RemoveRule)
+    assert not isinstance(edit, AddToken | AddRule | RemoveRule | Preamble)
     changed = result_of(PRELIMINARY, edit)
     assert PRELIMINARY.gaps == changed.gaps
     for old, new in zip(PRELIMINARY.rules, changed.rules, strict=True):
@@ -353,6 +367,9 @@ EDITS: list[Edit] = [
     RemoveAlternative("s", 1),
     RemoveElement("s", (1, 1)),
     RemoveRule("t"),
+    Replace("s", (1, 1), "B", 2),
+    Comment("s", "new"),
+    Preamble("new"),
 ]
 
 
@@ -403,16 +420,12 @@ def test_data_that_is_no_edit_is_refused(data: dict[str, object]) -> None:
         (Widen("s", (1, 3), "A"), "s: »A« too where B+ stands"),
         (MakeOptional("s", (1, 2, 2, 1), 2), "s: C t may be left out"),
         (RemoveElement("s", (1, 3)), "s: without B+"),
+        (Replace("s", (1, 1), "C", 2), "s: »C« instead of A (B | C t)?"),
+        (Comment("s", "new"), "s: its comment"),
+        (Preamble("new"), "the opening comment"),
     ],
     ids=repr,
 )
 def test_an_edit_is_described_in_one_line(edit: Edit, expected: str) -> None:
     """The line names the rule, what changes, and the words around the place."""
     assert expected == describe(grammar_of(PLAIN), edit)
-
-
-def test_what_symbol_an_element_is() -> None:
-    """A name or quoted text is a symbol; anything larger is none."""
-    (rule, *_) = grammar_of("s : A 'B' t? (C) ;").rules
-    assert ["A", "B", None, None] == [symbol_of(e) for e in rule.alternatives[0].elements]
-    assert isinstance(rule.alternatives[0].elements[1], Literal)
