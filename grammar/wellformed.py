@@ -20,6 +20,12 @@ from grammar.model import (
 
 __all__ = ["problem", "shortest_lengths"]
 
+# Words that ANTLR's own language keeps for itself, so no rule can be called so.
+_RESERVED = frozenset(
+    "catch channels finally fragment grammar import lexer locals mode options parser "
+    "private protected public returns throws tokens".split()
+)
+
 
 def problem(grammar: Grammar) -> str | None:
     """What is wrong with a grammar, as its line and one line of text, or ``None``."""
@@ -27,6 +33,8 @@ def problem(grammar: Grammar) -> str | None:
     for index, name in enumerate(names):
         if name in names[:index]:
             return f"{_line(grammar, index)}: rule {name} is defined twice"
+        if name in _RESERVED:
+            return f"{_line(grammar, index)}: ANTLR keeps the word {name} for itself"
     if all(rule.is_lexer for rule in grammar.rules):
         return "1: no parser rule"
     for index, rule in enumerate(grammar.rules):

@@ -275,6 +275,7 @@ def test_exchanging_a_rule() -> None:
         ),
         ("s : A ;\nC : 'x' -> more ;", 3, "rule C: the command more is not of our style"),
         ("s : A ;\ns : B ;", 3, "rule s is defined twice"),
+        ("s : mode ;\nmode : A ;", 3, "ANTLR keeps the word mode for itself"),
         ("s\n : A\n   nothing\n ;", 4, "rule s: nothing is not defined"),
         ("s : A (B | NOTHING)* ;", 2, "rule s: NOTHING is not defined"),
         ("s : 'nothing' ;", 2, "rule s: no token is defined as 'nothing'"),
