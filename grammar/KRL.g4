@@ -211,6 +211,7 @@ simpleStatement
     | cyclicSignal
     | splineMotion
     | emilyMotion
+    | confirm
     ;
 
 assignment
@@ -297,6 +298,10 @@ continue
 
 onErrorProceed
     : ON_ERROR_PROCEED
+    ;
+
+confirm
+    : CONFIRM expression
     ;
 
 wait
@@ -614,6 +619,7 @@ keyword
     | TIME_BLOCK
     | ASYPTP
     | MOVE_EMI
+    | CONFIRM
     ;
 
 // One to three dimensions; an index left out means all of the dimension [TYP-08, TYP-11].
@@ -673,6 +679,7 @@ CHANNEL : 'CHANNEL' ;
 CHAR : 'CHAR' ;
 CIRC : 'CIRC' ;
 CIRC_REL : 'CIRC_REL' ;
+CONFIRM : 'CONFIRM' ;
 CONST : 'CONST' ;
 CONST_VEL : 'CONST_VEL' ;
 CONTINUE : 'CONTINUE' ;

@@ -1,130 +1,190 @@
-"""The ledger of constructs: a proposal written as a file that a maintainer can review.
+"""The ledger: a folder of constructs whose edits, replayed in order, make the grammar in force.
 
-One construct a file, ``NNNN-name.toml``: what it is, the typed edits, the evidence for it and what
-the survey measured. It is written in the state ``proposed``; a person completes it.
+The restrictive start and every accepted construct, in the order of their numbers, give ``KRL.g4``
+byte for byte. Numbers run from 1 without a gap.
 """
 
 from __future__ import annotations
 
-import json
-import re
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-__all__ = ["LedgerError", "propose"]
+from grammar.edits import apply
+from grammar.g4 import Grammar, GrammarError, read_file
+from grammar.recognizer import Recognizer
+from grammar.wellformed import problem
+from recovery.construct import Construct, LedgerError
+from recovery.construct_file import read
 
-_FILES_NAMED = 10
-_WIDEST_NAME = 40
+__all__ = [
+    "Ledger",
+    "broken_examples",
+    "findings",
+    "grown",
+    "in_force",
+    "is_wording",
+    "preliminary_of",
+    "replay",
+]
 
 
-class LedgerError(Exception):
-    """The record has no such cluster or proposal; the message is one clear line."""
+@dataclass(frozen=True, slots=True)
+class Ledger:
+    """A folder of constructs, in the order of their numbers."""
 
+    folder: Path
+    constructs: tuple[Construct, ...]
 
-def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) -> Path:
-    """Write proposal ``number`` (from 1) of a cluster of a survey record into ``folder``.
+    @classmethod
+    def read(cls, folder: Path) -> Ledger:
+        """Read the folder; one that is not there is a ledger without constructs.
 
-    ``cluster`` is an ID or its beginning. Returns the new file; one that exists is never replaced.
-    Raises `LedgerError`.
-    """
-    chosen = _cluster(record, cluster)
-    proposals = chosen["proposals"]
-    if not proposals:
-        raise LedgerError(f"{chosen['id']} has no proposal: no single edit was found to mend it")
-    if not 1 <= number <= len(proposals):
-        raise LedgerError(f"{chosen['id']} has {len(proposals)} proposals; there is no {number}")
-    text = _text(record, chosen, proposals[number - 1])
-    tomllib.loads(text)  # what is written can be read
-    folder.mkdir(parents=True, exist_ok=True)
-    name = _name(str(chosen["title"]))
-    taken = [int(p.name[:4]) for p in folder.glob("[0-9][0-9][0-9][0-9]-*.toml")]
-    place = max(taken, default=0) + 1
-    while True:
-        target = folder / f"{place:04}-{name}.toml"
-        try:
-            with target.open("x", encoding="utf-8", newline="\n") as stream:
-                stream.write(text)
-        except FileExistsError:
-            place += 1
+        Raises `LedgerError` for the first file that is not as it must be, for a number given twice
+        and for a gap.
+        """
+        files = sorted(folder.glob("*.toml")) if folder.is_dir() else []
+        constructs = []
+        for number, file in enumerate(files, 1):
+            construct = read(file)
+            if construct.number is None:
+                raise LedgerError(f"{file}: the name has no number, such as 0001-{file.name}")
+            if construct.number != number:
+                twice = construct.number < number
+                what = "is given twice" if twice else f"stands here, and there is no {number}"
+                raise LedgerError(f"{file}: number {construct.number} {what}")
+            constructs.append(construct)
+        return cls(folder, tuple(constructs))
+
+    @property
+    def accepted(self) -> tuple[Construct, ...]:
+        """The constructs that the grammar has."""
+        return tuple(c for c in self.constructs if c.is_accepted)
+
+    def ahead_of(self, construct: Construct) -> tuple[Construct, ...]:
+        """The accepted constructs before its place: where it was accepted, or behind all."""
+        accepted = self.accepted
+        files = [c.file for c in accepted]
+        return accepted[: files.index(construct.file)] if construct.file in files else accepted
+
+    def take(self, file: Path) -> Construct:
+        """The construct of a file, which may lie in the ledger or elsewhere.
+
+        Raises `LedgerError`.
+        """
+        if file.resolve().parent == self.folder.resolve():
+            file = self.folder / file.name
+        return next((c for c in self.constructs if c.file == file), None) or read(file)
+
+    def find(self, wanted: str) -> Construct:
+        """The construct of a number, an ID or the beginning of one; raises `LedgerError`."""
+        if wanted.isdecimal():
+            found = [c for c in self.constructs if c.number == int(wanted)]
         else:
-            return target
+            found = [c for c in self.constructs if wanted in (c.id, c.name)]
+            found = found or [c for c in self.constructs if c.id.startswith(wanted)]
+        if len(found) != 1 or not wanted:
+            what = "more than one construct" if found else "no construct"
+            raise LedgerError(f"{wanted!r} is {what} of {self.folder.as_posix()}")
+        return found[0]
 
 
-def _cluster(record: Mapping[str, Any], wanted: str) -> Mapping[str, Any]:
-    found = [c for c in record.get("clusters", ()) if str(c["id"]).startswith(wanted)]
-    if len(found) != 1 or not wanted:
-        known = ", ".join(str(c["id"]) for c in record.get("clusters", ())[:5])
-        what = "is no cluster" if not found else "is more than one cluster"
-        raise LedgerError(f"{wanted!r} {what} of this survey; the first are {known or 'none'}")
-    return found[0]  # type: ignore[no-any-return]
+def grown(grammar: Grammar, construct: Construct) -> Grammar:
+    """The grammar with one more construct; raises `LedgerError` where its edits do not fit."""
+    where = construct.file or construct.id
+    try:
+        after = apply(grammar, construct.edits)
+    except GrammarError as error:
+        raise LedgerError(f"{where}: edit: {error}") from None
+    wrong = problem(after)
+    if wrong:
+        raise LedgerError(f"{where}: edit: the grammar after it is ill formed: line {wrong}")
+    return after
 
 
-def _name(title: str) -> str:
-    words = re.sub(r"[^A-Za-z0-9]+", "-", title).strip("-").lower()
-    return words[:_WIDEST_NAME].strip("-") or "construct"
+def replay(
+    preliminary: Grammar, constructs: Sequence[Construct]
+) -> list[tuple[Construct, Grammar]]:
+    """Each construct with the grammar after it, whose text is exact to the byte.
+
+    Raises `LedgerError` where an edit does not fit or leaves no well-formed grammar.
+    """
+    out = []
+    grammar = preliminary
+    for construct in constructs:
+        grammar = grown(grammar, construct)
+        out.append((construct, grammar))
+    return out
 
 
-def _text(
-    record: Mapping[str, Any], cluster: Mapping[str, Any], proposal: Mapping[str, Any]
-) -> str:
-    reproducer = cluster["reproducer"] or {}
-    lines = [
-        f"# {proposal['edit']}",
-        "#",
-        *(f"# {line}" for line in str(proposal["diff"]).splitlines()[2:]),
-        "",
-        f"title = {_quoted(cluster['title'])}",
-        'state = "proposed"',
-        f"grammar = {_quoted(record['grammar_sha256'])}  # the grammar it was tried on",
-        "",
-        *(line for edit in proposal["edits"] for line in _table("[[edit]]", edit)),
-        "[evidence]",
-        f"files = {cluster['files']}",
-        f"origins = {cluster['origins']}",
-        f"lines = {cluster['failures']}",
-        "rules = []  # IDs of documented rules that say so",
-        'verdict = ""  # what the official implementation said, where it was asked',
-        f"seen = {_seen(cluster)}",
-        "",
-        "[examples]",
-        f"accept = {_listed([str(reproducer['text'])] if reproducer else [])}",
-        "reject = []  # programs near it that must stay rejected",
-        "",
-        "[effect]",
-        f"restores = {proposal['restores']}  # files that parse with this edit alone",
-        f"mends = {proposal['mends']}  # distinct failing lines",
-        f"accepts_negatives = {proposal['accepts_negatives']}",
-        f"ambiguities = {proposal['ambiguities']}",
-        f"breaks = {proposal['breaks']}",
-        "",
-    ]
-    return "\n".join(lines)
+def in_force(preliminary: Grammar, constructs: Sequence[Construct]) -> Grammar:
+    """The grammar after constructs, which all count; raises `LedgerError` as `replay` does."""
+    steps = replay(preliminary, constructs)
+    return steps[-1][1] if steps else preliminary
 
 
-def _table(header: str, values: Mapping[str, Any]) -> list[str]:
-    return [header, *(f"{key} = {_value(value)}" for key, value in values.items()), ""]
+def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[str]:
+    """What does not hold of an accepted ledger, a line each; nothing where all is well.
+
+    The replay is compared with the file ``grammar`` byte for byte. Every accept example has to be
+    accepted under the grammar at the end, every reject example refused, and every accepted
+    construct has to have grounds.
+    """
+    try:
+        steps = replay(preliminary, ledger.accepted)
+    except LedgerError as error:
+        yield str(error)
+        return
+    grammars = [preliminary, *(after for _, after in steps)]
+    difference = _difference(grammars[-1].text, grammar)
+    if difference:
+        yield difference
+    recognizer = Recognizer(grammars[-1])
+    for before, (construct, after) in zip(grammars, steps, strict=False):
+        where = construct.file or construct.id
+        if not is_wording(before, after):
+            if construct.evidence.objection:
+                yield f"{where}: evidence: {construct.evidence.objection}"
+            if not construct.accept:
+                yield f"{where}: examples.accept: there is no program that shows it"
+        if construct.effect is None:
+            yield f"{where}: effect: is missing; krl construct accept measures it"
+        yield from (f"{where}: {wrong}" for wrong in broken_examples(construct, recognizer))
 
 
-def _value(value: object) -> str:
-    return json.dumps(value) if isinstance(value, int | list) else _quoted(value)
+def is_wording(before: Grammar, after: Grammar) -> bool:
+    """Whether two grammars differ in comments and layout at most, which need no evidence."""
+    return before.rules == after.rules
 
 
-def _seen(cluster: Mapping[str, Any]) -> str:
-    """Places of the first files, a few of each origin."""
-    places = [
-        f"{file['path']}:{file['line']}"
-        for origin in cluster["files_by_origin"]
-        for file in origin["files"][:2]
-    ]
-    return _listed(places[:_FILES_NAMED])
+def broken_examples(construct: Construct, recognizer: Recognizer) -> Iterator[str]:
+    """Examples that a grammar with the construct does not treat as they ask for."""
+    for number, text in enumerate(construct.accept, 1):
+        if not recognizer.accepts(text):
+            yield f"examples.accept: number {number} is not accepted"
+    for number, text in enumerate(construct.reject, 1):
+        if recognizer.accepts(text):
+            yield f"examples.reject: number {number} is accepted"
 
 
-def _listed(texts: Sequence[str]) -> str:
-    return "[\n" + "".join(f"    {_quoted(text)},\n" for text in texts) + "]" if texts else "[]"
+def _difference(text: str, file: Path) -> str:
+    """Where a file differs from a text, in one line; empty where it does not."""
+    try:
+        found = file.read_bytes()
+    except OSError as error:
+        return f"{file}: {error.strerror or error}"
+    wanted = text.encode()
+    if found == wanted:
+        return ""
+    lines = enumerate(zip(found.splitlines(True), wanted.splitlines(True), strict=False), 1)
+    first = next((n for n, (old, new) in lines if old != new), None)
+    where = f"from line {first} on" if first else "in length"
+    return f"{file}: differs from the replay of the ledger {where}"
 
 
-def _quoted(text: object) -> str:
-    """A basic string of TOML: JSON's escapes, and DEL spelt out as TOML wants it."""
-    return json.dumps(str(text), ensure_ascii=False).replace("\x7f", "\\u007f")
+def preliminary_of(path: Path) -> Grammar:
+    """The restrictive start; raises `LedgerError`."""
+    try:
+        return read_file(path)
+    except GrammarError as error:
+        raise LedgerError(str(error)) from None

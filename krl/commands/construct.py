@@ -6,12 +6,14 @@ from typing import Annotated
 
 import typer
 
+from krl.commands import construct_accept, construct_oracle
+from krl.constructs import LEDGER, PRELIMINARY, expected_errors, print_table
 from krl.door import FINE, Unusable
+from krl.writing import write_json
 
 __all__ = ["app"]
 
 _SURVEY = Path("reports", "out", "recover", "survey.json")
-_LEDGER = Path("grammar", "constructs")
 
 app = typer.Typer(help="Constructs on their way into the grammar.")
 
@@ -19,6 +21,60 @@ app = typer.Typer(help="Constructs on their way into the grammar.")
 @app.callback()
 def _construct() -> None:
     """Constructs on their way into the grammar."""
+
+
+@app.command("list")
+def show_all(
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the list here too.")
+    ] = None,
+) -> int:
+    """List the constructs of the ledger, and those that wait for the verdict of an oracle."""
+    from recovery.ledger import Ledger
+    from recovery.oracle import reason_to_ask
+    from recovery.overview import row_of
+
+    if json_file is not None and json_file.is_dir():
+        raise Unusable(f"{json_file}: a folder, not a file")
+    with expected_errors():
+        ledger = Ledger.read(LEDGER)
+    rows = [
+        (
+            f"{c.number:04}",
+            c.title,
+            c.state,
+            ", ".join(c.evidence.grounds) or "none",
+            f"{c.evidence.files} / {c.evidence.origins}",
+        )
+        for c in ledger.constructs
+    ]
+    print_table(("", "title", "state", "grounds", "files / origins"), rows)
+    waiting = [(c, reason_to_ask(c)) for c in ledger.constructs]
+    asked = [(c.id, why) for c, why in waiting if why]
+    if asked:
+        typer.echo("\nWaiting for a verdict (krl construct oracle)")
+        print_table((), asked)
+    if json_file is not None:
+        write_json({"constructs": [row_of(c) for c in ledger.constructs]}, json_file)
+    return FINE
+
+
+@app.command("show")
+def show(
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="Its number, ID or name.")],
+) -> int:
+    """Show everything about a construct: edits and their difference, evidence, examples, effect."""
+    from recovery.ingest import printable
+    from recovery.ledger import Ledger, preliminary_of
+    from recovery.overview import difference, page_of
+
+    with expected_errors():
+        ledger = Ledger.read(LEDGER)
+        construct = ledger.find(wanted)
+        change = list(difference(construct, preliminary_of(PRELIMINARY), ledger))
+    for line in (*page_of(construct), *change):
+        typer.echo(printable(line.expandtabs(4)))
+    return FINE
 
 
 @app.command("propose")
@@ -30,11 +86,11 @@ def propose(
     survey: Annotated[
         Path, typer.Option(metavar="FILE", help="The survey, as krl recover wrote it.")
     ] = _SURVEY,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = _LEDGER,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = LEDGER,
 ) -> int:
     """Write a proposal of a survey as a file ready for review."""
-    from recovery.ledger import LedgerError
-    from recovery.ledger import propose as write
+    from recovery.construct import LedgerError
+    from recovery.draft import propose as write
 
     try:
         record = json.loads(survey.read_text(encoding="utf-8"))
@@ -46,3 +102,9 @@ def propose(
     except LedgerError as error:
         raise Unusable(str(error)) from error
     return FINE
+
+
+app.command("try")(construct_accept.weigh)
+app.command("accept")(construct_accept.accept)
+app.command("replay")(construct_accept.replay)
+app.command("oracle")(construct_oracle.oracle)

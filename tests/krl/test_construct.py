@@ -1,5 +1,6 @@
 """`krl construct propose`: from a survey to a file ready for review."""
 
+import json
 import tomllib
 from pathlib import Path
 
@@ -34,17 +35,31 @@ def test_the_file_can_be_read_and_its_edits_mend_the_example(out: Path, tmp_path
     assert propose(out, tmp_path) == 0
     (file,) = tmp_path.iterdir()
     assert file.name == "0001-for-step.toml"
-    construct = tomllib.loads(file.read_text(encoding="utf-8"))
+    text = file.read_text(encoding="utf-8")
+    construct = tomllib.loads(text)
     grammar = g4.read_file(PRELIMINARY)
     wider = g4.read(apply(grammar, [from_data(edit) for edit in construct["edit"]]).text)
     (example,) = construct["examples"]["accept"]
     assert construct["state"] == "proposed"
     assert construct["evidence"]["files"] == 3
-    assert construct["effect"]["restores"] == 3
+    assert construct["evidence"].keys() >= {"rules", "manual", "verdict", "seen"}
+    assert "#   3 files that parse with this edit alone" in text.splitlines()
     assert (False, True) == (
         Recognizer(grammar).accepts(example),
         Recognizer(wider).accepts(example),
     )
+
+
+def test_what_two_origins_show_is_corroborated(out: Path, tmp_path: Path) -> None:
+    """The state follows the evidence of the survey."""
+    record = json.loads((out / "survey.json").read_text(encoding="utf-8"))
+    record["clusters"][0]["origins"] = 2
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "survey.json").write_text(json.dumps(record), encoding="utf-8")
+    assert propose(other, tmp_path / "ledger") == 0
+    (file,) = (tmp_path / "ledger").iterdir()
+    assert tomllib.loads(file.read_text(encoding="utf-8"))["state"] == "corroborated"
 
 
 def test_a_file_is_never_replaced(out: Path, tmp_path: Path) -> None:

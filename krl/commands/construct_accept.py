@@ -1,0 +1,194 @@
+"""`krl construct try`, `accept` and `replay`: constructs weighed, taken in, and replayed."""
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.constructs import (
+    GENERATED,
+    GRAMMAR,
+    LEDGER,
+    PRELIMINARY,
+    expected_errors,
+    print_evaluation,
+    print_refusals,
+)
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from grammar import Grammar
+    from recovery.acceptance import Acceptance, Home
+    from recovery.ledger import Ledger
+    from recovery.standing import Corpora
+
+__all__ = ["accept", "replay", "weigh"]
+
+_OPEN = Path("corpus", "open")
+_OWN = Path("corpus", "programs")
+_NEGATIVES = Path("corpus", "negatives")
+_CACHE = Path("reports", "out", "recover", "cache")
+
+_Paths = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--corpus",
+        metavar="PATH",
+        help="Other people's files, in which evidence is counted; may be given several times; "
+        "default: corpus/open, where krl corpus fetch puts them.",
+    ),
+]
+_Jobs = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
+]
+
+
+def weigh(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
+    ],
+    corpus: _Paths = None,
+    jobs: _Jobs = None,
+    keep: Annotated[
+        bool, typer.Option("--keep", help="Write evidence and state into the files.")
+    ] = False,
+) -> int:
+    """Weigh constructs as accept would: evidence, effect, and why they would be refused.
+
+    Several are weighed one upon the other. Exit status 1 when something would be refused.
+    """
+    from recovery.construct_file import text_of
+    from recovery.ledger import Ledger
+    from recovery.together import write_together
+
+    with expected_errors():
+        found = _weighed(Ledger.read(LEDGER), files, corpus, jobs)
+        for evaluation in found.evaluations:
+            print_evaluation(evaluation)
+        print_refusals(found.other_refusals)
+        if keep:
+            kept = [e.kept for e in found.evaluations]
+            write_together({c.file: text_of(c).encode() for c in kept if c.file})
+    return FINDINGS if found.refusals else FINE
+
+
+def accept(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
+    ],
+    corpus: _Paths = None,
+    jobs: _Jobs = None,
+) -> int:
+    """Take constructs into the grammar, all of them or none.
+
+    Each is weighed at its place. Where nothing speaks against any, the ledger, grammar/KRL.g4 and
+    the generated parser are written. A file from elsewhere moves into grammar/constructs. One that
+    was accepted before is weighed again at its place. Exit status 1 when something is refused.
+    """
+    from grammar import read_file
+    from recovery.acceptance import Refused, write
+    from recovery.ledger import Ledger
+
+    home = _home()
+    if shutil.which("java") is None:
+        raise Unusable("accept generates the parser, ANTLR needs Java, and no java is on the PATH")
+    with expected_errors():
+        current = read_file(home.grammar)
+        found = _weighed(Ledger.read(home.ledger), files, corpus, jobs, current)
+        try:
+            written = write(found, home)
+        except Refused as refused:
+            print_refusals(refused.refusals)
+            typer.echo("nothing has changed")
+            return FINDINGS
+    for evaluation in found.evaluations:
+        print_evaluation(evaluation)
+    accepted = sum(c.is_accepted for c in found.constructs)
+    typer.echo(f"wrote {len(written)} files; the grammar has {_count(accepted)}")
+    return FINE
+
+
+def replay(
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Compare with grammar/KRL.g4 and run all examples instead."),
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the grammar here.")
+    ] = None,
+    until: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="NUMBER", help="Stop behind this construct; 0 is the start."),
+    ] = None,
+) -> int:
+    """Rebuild the grammar: the restrictive start and every accepted construct, in order."""
+    from recovery.ledger import Ledger, findings, preliminary_of
+    from recovery.ledger import replay as replayed
+
+    if check and (out is not None or until is not None):
+        raise Unusable("--check goes with neither --out nor --until")
+    with expected_errors():
+        preliminary = preliminary_of(PRELIMINARY)
+        ledger = Ledger.read(LEDGER)
+        if check:
+            found = list(findings(ledger, preliminary, GRAMMAR))
+            for line in found:
+                typer.echo(one_line(line))
+            if not found:
+                typer.echo(f"{GRAMMAR.as_posix()} is the replay of {_count(len(ledger.accepted))}")
+            return FINDINGS if found else FINE
+        chosen = [c for c in ledger.accepted if until is None or (c.number or 0) <= until]
+        steps = replayed(preliminary, chosen)
+    text = steps[-1][1].text if steps else preliminary.text
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_bytes(text.encode())
+        typer.echo(f"wrote {out.as_posix()}: the replay of {_count(len(chosen))}")
+    return FINE
+
+
+def _home() -> "Home":
+    from recovery.acceptance import Home
+
+    return Home(PRELIMINARY, GRAMMAR, GENERATED, LEDGER)
+
+
+def _weighed(
+    ledger: "Ledger",
+    files: list[Path],
+    corpus: list[Path] | None,
+    jobs: int | None,
+    current: "Grammar | None" = None,
+) -> "Acceptance":
+    from recovery.acceptance import enter
+    from recovery.ledger import preliminary_of
+
+    given = list({c.file: c for c in map(ledger.take, files)}.values())
+    preliminary, corpora = preliminary_of(PRELIMINARY), _corpora(corpus, jobs)
+    with progress_bar("weighing", len(given)) as bar:
+        return enter(given, preliminary, ledger, corpora, current, bar)
+
+
+def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
+    from recovery.negatives import load
+    from recovery.standing import Corpora
+
+    if not paths:
+        paths = [_OPEN] if _OPEN.is_dir() else []
+    if not paths:
+        typer.echo("no corpus/open here and no --corpus: evidence is kept as it is written")
+    return Corpora(
+        paths,
+        _OWN if _OWN.is_dir() else None,
+        load(_NEGATIVES) if _NEGATIVES.is_dir() else (),
+        cache=_CACHE,
+        jobs=jobs,
+    )
+
+
+def _count(number: int) -> str:
+    return f"{number} construct" if number == 1 else f"{number} constructs"

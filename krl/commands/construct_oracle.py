@@ -1,0 +1,113 @@
+"""`krl construct oracle`: what the official implementation says about constructs."""
+
+import os
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.constructs import LEDGER, expected_errors, print_table
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from recovery.construct import Construct
+    from recovery.oracle import Oracle
+
+__all__ = ["oracle"]
+
+
+def oracle(
+    wanted: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[ID]...", help="Constructs; default: those that wait."),
+    ] = None,
+    bundle: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write their test programs and a form to fill here."),
+    ] = None,
+    record: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Take the answers of a filled form.")
+    ] = None,
+    command: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CMD",
+            help="Ask a command: it gets the path of a program and ends with 0 for accepted, or 1 "
+            "after a line with the message.",
+        ),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(metavar="TEXT", help="What the command asks, and when; kept with the answer."),
+    ] = None,
+    timeout: Annotated[
+        float, typer.Option(min=0.1, metavar="S", help="Seconds a program may take the command.")
+    ] = 60.0,
+) -> int:
+    """Show what waits for the verdict of the official implementation, and ask it.
+
+    Exit status 1 when an answer differs from the ledger.
+    """
+    from recovery.ledger import Ledger
+    from recovery.oracle import CommandOracle, OracleError, programs_of, reason_to_ask
+    from recovery.verdicts import RecordedOracle, write_bundle
+
+    if sum(option is not None for option in (bundle, record, command)) > 1:
+        raise Unusable("only one of --bundle, --record and --command")
+    with expected_errors():
+        ledger = Ledger.read(LEDGER)
+        waiting = [c for c in ledger.constructs if reason_to_ask(c)]
+        chosen = [ledger.find(one) for one in wanted] if wanted else waiting
+        try:
+            if record is not None:
+                recorded = RecordedOracle(record)
+                return _ask(ledger.constructs if not wanted else chosen, recorded)
+            if command is not None:
+                words = shlex.split(command, posix=os.name != "nt")
+                if not words:
+                    raise Unusable("--command is empty")
+                return _ask(chosen, CommandOracle(words, name or Path(words[0]).name, timeout))
+            if bundle is not None:
+                programs = [program for c in chosen for program in programs_of(c)]
+                if not programs:
+                    raise Unusable("nothing waits for a verdict: name constructs")
+                write_bundle(programs, bundle)
+                typer.echo(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
+                return FINE
+        except OracleError as error:
+            raise Unusable(str(error)) from error
+    if not chosen:
+        typer.echo("nothing waits for a verdict")
+    print_table(
+        (), [(c.id, reason_to_ask(c) or c.evidence.verdict or "need not wait") for c in chosen]
+    )
+    return FINE
+
+
+def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
+    """Ask about constructs, write the verdicts into their files, say what was answered."""
+    from recovery.construct_file import text_of
+    from recovery.oracle import judged
+    from recovery.together import write_together
+
+    with progress_bar("asking", len(constructs)) as bar:
+        found = []
+        for construct in constructs:
+            found.append((construct, judged(construct, asked)))
+            bar()
+    changes: dict[Path, bytes | None] = {}
+    findings = 0
+    for construct, verdict in found:
+        new = verdict.construct
+        if new != construct and new.file is not None:
+            changes[new.file] = text_of(new).encode()
+            typer.echo(one_line(f"{new.id}: {new.evidence.verdict}"))
+        for finding in verdict.findings:
+            typer.echo(one_line(f"{new.id}: differs: {finding}"))
+        findings += len(verdict.findings)
+    write_together(changes)
+    typer.echo(f"{len(changes)} verdicts written, {findings} answers differ from the ledger")
+    return FINDINGS if findings else FINE

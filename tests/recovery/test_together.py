@@ -1,0 +1,66 @@
+"""Several files written together: all of them, or none."""
+
+from pathlib import Path
+
+import pytest
+
+from recovery.together import write_together
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
+
+
+def test_files_are_made_changed_and_removed(tmp_path: Path) -> None:
+    """What is as it was is not touched, and nothing is left beside the files."""
+    for name in ("old.txt", "same.txt", "gone.txt"):
+        (tmp_path / name).write_bytes(b"1")
+    before = (tmp_path / "same.txt").stat().st_mtime_ns
+    new = tmp_path / "folder" / "new.txt"
+    changed = write_together(
+        {
+            tmp_path / "gone.txt": None,
+            tmp_path / "never.txt": None,
+            new: b"2",
+            tmp_path / "old.txt": b"3",
+            tmp_path / "same.txt": b"1",
+        }
+    )
+    assert {"folder/new.txt": b"2", "old.txt": b"3", "same.txt": b"1"} == content(tmp_path)
+    assert [tmp_path / "gone.txt", new, tmp_path / "old.txt"] == changed
+    assert before == (tmp_path / "same.txt").stat().st_mtime_ns
+
+
+def test_where_one_fails_none_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was exchanged before the failure is put back, what was made is removed."""
+    (tmp_path / "a.txt").write_bytes(b"1")
+    (tmp_path / "b.txt").write_bytes(b"2")
+    (tmp_path / "d.txt").write_bytes(b"4")
+    before = content(tmp_path)
+    exchange = Path.replace
+
+    def failing(self: Path, target: Path) -> Path:
+        if target.name == "c.txt":
+            raise OSError(28, "No space left on device")
+        return exchange(self, target)
+
+    monkeypatch.setattr(Path, "replace", failing)
+    with pytest.raises(OSError, match="No space"):
+        write_together(
+            {
+                tmp_path / "a.txt": b"new",
+                tmp_path / "b.txt": None,
+                tmp_path / "new.txt": b"new",
+                tmp_path / "c.txt": b"new",
+                tmp_path / "d.txt": b"new",
+            }
+        )
+    assert before == content(tmp_path)
+
+
+def test_where_nothing_can_be_laid_ready_nothing_is_touched(tmp_path: Path) -> None:
+    """A folder that cannot be made stops it before the first exchange."""
+    (tmp_path / "a.txt").write_bytes(b"1")
+    with pytest.raises(OSError, match=r"a\.txt"):
+        write_together({tmp_path / "a.txt": b"2", tmp_path / "a.txt" / "b.txt": b"3"})
+    assert {"a.txt": b"1"} == content(tmp_path)
