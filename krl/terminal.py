@@ -12,7 +12,7 @@ from rich.text import Text
 
 from krl.door import one_line
 
-__all__ = ["print_survey"]
+__all__ = ["print_survey", "share"]
 
 _ROWS = 15
 _WORDS = 12
@@ -25,7 +25,7 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
     files, parsed = record["files"], record["parsed"]
     console.print(
         f"{files:,} files, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
-        f"({_share(parsed, files)} of files, {_share(record['parsed_bytes'], record['bytes'])} "
+        f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
         f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s",
         soft_wrap=True,
     )
@@ -41,6 +41,9 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
         console.print(_advice(record))
     elif files:
         console.print("Nothing is missing: every file parses under this grammar.")
+    start = record.get("start")
+    if start is not None:
+        console.print(_story(start), soft_wrap=True)
     if record["swallowed"]:
         words = ", ".join(s["word"] for s in record["swallowed"][:_WORDS])
         console.print(
@@ -49,7 +52,7 @@ def print_survey(record: Mapping[str, Any], page: Path) -> None:
     console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
 
 
-def _share(part: float, whole: float) -> str:
+def share(part: float, whole: float) -> str:
     """Per cent, rounded down: all but one is not yet all."""
     return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
@@ -82,6 +85,17 @@ def _advice(record: Mapping[str, Any]) -> str:
         if step["parsed"] >= 0.95 * files:
             return (
                 f"Mending {number} of {len(record['clusters'])} clusters lets "
-                f"{_share(step['parsed'], files)} of the files parse."
+                f"{share(step['parsed'], files)} of the files parse."
             )
     return ""
+
+
+def _story(start: Mapping[str, Any]) -> str:
+    """What the ledger made of the restrictive start."""
+    clusters, constructs = start["clusters"], start["constructs"]
+    answered = sum(cluster["answered_by"] is not None for cluster in clusters)
+    return (
+        f"Under the restrictive start {start['parsed']:,} of {start['files']:,} files parse; "
+        f"of its {len(clusters):,} clusters {answered:,} are answered by constructs "
+        f"({len(constructs):,})."
+    )

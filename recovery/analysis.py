@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from recovery.answers import answered
 from recovery.causes import no_judge
 from recovery.cluster import cluster
+from recovery.growth import Steps
 from recovery.judge import judge_of
 from recovery.memory import Memory, key_of
 from recovery.negatives import Negative
@@ -21,7 +23,7 @@ from recovery.progress import Progress, unheard
 from recovery.record import record_of
 from recovery.survey import Survey
 
-__all__ = ["analyse"]
+__all__ = ["analyse", "with_answers"]
 
 
 def analyse(
@@ -46,6 +48,37 @@ def analyse(
             record = _worked_out(found, negatives, grammar_name, on_found, on_done)
             memory.keep_record(digest, record)
     return {**record, "seconds": round(found.seconds, 3)}
+
+
+#: What the record of the start would only repeat of that of the grammar in force.
+_REPEATED = frozenset({"failures", "skipped", "origins", "copies", "swallowed"})
+
+
+def with_answers(
+    record: Mapping[str, Any],
+    found: Survey,
+    steps: Steps,
+    *,
+    jobs: int | None = None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> dict[str, Any]:
+    """The record of the restrictive start as part of another: what the ledger made of it.
+
+    ``record`` is that of ``found``, the survey of the start. Each cluster gets ``answered_by``, and
+    ``constructs`` are those that answered (`recovery.answers`).
+    """
+    answers = answered(
+        record["clusters"],
+        found,
+        steps,
+        jobs=jobs,
+        cache=cache,
+        on_found=on_found,
+        on_done=on_done,
+    )
+    return {key: value for key, value in record.items() if key not in _REPEATED} | answers
 
 
 def _worked_out(

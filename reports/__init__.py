@@ -1,5 +1,6 @@
 """The window: records become pages that people read. Imports none of the other packages."""
 
+from reports.growth_page import write_growth_page
 from reports.survey_page import write_survey_page
 
-__all__ = ["write_survey_page"]
+__all__ = ["write_growth_page", "write_survey_page"]

@@ -11,6 +11,7 @@ from typing import Any
 
 from reports.embed import printable
 from reports.fields import Record, count, nested, optional_count, records, text, texts
+from reports.spelling import clip
 
 Json = dict[str, Any]
 
@@ -75,11 +76,6 @@ def cluster_id(record: Record, key: str = "id") -> str:
 def title_of(cluster: Record) -> str:
     """The title, with something to call the cluster by where it has none."""
     return clip(text(cluster, "title") or text(cluster, "rule") or cluster_id(cluster), 160)
-
-
-def clip(line: str, width: int) -> str:
-    """``line`` cut to ``width`` characters, the cut marked with an ellipsis."""
-    return line if len(line) <= width else line[: width - 1] + "…"
 
 
 def clip_around(line: str, column: int, width: int) -> tuple[str, int]:

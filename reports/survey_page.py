@@ -1,21 +1,17 @@
 """The page a survey ends with: one file, no network, opens from disk."""
 
-import secrets
 from collections.abc import Mapping
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
+from reports.construct_data import construct_data
+from reports.embed import embedded_json
+from reports.fields import Record, nested, records, text
+from reports.page import render, source, write_page
+from reports.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
+from reports.survey_section import Section
+from reports.survey_view import survey_view
 
-from reports.embed import embedded_json, inline_source, script_hash
-from reports.fields import records
-from reports.survey_cluster import DETAILS, cluster_data
-from reports.survey_view import counted, survey_view
-
-# In the order of their use of one another.
-_SCRIPTS = ("page", "source", "cards", "table", "chart")
-_MAX_CLUSTERS = 2000
 # The embedded data stays below this, which keeps the whole page below 5 MB.
 _MAX_DATA_CHARACTERS = 3_500_000
 
@@ -26,58 +22,58 @@ def write_survey_page(record: Mapping[str, Any], folder: Path) -> Path:
     ``record`` is what ``krl recover --json`` writes; every field may be absent. Lines and columns
     in it count from 1, columns in characters (a tab is one). The failures are not read: the page
     shows clusters with their examples. The same record gives the same bytes. The page appears whole
-    or not at all: it is written beside its place and then moved there.
+    or not at all.
 
     Raises OSError when the folder cannot be made or written.
     """
-    page = render_survey_page(record)
-    folder.mkdir(parents=True, exist_ok=True)
-    target = folder / "index.html"
-    draft = folder / f".index-{secrets.token_hex(8)}.tmp"
-    try:
-        draft.write_text(page, encoding="utf-8", newline="\n")
-        draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)
-    return target
+    return write_page(render_survey_page(record), folder)
 
 
 def render_survey_page(record: Mapping[str, Any]) -> str:
     """The page of ``record`` as text; see `write_survey_page`."""
-    clusters = records(record, "clusters")[:_MAX_CLUSTERS]
-    script = _script()
-    environment = Environment(
-        loader=FunctionLoader(_template),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters["counted"] = counted
-    environment.filters["thousands"] = "{:,}".format
-    view = survey_view(record, clusters)
+    view = survey_view(record)
     for detail in DETAILS:
-        data = embedded_json(
-            {"files": view.files, "parsed": view.parsed, **cluster_data(clusters, detail)}
-            | {"mending": [[step.id, step.parsed, step.place] for step in view.mending]}
-        )
+        sections = [_section(record, view.section, detail)]
+        if view.start is not None:
+            sections.append(_section(nested(record, "start"), view.start, detail))
+        data = embedded_json({"sections": sections})
         if len(data) <= _MAX_DATA_CHARACTERS:
             break
-    return environment.get_template("survey.html.j2").render(
-        view=view,
-        data=data,
-        style=inline_source(_template("survey.css")),
-        script=inline_source(script),
-        script_hash=script_hash(script),
-    )
+    return render("survey.html.j2", script=_script(), styles=["page.css"], data=data, view=view)
+
+
+def _section(record: Record, shown: Section, detail: Detail) -> dict[str, Any]:
+    """A section as the page's script reads it."""
+    clusters = records(record, "clusters")[: len(shown.rows)]
+    constructs = {text(c, "id"): construct_data(c) for c in records(record, "constructs")}
+    answers = {cluster_id(c): text(c, "answered_by") for c in clusters}
+    return {
+        "prefix": shown.prefix,
+        "files": shown.files,
+        "parsed": shown.parsed,
+        "mending": [[step.id, step.parsed, step.place] for step in shown.mending],
+        "answers": {
+            name: constructs[answer] for name, answer in answers.items() if answer in constructs
+        },
+        **cluster_data(clusters, detail),
+    }
 
 
 def _script() -> str:
-    parts = "\n".join(_template(f"survey-{name}.js") for name in _SCRIPTS)
-    return f'"use strict";\n{{\n{parts}}}\n'
-
-
-def _template(name: str) -> str:
-    source = resources.files("reports") / "templates" / name
-    return source.read_text(encoding="utf-8").replace("\r\n", "\n")
+    """The scripts of the page: what shows a section is a function of its data and its prefix."""
+    parts = "\n".join(source(f"survey-{name}.js") for name in ("cards", "table", "chart"))
+    return f""""use strict";
+{{
+{source("page.js")}
+{source("source.js")}
+{source("construct.js")}
+function present(data, prefix) {{
+const byId = (id) => document.getElementById(prefix + id);
+const {{ clusters, strings }} = data;
+{parts}
+if (data.mending.length) chart();
+if (rows.length) connect();
+return rows.length ? readHash : null;
+}}
+{source("survey-sections.js")}}}
+"""

@@ -5,55 +5,14 @@ Everything here is text ready to print; all foreign text has passed through `pri
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 
 from reports.embed import printable
-from reports.fields import Record, count, number, optional_count, records, text
-from reports.survey_cluster import clip, cluster_id, is_follower, title_of
+from reports.fields import Record, count, nested, number, optional_count, records, text
+from reports.spelling import Figure, clip, counted, moment, percent, share, size
+from reports.survey_section import Section, section
 
-_NUMBER_WORDS = dict(
-    enumerate(("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=2)
-)
-_TARGETS = (0.95, 0.99, 1.0)
+_MAX_CLUSTERS = 2000
 _MAX_PATHS = 200
-
-
-@dataclass(frozen=True, slots=True)
-class Figure:
-    """One headline figure: what it is, its value, a line below, and a share in 0…1 for a bar."""
-
-    label: str
-    value: str
-    note: str = ""
-    share: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ClusterRow:
-    """One row of the table of clusters; ``place`` is the one in the greedy order, if any."""
-
-    id: str
-    title: str
-    rule: str
-    unlocks: int
-    files: int
-    origins: int
-    failures: int
-    place: int | None
-    follower: bool
-    bar: float
-
-
-@dataclass(frozen=True, slots=True)
-class MendingStep:
-    """After mending this cluster and all before it, ``parsed`` files parse, ``gain`` more."""
-
-    place: int
-    id: str
-    title: str
-    parsed: int
-    gain: int
-    share: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +48,10 @@ class Copies:
 
 @dataclass(frozen=True, slots=True)
 class SurveyView:
-    """The fixed parts of the page. ``state``: no-files, complete, unclustered or clusters."""
+    """The fixed parts of the page. ``state``: no-files, complete, unclustered or clusters.
+
+    ``start`` is the section of the restrictive start, where that was surveyed too.
+    """
 
     state: str
     grammar: str
@@ -99,22 +61,21 @@ class SurveyView:
     files: int
     parsed: int
     figures: tuple[Figure, ...]
-    verdict: str
-    mending: tuple[MendingStep, ...]
-    rows: tuple[ClusterRow, ...]
-    clusters_left_out: int
+    section: Section
+    start: Section | None
     origins: tuple[OriginRow, ...]
     skipped: tuple[Skipped, ...]
     skipped_total: int
     copies: Copies
 
 
-def survey_view(record: Record, clusters: Sequence[Record]) -> SurveyView:
-    """The fixed parts of the page of ``record``, whose shown clusters are ``clusters``."""
-    mending = _mending(record, clusters)
+def survey_view(record: Record) -> SurveyView:
+    """The fixed parts of the page of ``record``."""
+    clusters = _shown(record)
+    begun = nested(record, "start")
     skipped = records(record, "skipped")
     version = text(record, "version")
-    made = [version and f"krl {version}", _moment(text(record, "generated"))]
+    made = [version and f"krl {version}", moment(text(record, "generated"))]
     return SurveyView(
         state=_state(record, clusters),
         grammar=printable(clip(text(record, "grammar"), 400)),
@@ -124,10 +85,8 @@ def survey_view(record: Record, clusters: Sequence[Record]) -> SurveyView:
         files=count(record, "files"),
         parsed=count(record, "parsed"),
         figures=_figures(record, clusters),
-        verdict=_verdict(record, mending),
-        mending=mending,
-        rows=_rows(clusters, mending),
-        clusters_left_out=count(record, "clusters") - len(clusters),
+        section=section(record, clusters),
+        start=section(begun, _shown(begun), "start-") if begun else None,
         origins=_origins(record),
         skipped=_skipped(skipped),
         skipped_total=len(skipped),
@@ -135,31 +94,8 @@ def survey_view(record: Record, clusters: Sequence[Record]) -> SurveyView:
     )
 
 
-def percent(part: float, whole: float) -> str:
-    """A share as text, never rounded up to 100 % nor down to 0 %."""
-    if whole <= 0:
-        return "–"
-    tenths = int(1000 * part / whole)
-    if tenths == 0 and part > 0:
-        return "<0.1 %"
-    return "100 %" if tenths >= 1000 else f"{tenths / 10:.1f} %"
-
-
-def size(octets: float) -> str:
-    """A number of bytes in decimal units."""
-    if octets < 1000:
-        return f"{octets:.0f} bytes"
-    scale, unit = next(
-        ((scale, unit) for scale, unit in ((1e3, "kB"), (1e6, "MB")) if octets < 1000 * scale),
-        (1e9, "GB"),
-    )
-    value = octets / scale
-    return f"{value:,.{0 if value >= 100 else 1 if value >= 10 else 2}f} {unit}"
-
-
-def counted(total: int, noun: str) -> str:
-    """``3 files``, ``1 file``."""
-    return f"{total:,} {noun}" if total == 1 else f"{total:,} {noun}s"
+def _shown(record: Record) -> list[Record]:
+    return records(record, "clusters")[:_MAX_CLUSTERS]
 
 
 def _state(record: Record, clusters: Sequence[Record]) -> str:
@@ -168,17 +104,6 @@ def _state(record: Record, clusters: Sequence[Record]) -> str:
     if clusters:
         return "clusters"
     return "complete" if count(record, "parsed") >= count(record, "files") else "unclustered"
-
-
-def _moment(generated: str) -> str:
-    """An ISO date and time to the minute, as people read it; anything else unchanged."""
-    try:
-        moment = datetime.fromisoformat(generated)
-    except ValueError:
-        return generated
-    if len(generated) <= len("2031-05-06"):
-        return generated
-    return f"{moment:%Y-%m-%d %H:%M} {moment.tzname() or ''}".rstrip()
 
 
 def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
@@ -196,13 +121,13 @@ def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
             percent(parsed, files),
             f"{parsed:,} of {counted(files, 'file')}"
             + (f", {distinct:,} distinct" if distinct not in (None, files) else ""),
-            _share(parsed, files),
+            share(parsed, files),
         ),
         Figure(
             "bytes in them",
             percent(parsed_octets, octets),
             f"{size(parsed_octets)} of {size(octets)}",
-            _share(parsed_octets, octets),
+            share(parsed_octets, octets),
         ),
         Figure(
             "clusters",
@@ -227,65 +152,6 @@ def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
     )
 
 
-def _share(part: float, whole: float) -> float:
-    return min(1.0, max(0.0, part / whole)) if whole > 0 else 0.0
-
-
-def _mending(record: Record, clusters: Sequence[Record]) -> tuple[MendingStep, ...]:
-    titles = {cluster_id(cluster): title_of(cluster) for cluster in clusters}
-    files, before = count(record, "files"), count(record, "parsed")
-    steps: list[MendingStep] = []
-    for place, step in enumerate(records(record, "greedy"), start=1):
-        name, parsed = cluster_id(step, "cluster"), count(step, "parsed")
-        if name in titles:
-            title = printable(titles[name])
-            steps.append(
-                MendingStep(place, name, title, parsed, parsed - before, percent(parsed, files))
-            )
-        before = parsed
-    return tuple(steps)
-
-
-def _verdict(record: Record, mending: Sequence[MendingStep]) -> str:
-    """The sentence over the chart: how few clusters bring the corpus to the next round share."""
-    files, parsed = count(record, "files"), count(record, "parsed")
-    if not mending or files == 0:
-        return ""
-    for target in _TARGETS:
-        reached = next((step for step in mending if step.parsed >= target * files), None)
-        if reached is not None and parsed < target * files:
-            share = "every file parses" if target == 1.0 else f"{target:.0%} of the files parse"
-            return f"Mend {_these(reached.place)} and {share}.".replace("%", " %")
-    last = mending[-1]
-    return f"Mend {_these(last.place)} and {last.share} of the files parse."
-
-
-def _these(total: int) -> str:
-    if total == 1:
-        return "the first cluster"
-    return f"the first {_NUMBER_WORDS.get(total, f'{total:,}')} clusters"
-
-
-def _rows(clusters: Sequence[Record], mending: Sequence[MendingStep]) -> tuple[ClusterRow, ...]:
-    places = {step.id: step.place for step in mending}
-    most = max((count(cluster, "unlocks") for cluster in clusters), default=0)
-    return tuple(
-        ClusterRow(
-            id=cluster_id(cluster),
-            title=printable(title_of(cluster)),
-            rule=printable(clip(text(cluster, "rule"), 120)),
-            unlocks=count(cluster, "unlocks"),
-            files=count(cluster, "files"),
-            origins=count(cluster, "origins"),
-            failures=count(cluster, "failures"),
-            place=places.get(cluster_id(cluster)),
-            follower=is_follower(cluster),
-            bar=_share(count(cluster, "unlocks"), most),
-        )
-        for cluster in clusters
-    )
-
-
 def _origins(record: Record) -> tuple[OriginRow, ...]:
     rows = []
     for origin in records(record, "origins"):
@@ -297,7 +163,7 @@ def _origins(record: Record) -> tuple[OriginRow, ...]:
                 files=files,
                 parsed=parsed,
                 failed=files - parsed if failed is None else failed,
-                share=_share(parsed, files),
+                share=share(parsed, files),
                 rate=percent(parsed, files),
             )
         )

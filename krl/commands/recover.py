@@ -1,16 +1,24 @@
 """`krl recover`: what the grammar is missing, over a corpus."""
 
-import json
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from krl.constructs import expected_errors
 from krl.door import FINDINGS, FINE, Unusable
 from krl.progress import progress_bar
 from krl.terminal import print_survey
+from krl.writing import check_targets, write_json
+
+if TYPE_CHECKING:
+    from grammar import Grammar
+    from recovery.growth import Steps
+    from recovery.negatives import Negative
+    from recovery.survey import Survey
 
 __all__ = ["recover"]
 
@@ -51,17 +59,22 @@ def recover(
             help="Programs that every proposal must keep rejected; default: corpus/negatives.",
         ),
     ] = None,
+    start: Annotated[
+        bool,
+        typer.Option(
+            "--start/--no-start",
+            help="Survey under the restrictive start too, and tell what answered its clusters.",
+        ),
+    ] = True,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 when a file does not parse.")
     ] = False,
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
-    from grammar import GrammarError, read_file
+    from grammar import read_file
     from grammar.generate import GRAMMAR
-    from recovery.analysis import analyse
-    from recovery.ingest import IngestError
-    from recovery.negatives import NegativeError, load
-    from recovery.survey import survey
+    from recovery.ledger import Ledger, replay
+    from recovery.negatives import load
     from reports import write_survey_page
 
     if scheduler is not None:
@@ -69,46 +82,86 @@ def recover(
     roots = paths or [_DEFAULT_CORPUS]
     if not paths and not _DEFAULT_CORPUS.is_dir():
         raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
-    if out.exists() and not out.is_dir():  # said before the work, not after it
-        raise Unusable(f"{out}: not a folder")
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
-    cache = out / "cache"
-    try:
+    check_targets(out, json_file)
+    name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
+    with expected_errors():
         chosen = read_file(grammar or GRAMMAR)
+        restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
         given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
-        judges = load(given) if given else ()
-        with progress_bar("surveying") as bar:
-            found = survey(roots, chosen, jobs=jobs, cache=cache, on_found=bar.expect, on_done=bar)
-        with progress_bar("finding causes") as bar:
-            record = analyse(
-                found,
-                judges,
-                grammar_name=_grammar_name(grammar),
-                cache=cache,
-                on_found=bar.expect,
-                on_done=bar,
-            )
-    except (GrammarError, IngestError, NegativeError) as error:
-        raise Unusable(str(error)) from error
+        surveyor = _Surveyor(roots, load(given) if given else (), out / "cache", jobs)
+        # where nothing has grown yet, the start is what is in force
+        if grammar is None and start and restrictive.sha256 != chosen.sha256:
+            ledger = Ledger.read(GRAMMAR.with_name("constructs"))
+            steps = replay(restrictive, ledger.accepted)
+            record = surveyor.record(chosen, name)
+            record["start"] = surveyor.start(restrictive, steps)
+        else:
+            record = surveyor.record(chosen, name)
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_survey_page(record, out)
     for target in {out / "survey.json", json_file} - {None}:
         assert target is not None
-        _write_json(record, target)
+        write_json(record, target)
     print_survey(record, page)
     return FINDINGS if strict and record["parsed"] < record["files"] else FINE
 
 
-def _grammar_name(chosen: Path | None) -> str:
-    return "grammar/KRL.g4" if chosen is None else chosen.as_posix()
+class _Surveyor:
+    """Surveys the same files under one grammar and another, telling how far it is."""
 
+    def __init__(
+        self, roots: Sequence[Path], negatives: "Sequence[Negative]", cache: Path, jobs: int | None
+    ) -> None:
+        self.roots = roots
+        self.negatives = negatives
+        self.cache = cache
+        self.jobs = jobs
 
-def _write_json(record: dict[str, Any], target: Path) -> None:
-    """Write `record` whole or not at all."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    scratch = target.with_name(target.name + ".part")
-    with scratch.open("w", encoding="utf-8", newline="\n") as stream:
-        stream.write(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
-    scratch.replace(target)
+    def record(self, grammar: "Grammar", name: str) -> dict[str, Any]:
+        """The record of the survey under a grammar."""
+        found = self._survey(grammar, "surveying")
+        return self._analysed(found, name, "finding causes")
+
+    def start(self, grammar: "Grammar", steps: "Steps") -> dict[str, Any]:
+        """The same under the restrictive start, with what the constructs answered."""
+        from recovery.analysis import with_answers
+
+        found = self._survey(grammar, "surveying the start")
+        record = self._analysed(found, "grammar/preliminary.g4", "finding causes of the start")
+        with progress_bar("finding answers") as bar:
+            return with_answers(
+                record,
+                found,
+                steps,
+                jobs=self.jobs,
+                cache=self.cache,
+                on_found=bar.expect,
+                on_done=bar,
+            )
+
+    def _survey(self, grammar: "Grammar", label: str) -> "Survey":
+        from recovery.survey import survey
+
+        with progress_bar(label) as bar:
+            return survey(
+                self.roots,
+                grammar,
+                jobs=self.jobs,
+                cache=self.cache,
+                on_found=bar.expect,
+                on_done=bar,
+            )
+
+    def _analysed(self, found: "Survey", name: str, label: str) -> dict[str, Any]:
+        from recovery.analysis import analyse
+
+        with progress_bar(label) as bar:
+            return analyse(
+                found,
+                self.negatives,
+                grammar_name=name,
+                cache=self.cache,
+                on_found=bar.expect,
+                on_done=bar,
+            )

@@ -1,44 +1,9 @@
 // The card of a cluster: example, reproducer, expected tokens, proposals, files.
 
-function copyButton(text, label = "Copy") {
-  return button(label, (self) => {
-    const done = () => {
-      self.textContent = "Copied";
-      setTimeout(() => { self.textContent = label; }, 1500);
-    };
-    const byHand = () => {
-      const area = el("textarea", "unseen");
-      area.value = text;
-      document.body.append(area);
-      area.select();
-      if (document.execCommand("copy")) done();
-      area.remove();
-      self.focus();
-    };
-    if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, byHand);
-    else byHand();
-  }, `Copies: ${text.length > 80 ? `${text.slice(0, 79)}…` : text}`);
-}
-
 // Long sets and lists are folded, but never for the sake of a few.
 const FOLD_AFTER = 14;
 const WORTH_FOLDING = 4;
 const ORIGINS_SHOWN = 6;
-
-function part(title, ...content) {
-  return el("section", "", title ? el("h3", "", title) : null, ...content);
-}
-
-function folded(summary, build) {
-  const details = el("details", "", el("summary", "", ...summary));
-  details.addEventListener("toggle", () => {
-    if (details.open && details.childElementCount === 1) {
-      details.append(build());
-      settle(details);
-    }
-  });
-  return details;
-}
 
 function example(cluster, item) {
   const at = item.column ? `${item.line}:${item.column}` : `${item.line}`;
@@ -123,8 +88,9 @@ function proposals(cluster) {
         return el("td", `num${state}`, value === null ? "–" : number(value));
       })));
   }
+  // what the start lacked is answered or proposed under the grammar in force, not from here
   return part("", el("div", "heading", el("h3", "", "Proposals, the best first"),
-    copyButton(`krl construct propose ${cluster.id}`, "Copy command")),
+    ...(prefix ? [] : [copyButton(`krl construct propose ${cluster.id}`, "Copy command")])),
   el("table", "proposals", el("thead", "", head), body));
 }
 
@@ -153,15 +119,29 @@ function facts(cluster) {
     + (cluster.lines === null || cluster.lines === cluster.failures ? "" : ` on ${counted(cluster.lines, "line")}`));
   if (cluster.follows) add(cluster.follows, "only follow from an earlier failure");
   const step = data.mending.find(([id]) => id === cluster.id);
-  if (step) line.append(` · place ${step[2]} in the mending order, ${share(step[1])} parse after it`);
+  if (step) line.append(` · place ${step[2]} in the mending order, ${percent(step[1], data.files)} parse after it`);
   const link = el("a", "at", cluster.id);
-  link.href = `#${new URLSearchParams({ cluster: cluster.id })}`;
+  link.href = `#${new URLSearchParams({ [`${prefix}cluster`]: cluster.id })}`;
   link.title = "Link to this cluster";
   return el("p", "facts", line, link);
 }
 
+const answerOf = (cluster) => (Object.hasOwn(data.answers, cluster.id) ? data.answers[cluster.id] : null);
+
+/** What the ledger answered: the construct with its evidence and its edit. */
+function answer(cluster) {
+  const construct = answerOf(cluster);
+  if (!construct) return null;
+  return el("div", "answered",
+    el("div", "heading", el("h3", "", `Answered by ${construct.id}: `, el("b", "", construct.title)),
+      copyButton(`krl construct show ${construct.id}`, "Copy command")),
+    summaryOf(construct),
+    el("div", "halves", el("div", "", editOf(construct)), el("div", "", evidenceOf(construct))),
+    folded(["Its examples"], () => el("div", "", ...examplesOf(construct).filter(Boolean))));
+}
+
 function card(cluster) {
-  return el("div", "sheet", facts(cluster),
+  return el("div", "sheet", facts(cluster), answer(cluster),
     el("div", "halves",
       el("div", "", examples(cluster), reproducer(cluster)),
       el("div", "", found(cluster), expected(cluster), rule(cluster), filesByOrigin(cluster))),

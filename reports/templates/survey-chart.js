@@ -1,22 +1,14 @@
 // The chart of the mending order: files that parse after mending the first n clusters.
 
-const SVG = "http://www.w3.org/2000/svg";
 const FIRST_STEPS = 40;
 
 function chart() {
   const holder = byId("chart");
-  const links = [...document.querySelectorAll("#steps a")];
+  const links = [...byId("steps").querySelectorAll("a")];
   const total = data.mending.length;
   let whole = true;
   const tip = el("div", "tip");
   tip.hidden = true;
-
-  function svg(tag, attributes, text) {
-    const node = document.createElementNS(SVG, tag);
-    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-    if (text !== undefined) node.textContent = text;
-    return node;
-  }
 
   function draw() {
     const width = holder.clientWidth || 640;
@@ -29,7 +21,7 @@ function chart() {
     const x = (n) => left + ((width - left - right) * n) / last;
     const y = (value) => top + ((height - top - bottom) * (100 - value)) / (100 - low);
     const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img" });
-    root.append(svg("title", {}, `Files that parse: ${share(data.parsed)} today, ${share(data.mending[total - 1][1])} after ${counted(total, "cluster")}; the list beside the chart holds the same figures`));
+    root.append(svg("title", {}, `Files that parse: ${percent(data.parsed, data.files)} today, ${percent(data.mending[total - 1][1], data.files)} after ${counted(total, "cluster")}; the list beside the chart holds the same figures`));
 
     const every = 100 - low > 50 ? 20 : 10;
     for (let value = 100; value >= low; value -= every) {
@@ -71,9 +63,9 @@ function chart() {
         const gain = parsed - (n > 1 ? data.mending[n - 2][1] : data.parsed);
         links[n - 1].classList.add("on");
         tip.replaceChildren(el("b", "", `${n}. ${clusters[indexOf.get(id)].title}`),
-          `${gain < 0 ? "−" : "+"}${counted(Math.abs(gain), "file")}, then ${number(parsed)} of ${number(data.files)} parse (${share(parsed)})`);
+          `${gain < 0 ? "−" : "+"}${counted(Math.abs(gain), "file")}, then ${number(parsed)} of ${number(data.files)} parse (${percent(parsed, data.files)})`);
       } else {
-        tip.replaceChildren(el("b", "", "Today"), `${number(data.parsed)} of ${number(data.files)} parse (${share(data.parsed)})`);
+        tip.replaceChildren(el("b", "", "Today"), `${number(data.parsed)} of ${number(data.files)} parse (${percent(data.parsed, data.files)})`);
       }
       const flip = x(n) > width / 2;
       tip.style.left = flip ? "auto" : `${x(n) + 12}px`;
@@ -110,10 +102,4 @@ function chart() {
   }).observe(holder);
   drawn = holder.clientWidth;
   draw();
-}
-
-if (data.mending.length) chart();
-if (rows.length) {
-  connect();
-  readHash();
 }

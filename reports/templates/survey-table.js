@@ -1,10 +1,11 @@
 // The table of clusters: open, sort, search, filter; and the links into it.
 
-const rows = [...document.querySelectorAll("#rows > .row")];
+const rows = [...(byId("rows")?.querySelectorAll(":scope > .row") ?? [])];
 const indexOf = new Map(clusters.map((cluster, i) => [cluster.id, i]));
 const places = new Map(data.mending.map(([id, , place]) => [id, place]));
 const cards = new Map();
 const state = { cluster: "", q: "", sort: "" };
+states[prefix] = state;
 
 function setOpen(i, open) {
   const row = rows[i];
@@ -13,7 +14,7 @@ function setOpen(i, open) {
     const cell = el("td", "", card(clusters[i]));
     cell.colSpan = row.cells.length;
     const cardRow = el("tr", "card", cell);
-    cardRow.id = `card-${i}`;
+    cardRow.id = `${prefix}card-${i}`;
     opener.setAttribute("aria-controls", cardRow.id);
     cards.set(i, cardRow);
     row.after(cardRow);
@@ -50,12 +51,13 @@ const sortValue = {
   place: (i) => places.get(clusters[i].id) ?? Infinity,
   title: (i) => clusters[i].title.toLowerCase(),
   rule: (i) => clusters[i].rule.toLowerCase(),
+  answer: (i) => answerOf(clusters[i])?.anchor ?? "~",
   unlocks: (i) => clusters[i].unlocks,
   files: (i) => clusters[i].files,
   origins: (i) => clusters[i].origins,
   failures: (i) => clusters[i].failures,
 };
-const ascendingFirst = new Set(["place", "title", "rule"]);
+const ascendingFirst = new Set(["place", "title", "rule", "answer"]);
 
 let shownOrder = rows.map((_, i) => i);
 /** Orders the rows by `sort`: a key, with "-" before it for descending, or "" for the survey's order. */
@@ -73,7 +75,7 @@ function order(sort) {
   const unmoved = indices.every((i, n) => i === shownOrder[n]);
   shownOrder = indices;
   if (!unmoved) byId("rows").append(...indices.flatMap((i) => (cards.has(i) ? [rows[i], cards.get(i)] : [rows[i]])));
-  for (const head of document.querySelectorAll("#table > thead th")) {
+  for (const head of byId("table").tHead.rows[0].cells) {
     if (value && head.dataset.key === key) head.setAttribute("aria-sort", down ? "descending" : "ascending");
     else head.removeAttribute("aria-sort");
   }
@@ -95,6 +97,7 @@ function haystack(i) {
       ...cluster.examples.flatMap((item) => [strings[item.path], ...item.lines.map(([, text]) => text)]),
       ...cluster.byOrigin.flatMap(([, , files]) => files.map(([path]) => strings[path])),
       cluster.reproducer ? cluster.reproducer.text : "",
+      answerOf(cluster) ? `${answerOf(cluster).id}\n${answerOf(cluster).title}` : "",
     ].join("\n").toLowerCase();
   }
   return haystacks[i];
@@ -132,19 +135,12 @@ function clearFilters() {
   search("");
 }
 
-// Links: #cluster=ID, #q=TEXT, #sort=-files
+// Links: #cluster=ID, #q=TEXT, #sort=-files; with the section's prefix before each
 
-function writeHash() {
-  const set = Object.entries(state).filter(([, value]) => value);
-  const hash = set.length ? `#${new URLSearchParams(set)}` : location.pathname + location.search;
-  try { history.replaceState(null, "", hash); } catch { /* some browsers refuse it for local files */ }
-}
-
-function readHash() {
-  const given = new URLSearchParams(location.hash.slice(1));
-  order(given.get("sort") ?? "");
-  search(given.get("q") ?? "");
-  if (given.has("cluster")) goTo(given.get("cluster"));
+function readHash(given) {
+  order(given.get(`${prefix}sort`) ?? "");
+  search(given.get(`${prefix}q`) ?? "");
+  if (given.has(`${prefix}cluster`)) goTo(given.get(`${prefix}cluster`));
 }
 
 function connect() {
@@ -158,21 +154,9 @@ function connect() {
   byId("unlocking").parentElement.hidden = !clusters.some((cluster) => cluster.unlocks > 0);
   byId("direct").parentElement.hidden = !clusters.some((cluster) => cluster.follows > 0);
 
-  byId("rows").addEventListener("click", (event) => {
-    const row = event.target.closest(".row");
-    const marking = !getSelection().isCollapsed && getSelection().containsNode(row ?? document.body, true);
-    if (row && (!marking || event.target.closest(".open"))) toggle(Number(row.dataset.i));
-  });
-  byId("rows").addEventListener("keydown", (event) => {
-    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (!step || !event.target.classList.contains("open")) return;
-    event.preventDefault();
-    let row = event.target.closest("tr");
-    do row = step > 0 ? row.nextElementSibling : row.previousElementSibling;
-    while (row && (row.hidden || !row.classList.contains("row")));
-    if (row) row.querySelector(".open").focus();
-  });
-  for (const head of document.querySelectorAll("#table > thead th")) {
+  onRow(byId("rows"), toggle);
+  walkWithArrows(byId("rows"));
+  for (const head of byId("table").tHead.rows[0].cells) {
     head.querySelector("button").addEventListener("click", () => {
       order(nextSort(head.dataset.key));
       writeHash();
@@ -188,11 +172,4 @@ function connect() {
     writeHash();
     byId("search").focus();
   });
-  document.addEventListener("keydown", (event) => {
-    if (event.key === "/" && !/^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) {
-      event.preventDefault();
-      byId("search").focus();
-    }
-  });
-  addEventListener("hashchange", readHash);
 }

@@ -10,8 +10,12 @@ from typing import Any
 
 import pytest
 
+from grammar.edits import AddToken, Insert, apply
+from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from krl.cli import main
+from recovery.construct import Construct, Evidence
+from recovery.construct_file import text_of
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
 FINE = b"DEF A()\nHALT\nEND\n"
@@ -371,3 +375,81 @@ def test_a_missing_place_cannot_steer_the_terminal(capsys: pytest.CaptureFixture
     complaint = capsys.readouterr().err
     assert 1 == complaint.count("\n")
     assert complaint.strip().isprintable()
+
+
+# --------------------------------------------------------------------- the restrictive start
+
+
+@pytest.fixture
+def grown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A grammar in force that is the start and one construct."""
+    home = tmp_path / "grammar"
+    (home / "constructs").mkdir(parents=True)
+    edits = (AddToken("STEP"), Insert("forStatement", (1, 7), "(STEP expression)?"))
+    made = Construct("for-step", "FOR … STEP", edits, 1, "accepted", evidence=Evidence(3, 2, 4))
+    ledger = home / "constructs" / "0001-for-step.toml"
+    ledger.write_text(text_of(made), encoding="utf-8", newline="\n")
+    start = read_file(PRELIMINARY)
+    (home / "preliminary.g4").write_bytes(start.text.encode())
+    (home / "KRL.g4").write_bytes(apply(start, edits).text.encode())
+    monkeypatch.setattr("grammar.generate.GRAMMAR", home / "KRL.g4")
+    return home
+
+
+@pytest.mark.usefixtures("grown")
+def test_the_start_is_surveyed_beside_the_grammar_in_force(
+    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its clusters lead to what answered them; what others read stays that of the grammar."""
+    assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    found = record(tmp_path / "out")
+    assert ("grammar/KRL.g4", 5, 4) == (found["grammar"], found["files"], found["parsed"])
+    start = found["start"]
+    assert ("grammar/preliminary.g4", 5, 1) == (start["grammar"], start["files"], start["parsed"])
+    answers = {c["title"].split()[0]: c["answered_by"] for c in start["clusters"]}
+    assert {"FOR": "0001-for-step", "RETURN": None} == answers
+    assert ["FOR … STEP"] == [c["title"] for c in start["constructs"]]
+    assert "of its 2 clusters 1 are answered by constructs (1)" in capsys.readouterr().out
+    page = (tmp_path / "out" / "index.html").read_text("utf-8")
+    assert page.index('id="rows"') < page.index('id="start-rows"')
+
+
+@pytest.mark.parametrize("given", [["--no-start"], ["--grammar", "{grown}/KRL.g4"]])
+def test_the_start_can_be_left_out(
+    given: list[str], grown: Path, corpus: Path, tmp_path: Path
+) -> None:
+    """When asked, and where another grammar is named."""
+    options = [word.format(grown=grown) for word in given]
+    assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), *options])
+    assert "start" not in record(tmp_path / "out")
+
+
+def test_a_grammar_that_is_the_start_is_surveyed_once(
+    grown: Path, corpus: Path, tmp_path: Path
+) -> None:
+    """Nothing has grown yet."""
+    (grown / "KRL.g4").write_bytes((grown / "preliminary.g4").read_bytes())
+    assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    assert "start" not in record(tmp_path / "out")
+
+
+@pytest.mark.usefixtures("grown")
+def test_where_nothing_is_missing_the_page_tells_the_story(tmp_path: Path) -> None:
+    """A friendly first screen, then how it got there."""
+    root = lay(tmp_path / "corpus", fine=FINE, step=STEP % b"2")
+    assert 0 == main(["recover", str(root), "--out", str(tmp_path / "out"), "--strict"])
+    page = (tmp_path / "out" / "index.html").read_text("utf-8")
+    assert "Nothing is missing: every file parses under this grammar" in page
+    assert 'href="#story"' in page
+
+
+def test_a_damaged_ledger_is_one_clear_line(
+    grown: Path, corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Said before the work; without the start it does not matter."""
+    (grown / "constructs" / "0001-for-step.toml").write_text("title = ", encoding="utf-8")
+    assert 2 == main(["recover", str(corpus), "--out", str(tmp_path / "out")])
+    said, complaint = capsys.readouterr()
+    assert ("", 1) == (said, complaint.count("\n"))
+    assert "0001-for-step.toml" in complaint
+    assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--no-start"])

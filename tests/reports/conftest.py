@@ -363,24 +363,175 @@ def empty_record() -> Json:
     return record | {"origins": [], "bytes": 0, "parsed_bytes": 0, "distinct": 0, "copies": []}
 
 
+# -- the growth of a grammar -----------------------------------------------------------------------
+
+TITLES = (
+    "GLOBAL before DEF and DEFFCT",
+    "DEFFCT with a return type",
+    "Parameters with IN and OUT",
+    "DECL with several names and sizes",
+    "Initial values in data lists",
+    "FOR … STEP",
+    "SWITCH with CASE lists",
+    "SIGNAL … TO",
+    "Motions with C_DIS C_VEL",
+    "TRIGGER WHEN PATH … ONSTART",
+)
+GROUNDS = (("corroborated", "documented"), ("corroborated",), ("documented",), ("confirmed",))
+
+
+def _growth_step(number: int, parsed: int, before: int) -> Json:
+    title = TITLES[(number - 1) % len(TITLES)] if number else "The restrictive start"
+    name = f"{number:04}-{'-'.join(title.lower().split()[:3])}" if number else "preliminary"
+    restored = parsed - before if number else 0
+    return {
+        "number": number,
+        "id": name,
+        "title": title if number <= len(TITLES) else f"{title} ({number})",
+        "state": "accepted" if number else "start",
+        "summary": "Both kinds of routine take it." if number else "",
+        "grounds": list(GROUNDS[number % len(GROUNDS)]) if number else [],
+        "evidence": {
+            "files": 3 * restored + 2,
+            "origins": 1 + number % 9,
+            "lines": 17 * restored + 5,
+            "rules": ["SCO-04", "SCO-05"] if number % 4 in (0, 2) else [],
+            "manual": "Operating instructions, section 5.2" if number % 5 == 0 else "",
+            "verdict": "accepted" if number % 4 == 3 else "",
+            "oracle": "",
+            "seen": [f"{ORIGINS[n % 5]}/KRC/R1/part_{n}.src:{9 + n}" for n in range(6)],
+        }
+        if number
+        else {},
+        "edits": [f"reserve WORD{number}", f"routine: »WORD{number}?« DEF NAME '('"]
+        if number
+        else [],
+        "diff": f"@@ -31,3 +31,3 @@\n procedure\n-    : DEF NAME\n+    : WORD{number}? DEF NAME\n"
+        if number
+        else "",
+        "accept": [f"WORD{number} DEF A()\nEND\n", "DEF B()\nHALT\nEND\n"] if number else [],
+        "reject": [f"WORD{number} WORD{number} DEF A()\nEND\n"] if number else [],
+        "files": 583,
+        "parsed": parsed,
+        "bytes": 4_305_593,
+        "parsed_bytes": int(4_305_593 * (parsed / 583) ** 1.7),
+        "restored": restored,
+        "broken": 2 if number == 7 else 0,
+        "restored_files": [f"{ORIGINS[n % 5]}/KRC/R1/restored_{n}.src" for n in range(restored)],
+        "broken_files": ["training/a.src", "training/b.src"] if number == 7 else [],
+        "failing_lines": int(42_000 * (1 - parsed / 583) ** 1.5),
+        "metrics": {
+            "TERM": 76.0 + number // 2,
+            "VAR": 44.0 + number // 3,
+            "MCC": 77.0 + 3 * number,
+            "AVS": round(4.86 + 0.03 * number, 3),
+            "HAL": round(17.1 + 0.9 * number, 3),
+            "LL1": round(87.5 - 0.05 * number, 3),
+        },
+    }
+
+
+def growth_record(steps: int = 40) -> Json:
+    """The growth of a grammar over 583 files; three of them remain."""
+    parsed = [round(36 + 544 * (1 - (1 - n / steps) ** 2.2)) for n in range(steps + 1)]
+    rows = [_growth_step(n, p, parsed[max(0, n - 1)]) for n, p in enumerate(parsed)]
+    left = [
+        ("training/KRC/R1/template.src", "an aggregate begins with a name", 4),
+        ("training/KRC/R1/notes.src", "an expression is no statement", 2),
+        ("cell-07.zip/KRC/R1/odd.src", "", 0),
+    ]
+    return {
+        "grammar": "grammar/KRL.g4",
+        "grammar_sha256": "5f2c41d07b" * 6 + "abcd",
+        "version": "0.1.0",
+        "generated": "2031-05-06T07:08:09+00:00",
+        "seconds": 21.5,
+        "files": 583,
+        "distinct": 560,
+        "bytes": 4_305_593,
+        "skipped": [{"path": "training/table.dat", "reason": "no KRL: a table", "origin": "t"}],
+        "meanings": {
+            "TERM": "tokens that the rules use",
+            "VAR": "rules",
+            "MCC": "decisions: alternatives beyond the first, optional and repeated parts",
+            "AVS": "average size of a rule, in names of tokens and rules",
+            "HAL": "Halstead effort, in thousands",
+            "LL1": "decisions that one token decides, in per cent",
+        },
+        "steps": rows,
+        "lookahead": {
+            "decisions": 196,
+            "one": 85.5,
+            "two": 95.2,
+            "others": ["program: “(eol routine)*” and “what follows it” can begin alike"],
+        },
+        "ambiguous": {
+            "lines": 1,
+            "of": 114_000,
+            "examples": [{"path": "training/a.src", "line": 7, "text": "WAIT FOR A (B)"}],
+        },
+        "remaining": [
+            {"path": path, "line": 4, "column": 5, "token": "{", "text": "LIN {{ X 1", "follows": 0}
+            for path, _, _ in left
+        ],
+        "remaining_files": [
+            {
+                "path": path,
+                "origin": "training",
+                "copies": [],
+                "bytes": 217,
+                "lines": 10,
+                "failing": 1,
+                "fact": fact,
+                "fact_line": line,
+            }
+            for path, fact, line in left
+        ],
+    }
+
+
+# -- the restrictive start beside the grammar in force ---------------------------------------------
+
+
+def _started() -> Json:
+    """The survey of the start: each cluster but every fourth was answered by a construct."""
+    constructs = growth_record(9)["steps"][1:]
+    record = believable_record()
+    for rank, cluster in enumerate(record["clusters"]):
+        cluster["answered_by"] = constructs[rank % 9]["id"] if rank % 4 else None
+    del record["failures"]
+    return record | {"constructs": constructs}
+
+
+def story_record() -> Json:
+    """A survey in which every file parsed, and what it was like under the start."""
+    return complete_record() | {"start": _started()}
+
+
+def both_record() -> Json:
+    """A survey with clusters, and that of the start, whose clusters have the same names."""
+    return believable_record() | {"start": _started()}
+
+
 HOSTILE = (
     "</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>"
     "<!--\x1b[31m\x00\u202e\ud800\u2028{{ 7*7 }}"
 )
 
 
+def poisoned(value: Any) -> Any:
+    """A record in which every text, wherever it stands, tries to break out of the page."""
+    if isinstance(value, dict):
+        return {name: poisoned(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [poisoned(item) for item in value]
+    # Ids stay distinct, as in a real record; they too carry the poison.
+    return value + HOSTILE if isinstance(value, str) else value
+
+
 def hostile_record() -> Json:
-    """A survey in which every text, wherever it stands, tries to break out of the page."""
-
-    def poisoned(value: Any, key: str = "") -> Any:
-        if isinstance(value, dict):
-            return {name: poisoned(item, name) for name, item in value.items()}
-        if isinstance(value, list):
-            return [poisoned(item, key) for item in value]
-        # Ids stay distinct, as in a real record; they too carry the poison.
-        return value + HOSTILE if isinstance(value, str) else value
-
-    record: Json = poisoned(believable_record())
+    """A survey whose texts are poisoned."""
+    record: Json = poisoned(both_record())
     return record
 
 
@@ -391,10 +542,26 @@ _BUILDERS: dict[str, RecordBuilder] = {
     "complete": complete_record,
     "empty": empty_record,
     "hostile": hostile_record,
+    "story": story_record,
+    "both": both_record,
 }
 
 
 @pytest.fixture(scope="session")
 def survey_record() -> Callable[[str], Json]:
-    """Builds a fresh record by name: believable, large, complete, empty, hostile."""
+    """Builds a fresh record by name, one of `_BUILDERS`."""
     return lambda name: _BUILDERS[name]()
+
+
+_GROWN: dict[str, RecordBuilder] = {
+    "believable": growth_record,
+    "hostile": lambda: poisoned(growth_record(12)),
+    "start": lambda: growth_record() | {"steps": growth_record()["steps"][:1]},
+    "empty": dict,
+}
+
+
+@pytest.fixture(scope="session")
+def grown() -> Callable[[str], Json]:
+    """Builds a fresh record of a growth by name: believable, hostile, start, empty."""
+    return lambda name: _GROWN[name]()

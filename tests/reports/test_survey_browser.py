@@ -55,7 +55,7 @@ def pages(
 ) -> Callable[[str], str]:
     """The address of the page of a named record, each written once."""
     folder = tmp_path_factory.mktemp("pages")
-    names = ("believable", "large", "complete", "empty", "hostile")
+    names = ("believable", "large", "complete", "empty", "hostile", "story", "both")
     written = {name: write_survey_page(survey_record(name), folder / name) for name in names}
     return lambda name: written[name].as_uri()
 
@@ -384,11 +384,47 @@ def test_hostile_text_is_shown_and_does_not_run(
     assert browser.execute_script("return window.hacked === undefined")
     assert _all(browser, "img") == []
     assert len(_all(browser, "script")) == 2
-    assert len(_all(browser, ".card")) == 11
+    assert len(_all(browser, ".card")) == 22
+    assert len(_all(browser, ".answered")) == 8
     line = _one(browser, ".example .failing .tx").get_attribute("textContent") or ""
     assert "</script><script>window.hacked=1</script>" in line
     assert "␛[31m␀" in line
     assert browser.get_log("browser") == []  # type: ignore[no-untyped-call]
+
+
+def test_a_cluster_of_the_start_shows_what_answered_it(
+    browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
+) -> None:
+    """The construct with its edit, evidence and examples, before the example that failed."""
+    cluster = survey_record("story")["start"]["clusters"][1]
+    _open(browser, f"{pages('story')}#start-cluster={cluster['id']}")
+    card = _one(browser, ".card")
+    assert card.text.index("Answered by 0002-deffct-with-a: DEFFCT") < card.text.index("Example")
+    answer = card.find_element(By.CLASS_NAME, "answered")
+    assert answer.find_element(By.CLASS_NAME, "add").text == "+    : WORD2? DEF NAME"
+    assert "documented" in answer.find_element(By.CLASS_NAME, "evidence").text
+    browser.execute_script("document.querySelectorAll('.answered details')[2].open = true")
+    assert "WORD2 DEF A()" in answer.text
+    titles = [button.get_attribute("title") or "" for button in _all(browser, ".heading button")]
+    assert not any("krl construct propose" in title for title in titles)
+
+
+def test_both_sections_keep_their_own_state(
+    browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
+) -> None:
+    """Clusters of the same name are opened, searched and sorted each in its own table."""
+    cluster = survey_record("both")["clusters"][2]
+    _open(browser, f"{pages('both')}#cluster={cluster['id']}&start-q=elseif")
+    assert [e.get_attribute("id") for e in _all(browser, ".card")] == ["card-2"]
+    shown = "return [...document.querySelectorAll(arguments[0])].filter(e => !e.hidden).length"
+    assert browser.execute_script(shown, "#rows > .row") == 11
+    assert browser.execute_script(shown, "#start-rows > .row") == 1
+    _click(browser, _one(browser, "#start-clear"))
+    _click(browser, _one(browser, "#start-table th[data-key=answer] button"))
+    answers = [e.text for e in _all(browser, "#start-rows .answer")]
+    assert answers[-3:] == ["nothing yet"] * 3
+    assert f"cluster={cluster['id']}" in browser.current_url
+    assert "start-sort=answer" in browser.current_url
 
 
 def test_500_clusters_load_quickly_and_stay_usable(

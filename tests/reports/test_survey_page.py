@@ -77,7 +77,7 @@ def test_the_same_record_gives_the_same_bytes(survey_record: RecordBuilder, tmp_
 
 def test_hostile_text_adds_no_element(survey_record: RecordBuilder, tmp_path: Path) -> None:
     """A record full of markup gives the same elements as one without."""
-    plain = _Elements(_page(survey_record("believable"), tmp_path / "plain"))
+    plain = _Elements(_page(survey_record("both"), tmp_path / "plain"))
     hostile = _Elements(_page(survey_record("hostile"), tmp_path / "hostile"))
     assert [tag for tag, _ in plain.tags] == [tag for tag, _ in hostile.tags]
 
@@ -95,6 +95,30 @@ def test_template_marks_in_a_record_are_not_evaluated(
 ) -> None:
     """Text that looks like a template expression is text."""
     assert "{{ 7*7 }}" in _page(survey_record("hostile"), tmp_path)
+
+
+def test_where_nothing_is_missing_the_start_is_told(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """A friendly screen first, then the clusters of the start with what answered them."""
+    page = _page(survey_record("story"), tmp_path)
+    assert "Nothing is missing: every file parses under this grammar" in page
+    assert "under which 312 of them parse (53.5 %)" in page
+    assert "fell into 11 clusters; 9 constructs answered 8 of them" in page
+    assert page.index('id="empty"') < page.index('id="story"') < page.index('id="start-rows"')
+    assert 'id="rows"' not in page
+    assert '<td class="answer">DEFFCT with a return type</td>' in page
+    assert 3 == page.count('<td class="answer dim">nothing yet</td>')
+
+
+def test_failures_in_force_come_before_those_of_the_start(
+    survey_record: RecordBuilder, tmp_path: Path
+) -> None:
+    """Both have their tables."""
+    page = _page(survey_record("both"), tmp_path)
+    places = [page.index(f'id="{name}"') for name in ("rows", "story", "start-rows", "origins")]
+    assert sorted(places) == places
+    assert 22 == page.count('<tr class="row"')
 
 
 def test_the_page_does_not_hold_the_failures(survey_record: RecordBuilder, tmp_path: Path) -> None:

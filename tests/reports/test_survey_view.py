@@ -5,13 +5,14 @@ from typing import Any
 
 import pytest
 
-from reports.survey_view import SurveyView, percent, size, survey_view
+from reports.spelling import percent, size
+from reports.survey_view import SurveyView, survey_view
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 
 
 def _view(record: dict[str, Any]) -> SurveyView:
-    return survey_view(record, record["clusters"])
+    return survey_view(record)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +66,7 @@ def test_the_verdict_names_the_fewest_clusters_for_95_per_cent(
         "clusters": [{"id": name, "title": name} for name in ids],
         "greedy": [{"cluster": n, "parsed": p} for n, p in zip(ids, reached, strict=True)],
     }
-    assert verdict == _view(record).verdict
+    assert verdict == _view(record).section.verdict
 
 
 def test_the_verdict_aims_higher_where_95_per_cent_parse_already() -> None:
@@ -76,13 +77,13 @@ def test_the_verdict_aims_higher_where_95_per_cent_parse_already() -> None:
         "clusters": [{"id": "c-1", "title": "A"}],
         "greedy": [{"cluster": "c-1", "parsed": 100}],
     }
-    assert _view(record).verdict == "Mend the first cluster and every file parses."
+    assert _view(record).section.verdict == "Mend the first cluster and every file parses."
 
 
 def test_each_mending_step_tells_what_it_adds(survey_record: RecordBuilder) -> None:
     """The gain counts from the step before, the first one from today."""
     record = survey_record("believable")
-    steps = _view(record).mending
+    steps = _view(record).section.mending
     assert [step.place for step in steps] == list(range(1, 10))
     assert steps[0].gain == record["greedy"][0]["parsed"] - record["parsed"]
     assert sum(step.gain for step in steps) == record["greedy"][-1]["parsed"] - record["parsed"]
@@ -91,12 +92,14 @@ def test_each_mending_step_tells_what_it_adds(survey_record: RecordBuilder) -> N
 def test_rows_keep_the_order_of_the_record(survey_record: RecordBuilder) -> None:
     """The survey ranks; the page does not rank again."""
     record = survey_record("believable")
-    assert [c["title"] for c in record["clusters"]] == [row.title for row in _view(record).rows]
+    assert [c["title"] for c in record["clusters"]] == [
+        row.title for row in _view(record).section.rows
+    ]
 
 
 def test_a_cluster_whose_failures_all_follow_is_marked(survey_record: RecordBuilder) -> None:
     """Only such a cluster is marked, not one with some failures that follow."""
-    rows = _view(survey_record("believable")).rows
+    rows = _view(survey_record("believable")).section.rows
     assert [row.title for row in rows if row.follower] == ["ENDIF without its IF"]
 
 

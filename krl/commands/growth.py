@@ -1,0 +1,146 @@
+"""`krl growth`: what each construct of the ledger brought, over a corpus."""
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from krl.constructs import expected_errors
+from krl.door import FINE, Unusable, one_line
+from krl.progress import progress_bar
+from krl.terminal import share
+from krl.writing import check_targets, write_json
+
+__all__ = ["growth"]
+
+_DEFAULT_CORPUS = Path("corpus")
+_DEFAULT_OUT = Path("reports", "out", "growth")
+_BIGGEST = 14
+_LEFT = 5
+
+
+def growth(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Files, folders, .zip archives of controllers; default: corpus/.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where index.html and growth.json go.")
+    ] = _DEFAULT_OUT,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
+    ] = None,
+    constructs: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="The ledger; default: that of the grammar in force."),
+    ] = None,
+) -> int:
+    """Replay the ledger over KRL source: parse rate and metrics of the grammar, step by step."""
+    from grammar.generate import GRAMMAR
+    from recovery.growth import growth as replayed
+    from recovery.ledger import Ledger, preliminary_of, replay
+    from reports import write_growth_page
+
+    roots = paths or [_DEFAULT_CORPUS]
+    if not paths and not _DEFAULT_CORPUS.is_dir():
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    if constructs is not None and not constructs.is_dir():
+        raise Unusable(f"{constructs}: not a folder")
+    check_targets(out, json_file)
+    with expected_errors():
+        start = preliminary_of(GRAMMAR.with_name("preliminary.g4"))
+        ledger = Ledger.read(constructs or GRAMMAR.with_name("constructs"))
+        steps = replay(start, ledger.accepted)
+        with progress_bar("replaying") as bar:
+            record = replayed(
+                roots,
+                start,
+                steps,
+                jobs=jobs,
+                cache=out / "cache",
+                on_found=bar.expect,
+                on_done=bar,
+            )
+    record["grammar"] = "grammar/KRL.g4" if constructs is None else constructs.as_posix()
+    record["version"] = metadata.version("krl-workbench")
+    record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
+    page = write_growth_page(record, out)
+    for target in {out / "growth.json", json_file} - {None}:
+        assert target is not None
+        write_json(record, target)
+    _print(record, page)
+    return FINE
+
+
+def _print(record: Mapping[str, Any], page: Path) -> None:
+    """Print the first, the last and the biggest steps, and what remains."""
+    console = Console(highlight=False, markup=False, emoji=False)
+    steps = record["steps"]
+    first, last = steps[0], steps[-1]
+    console.print(
+        f"{record['files']:,} files, {record['bytes'] / 1e6:.2f} MB; {len(steps) - 1} constructs; "
+        f"parsed {first['parsed']:,} at the start, {last['parsed']:,} at the end "
+        f"({share(last['parsed'], last['files'])} of files, "
+        f"{share(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s",
+        soft_wrap=True,
+    )
+    console.print(_table(steps))
+    ambiguous, look = record["ambiguous"], record["lookahead"]
+    console.print(
+        f"Of {look['decisions']} decisions {look['one']:.1f} % are taken on one token, "
+        f"{look['two']:.1f} % on at most two; {ambiguous['lines']:,} of {ambiguous['of']:,} lines "
+        "have two readings.",
+        soft_wrap=True,
+    )
+    left = record["remaining_files"]
+    for file in left[:_LEFT]:
+        why = f"no valid KRL, {file['fact']}" if file["fact"] else "open"
+        console.print(f"remains: {one_line(file['path'])}: {one_line(why)}", soft_wrap=True)
+    if len(left) > _LEFT:
+        console.print(f"… and {len(left) - _LEFT} more files remain")
+    console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
+
+
+def _table(steps: Sequence[Mapping[str, Any]]) -> Table:
+    """The first step, the last and those that restored most, in their order."""
+    biggest = sorted(steps[1:], key=lambda step: -step["restored"])[:_BIGGEST]
+    shown = {0, len(steps) - 1} | {
+        number for number, step in enumerate(steps) if step["restored"] and step in biggest
+    }
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, expand=True)
+    table.add_column("", justify="right", no_wrap=True)
+    table.add_column("construct", no_wrap=True, overflow="ellipsis", ratio=3)
+    table.add_column("grounds", no_wrap=True, overflow="ellipsis", ratio=2)
+    for heading in ("restores", "files", "bytes", "failing lines"):
+        table.add_column(heading, justify="right", no_wrap=True, min_width=len(heading))
+    before = -1
+    for number in sorted(shown):
+        step = steps[number]
+        if number > before + 1:
+            table.add_row("…", *[""] * 6)
+        before = number
+        broken = f" −{step['broken']:,}" if step["broken"] else ""
+        table.add_row(
+            str(step["number"]),
+            Text(one_line(step["title"])),
+            ", ".join(step["grounds"]),
+            f"{step['restored']:,}{broken}" if number else "",
+            share(step["parsed"], step["files"]),
+            share(step["parsed_bytes"], step["bytes"]),
+            f"{step['failing_lines']:,}",
+        )
+    return table

@@ -1,0 +1,65 @@
+"""The page of the growth of the grammar: one file, no network, opens from disk."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from reports.construct_data import clipped, construct_data
+from reports.embed import embedded_json, printable
+from reports.fields import Record, count, nested, number, records, text, texts
+from reports.growth_view import growth_view
+from reports.page import render, source, write_page
+from reports.spelling import clip
+
+_MAX_STEPS = 2000
+_MAX_FILES = 100
+_SCRIPTS = ("page", "source", "construct", "growth-chart", "growth-table")
+
+Json = dict[str, Any]
+
+
+def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of one replay of the ledger, and return its path.
+
+    ``record`` is what ``krl growth --json`` writes; every field may be absent. The same record
+    gives the same bytes. The page appears whole or not at all.
+
+    Raises OSError when the folder cannot be made or written.
+    """
+    steps, meanings = records(record, "steps")[:_MAX_STEPS], nested(record, "meanings")
+    data = embedded_json(
+        {
+            "files": count(record, "files"),
+            "bytes": number(record, "bytes"),
+            "meanings": {
+                printable(clip(name, 20)): printable(clip(text(meanings, name), 200))
+                for name in meanings
+            },
+            "steps": [_step(step) for step in steps],
+        }
+    )
+    script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
+    page = render(
+        "growth.html.j2",
+        script=f'"use strict";\n{{\n{script}}}\n',
+        styles=["page.css", "growth.css"],
+        data=data,
+        view=growth_view(record),
+    )
+    return write_page(page, folder)
+
+
+def _step(step: Record) -> Json:
+    """A step as the page's script reads it."""
+    metrics = nested(step, "metrics")
+    return {
+        **construct_data(step),
+        "parsed": count(step, "parsed"),
+        "parsedBytes": number(step, "parsed_bytes"),
+        "restored": count(step, "restored"),
+        "broken": count(step, "broken"),
+        "restoredFiles": clipped(texts(step, "restored_files")[:_MAX_FILES], 400),
+        "brokenFiles": clipped(texts(step, "broken_files")[:_MAX_FILES], 400),
+        "failing": count(step, "failing_lines"),
+        "metrics": {printable(clip(name, 20)): number(metrics, name) for name in metrics},
+    }

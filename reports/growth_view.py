@@ -1,0 +1,249 @@
+"""What the growth page says in its fixed parts: headline, steps, what remains.
+
+Everything here is text ready to print; all foreign text has passed through `printable`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reports.construct_data import anchor
+from reports.embed import printable
+from reports.fields import Record, count, nested, number, records, text, texts
+from reports.spelling import Figure, clip, counted, moment, percent, share, size
+
+_BIGGEST = 40
+_MAX_FILES = 400
+_MAX_LINES = 40
+_MAX_OTHERS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class StepRow:
+    """One step of the growth; ``anchor`` is its name in links, ``bar`` its share of the most."""
+
+    anchor: str
+    number: int
+    title: str
+    grounds: tuple[str, ...]
+    files: int
+    origins: int
+    restored: int
+    broken: int
+    bar: float
+    parsed: str
+    parsed_bytes: str
+    failing: int
+    mended: int
+
+
+@dataclass(frozen=True, slots=True)
+class LeftLine:
+    """A failing line of a file that remains: before, in and after the offending token."""
+
+    line: int
+    before: str
+    token: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeftFile:
+    """A file that does not parse at the end; ``why`` is a broken fact of KRL, if one is known."""
+
+    path: str
+    failing: int
+    why: str
+    why_line: int
+    lines: tuple[LeftLine, ...]
+    more: int
+
+
+@dataclass(frozen=True, slots=True)
+class GrowthView:
+    """The fixed parts of the page. ``state``: no-files, no-steps or steps."""
+
+    state: str
+    grammar: str
+    grammar_hash: str
+    made: str
+    headline: str
+    figures: tuple[Figure, ...]
+    rows: tuple[StepRow, ...]
+    biggest: tuple[StepRow, ...]
+    remaining: int
+    left: tuple[LeftFile, ...]
+    left_out: int
+    explained: int
+    decisions: int
+    one: str
+    two: str
+    undecided: tuple[str, ...]
+    undecided_total: int
+    ambiguous: int
+    ambiguous_of: int
+    ambiguous_examples: tuple[tuple[str, str], ...]
+    skipped: tuple[tuple[str, int, tuple[str, ...]], ...]
+    skipped_total: int
+
+
+def growth_view(record: Record) -> GrowthView:
+    """The fixed parts of the page of ``record``."""
+    steps = records(record, "steps")
+    rows = _rows(steps)
+    version = text(record, "version")
+    made = [version and f"krl {version}", moment(text(record, "generated"))]
+    left = records(record, "remaining_files")
+    look, ambiguous = nested(record, "lookahead"), nested(record, "ambiguous")
+    undecided = texts(look, "others")
+    return GrowthView(
+        state=_state(record, steps),
+        grammar=_plain(text(record, "grammar"), 400),
+        grammar_hash=_plain(text(record, "grammar_sha256"), 64),
+        made=" · ".join(_plain(part, 80) for part in made if part),
+        headline=_headline(record, steps),
+        figures=_figures(record, steps),
+        rows=rows,
+        biggest=tuple(sorted(rows, key=lambda row: -row.restored)[:_BIGGEST]),
+        remaining=len(left),
+        left=_left(record, left),
+        left_out=max(0, len(left) - _MAX_FILES),
+        explained=sum(bool(text(file, "fact")) for file in left),
+        decisions=count(look, "decisions"),
+        one=percent(number(look, "one"), 100),
+        two=percent(number(look, "two"), 100),
+        undecided=tuple(_plain(line, 400) for line in undecided[:_MAX_OTHERS]),
+        undecided_total=len(undecided),
+        ambiguous=count(ambiguous, "lines"),
+        ambiguous_of=count(ambiguous, "of"),
+        ambiguous_examples=tuple(
+            (f"{_plain(text(e, 'path'), 300)}:{count(e, 'line')}", _plain(text(e, "text"), 300))
+            for e in records(ambiguous, "examples")
+        ),
+        skipped=_skipped(records(record, "skipped")),
+        skipped_total=count(record, "skipped"),
+    )
+
+
+def _plain(foreign: str, width: int) -> str:
+    return printable(clip(foreign, width))
+
+
+def _state(record: Record, steps: Sequence[Record]) -> str:
+    if count(record, "files") == 0:
+        return "no-files"
+    return "steps" if len(steps) > 1 else "no-steps"
+
+
+def _headline(record: Record, steps: Sequence[Record]) -> str:
+    """The growth in one sentence."""
+    if len(steps) < 2 or not count(record, "files"):
+        return ""
+    files = count(record, "files")
+    first, last = (percent(count(s, "parsed"), files) for s in (steps[0], steps[-1]))
+    return f"From {first} of the files to {last} in {counted(len(steps) - 1, 'construct')}."
+
+
+def _figures(record: Record, steps: Sequence[Record]) -> tuple[Figure, ...]:
+    files, octets = count(record, "files"), number(record, "bytes")
+    first: Record = steps[0] if steps else {}
+    last: Record = steps[-1] if steps else {}
+    parsed, parsed_octets = count(last, "parsed"), number(last, "parsed_bytes")
+    metrics = nested(last, "metrics")
+    left = count(record, "remaining_files")
+    return (
+        Figure(
+            "files parse",
+            percent(parsed, files),
+            f"{parsed:,} of {counted(files, 'file')}; {count(first, 'parsed'):,} at the start",
+            share(parsed, files),
+        ),
+        Figure(
+            "bytes in them",
+            percent(parsed_octets, octets),
+            f"{size(parsed_octets)} of {size(octets)}",
+            share(parsed_octets, octets),
+        ),
+        Figure("constructs", f"{max(0, len(steps) - 1):,}", "accepted, each with its evidence"),
+        Figure(
+            "failing lines",
+            f"{count(last, 'failing_lines'):,}",
+            f"{count(first, 'failing_lines'):,} at the start",
+        ),
+        Figure(
+            "different files left", f"{left:,}", "listed below" if left else "every file parses"
+        ),
+        Figure("rules", f"{count(metrics, 'VAR'):,}", f"{count(metrics, 'TERM'):,} kinds of token"),
+    )
+
+
+def _rows(steps: Sequence[Record]) -> tuple[StepRow, ...]:
+    most = max((count(step, "restored") for step in steps), default=0)
+    rows = []
+    before: Record | None = None
+    for step in steps:
+        evidence = nested(step, "evidence")
+        failing = count(step, "failing_lines")
+        rows.append(
+            StepRow(
+                anchor=anchor(step),
+                number=count(step, "number"),
+                title=_plain(text(step, "title") or text(step, "id"), 200),
+                grounds=tuple(_plain(ground, 20) for ground in texts(step, "grounds")),
+                files=count(evidence, "files"),
+                origins=count(evidence, "origins"),
+                restored=count(step, "restored"),
+                broken=count(step, "broken"),
+                bar=share(count(step, "restored"), most),
+                parsed=percent(count(step, "parsed"), count(step, "files")),
+                parsed_bytes=percent(number(step, "parsed_bytes"), number(step, "bytes")),
+                failing=failing,
+                mended=count(before, "failing_lines") - failing if before is not None else 0,
+            )
+        )
+        before = step
+    return tuple(rows)
+
+
+def _left(record: Record, files: Sequence[Record]) -> tuple[LeftFile, ...]:
+    lines: dict[str, list[Record]] = {}
+    for line in records(record, "remaining"):
+        lines.setdefault(text(line, "path"), []).append(line)
+    rows = []
+    for file in files[:_MAX_FILES]:
+        own = lines.get(text(file, "path"), [])
+        rows.append(
+            LeftFile(
+                path=_plain(text(file, "path"), 400),
+                failing=count(file, "failing"),
+                why=_plain(text(file, "fact"), 200),
+                why_line=count(file, "fact_line"),
+                lines=tuple(map(_left_line, own[:_MAX_LINES])),
+                more=max(0, len(own) - _MAX_LINES),
+            )
+        )
+    return tuple(rows)
+
+
+def _left_line(line: Record) -> LeftLine:
+    source, token, at = text(line, "text"), text(line, "token"), count(line, "column") - 1
+    at = min(max(at, 0), len(source))
+    return LeftLine(
+        line=count(line, "line"),
+        before=printable(source[:at].lstrip()[-160:]),
+        token=printable(clip(token, 80)),
+        after=printable(clip(source[at + len(token) :], 160)),
+    )
+
+
+def _skipped(skipped: Sequence[Record]) -> tuple[tuple[str, int, tuple[str, ...]], ...]:
+    """Reasons with the number of files and the first of their paths, the most frequent first."""
+    groups: dict[str, list[str]] = {}
+    for entry in skipped:
+        groups.setdefault(text(entry, "reason") or "no reason given", []).append(
+            text(entry, "path")
+        )
+    ordered = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
+    return tuple(
+        (_plain(reason, 300), len(paths), tuple(_plain(path, 400) for path in paths[:_MAX_FILES]))
+        for reason, paths in ordered
+    )

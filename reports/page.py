@@ -1,0 +1,63 @@
+"""What all pages share: rendered from a template into one file that loads nothing."""
+
+import secrets
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+from markupsafe import Markup
+
+from reports.embed import inline_source, script_hash
+from reports.spelling import counted
+
+__all__ = ["render", "write_page"]
+
+
+def write_page(page: str, folder: Path) -> Path:
+    """Write ``folder``/index.html whole or not at all, and return its path.
+
+    It is written beside its place and then moved there. Raises OSError when the folder cannot be
+    made or written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    target = folder / "index.html"
+    draft = folder / f".index-{secrets.token_hex(8)}.tmp"
+    try:
+        draft.write_text(page, encoding="utf-8", newline="\n")
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)
+    return target
+
+
+def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
+    """The page of a template, with our ``script`` and style sheets inside it.
+
+    ``data`` is what the script reads, as `reports.embed.embedded_json` made it; ``view`` is what
+    the template shows. Foreign text is escaped.
+    """
+    environment = Environment(
+        loader=FunctionLoader(source),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["counted"] = counted
+    environment.filters["thousands"] = "{:,}".format
+    return environment.get_template(template).render(
+        view=view,
+        data=data,
+        style=inline_source("\n".join(map(source, styles))),
+        script=inline_source(script),
+        script_hash=script_hash(script),
+    )
+
+
+def source(name: str) -> str:
+    """The text of a template, script or style sheet."""
+    file = resources.files("reports") / "templates" / name
+    return file.read_text(encoding="utf-8").replace("\r\n", "\n")

@@ -1,0 +1,154 @@
+"""A section of the survey page: the clusters of one grammar, in their order and as a table.
+
+The page has one for the grammar in force and may have one for the restrictive start. All foreign
+text has passed through `printable`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from reports.embed import printable
+from reports.fields import Record, count, records, text
+from reports.spelling import clip, percent, share
+from reports.survey_cluster import cluster_id, is_follower, title_of
+
+__all__ = ["ClusterRow", "MendingStep", "Section", "section"]
+
+_NUMBER_WORDS = dict(
+    enumerate(("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=2)
+)
+_TARGETS = (0.95, 0.99, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ClusterRow:
+    """One row of the table of clusters; ``place`` is the one in the greedy order, if any.
+
+    ``answer`` is the title of the construct that answered it, empty where none did.
+    """
+
+    id: str
+    title: str
+    rule: str
+    unlocks: int
+    files: int
+    origins: int
+    failures: int
+    place: int | None
+    follower: bool
+    bar: float
+    answer: str
+
+
+@dataclass(frozen=True, slots=True)
+class MendingStep:
+    """After mending this cluster and all before it, ``parsed`` files parse, ``gain`` more."""
+
+    place: int
+    id: str
+    title: str
+    parsed: int
+    gain: int
+    share: str
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """The clusters of a survey.
+
+    ``prefix`` begins the ids of its elements and the keys of its links.
+    ``answered`` counts the rows with an answer, ``None`` where clusters are not asked for one, and
+    ``constructs`` the constructs that gave them. ``rate`` is the share of files that parse.
+    """
+
+    prefix: str
+    files: int
+    parsed: int
+    rate: str
+    verdict: str
+    mending: tuple[MendingStep, ...]
+    rows: tuple[ClusterRow, ...]
+    clusters: int
+    clusters_left_out: int
+    answered: int | None
+    constructs: int
+
+
+def section(record: Record, clusters: Sequence[Record], prefix: str = "") -> Section:
+    """The section of ``record``, whose shown clusters are ``clusters``."""
+    mending = _mending(record, clusters)
+    constructs = records(record, "constructs")
+    titles = {text(c, "id"): printable(clip(text(c, "title"), 200)) for c in constructs}
+    rows = _rows(clusters, mending, titles)
+    files, parsed = count(record, "files"), count(record, "parsed")
+    return Section(
+        prefix=prefix,
+        files=files,
+        parsed=parsed,
+        rate=percent(parsed, files),
+        verdict=_verdict(record, mending),
+        mending=mending,
+        rows=rows,
+        clusters=count(record, "clusters"),
+        clusters_left_out=count(record, "clusters") - len(clusters),
+        answered=sum(bool(row.answer) for row in rows) if prefix else None,
+        constructs=len(constructs),
+    )
+
+
+def _mending(record: Record, clusters: Sequence[Record]) -> tuple[MendingStep, ...]:
+    titles = {cluster_id(cluster): title_of(cluster) for cluster in clusters}
+    files, before = count(record, "files"), count(record, "parsed")
+    steps: list[MendingStep] = []
+    for place, step in enumerate(records(record, "greedy"), start=1):
+        name, parsed = cluster_id(step, "cluster"), count(step, "parsed")
+        if name in titles:
+            title = printable(titles[name])
+            steps.append(
+                MendingStep(place, name, title, parsed, parsed - before, percent(parsed, files))
+            )
+        before = parsed
+    return tuple(steps)
+
+
+def _verdict(record: Record, mending: Sequence[MendingStep]) -> str:
+    """The sentence over the chart: how few clusters bring the corpus to the next round share."""
+    files, parsed = count(record, "files"), count(record, "parsed")
+    if not mending or files == 0:
+        return ""
+    for target in _TARGETS:
+        reached = next((step for step in mending if step.parsed >= target * files), None)
+        if reached is not None and parsed < target * files:
+            share = "every file parses" if target == 1.0 else f"{target:.0%} of the files parse"
+            return f"Mend {_these(reached.place)} and {share}.".replace("%", " %")
+    last = mending[-1]
+    return f"Mend {_these(last.place)} and {last.share} of the files parse."
+
+
+def _these(total: int) -> str:
+    if total == 1:
+        return "the first cluster"
+    return f"the first {_NUMBER_WORDS.get(total, f'{total:,}')} clusters"
+
+
+def _rows(
+    clusters: Sequence[Record], mending: Sequence[MendingStep], titles: Mapping[str, str]
+) -> tuple[ClusterRow, ...]:
+    places = {step.id: step.place for step in mending}
+    most = max((count(cluster, "unlocks") for cluster in clusters), default=0)
+    return tuple(
+        ClusterRow(
+            id=cluster_id(cluster),
+            title=printable(title_of(cluster)),
+            rule=printable(clip(text(cluster, "rule"), 120)),
+            unlocks=count(cluster, "unlocks"),
+            files=count(cluster, "files"),
+            origins=count(cluster, "origins"),
+            failures=count(cluster, "failures"),
+            place=places.get(cluster_id(cluster)),
+            follower=is_follower(cluster),
+            bar=share(count(cluster, "unlocks"), most),
+            answer=titles.get(text(cluster, "answered_by"), ""),
+        )
+        for cluster in clusters
+    )
