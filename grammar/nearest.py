@@ -1,0 +1,80 @@
+"""Which names somebody may have meant: "did you mean …"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import islice
+
+__all__ = ["did_you_mean", "nearest"]
+
+# Cost is bounded: so many names are looked at, and none that is longer.
+_MOST_NAMES = 20_000
+_LONGEST_NAME = 64
+
+
+def nearest(name: str, names: Iterable[str], most: int = 3) -> list[str]:
+    """Up to ``most`` of ``names`` that differ from ``name`` by few slips, the likeliest first.
+
+    A slip is a letter too many, too few or wrong, or two that changed places; letter case is no
+    difference. Short names may have one slip, longer ones up to three. Each costs at most the
+    length of ``name`` times the number of slips, and the same names give the same answer.
+    """
+    wanted = name.upper()
+    if not wanted or len(wanted) > _LONGEST_NAME:
+        return []
+    slips = 1 if len(wanted) <= 4 else 2 if len(wanted) <= 8 else 3
+    found: list[tuple[int, int, str]] = []
+    for candidate in islice(names, _MOST_NAMES):
+        if abs(len(candidate) - len(wanted)) > slips:
+            continue
+        key = candidate.upper()
+        distance = _distance(wanted, key, slips)
+        if 0 < distance <= slips and distance < len(wanted):
+            found.append((distance, -_common_start(wanted, key), candidate))
+    return [candidate for _, _, candidate in sorted(found)[:most]]
+
+
+def did_you_mean(name: str, names: Iterable[str]) -> str | None:
+    """``did you mean X or Y?``, where some of ``names`` are near."""
+    found = nearest(name, names)
+    if not found:
+        return None
+    *first, last = found
+    return f"did you mean {', '.join(first)} or {last}?" if first else f"did you mean {last}?"
+
+
+def _common_start(one: str, other: str) -> int:
+    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), len(one))
+
+
+def _distance(one: str, other: str, most: int) -> int:
+    """Slips between two names, or a number above ``most`` when there are more.
+
+    Optimal string alignment, in a band of ``most`` around the diagonal.
+    """
+    if one == other:
+        return 0
+    far = most + 1
+    width = len(other)
+    before: list[int] = []
+    row = [column if column <= most else far for column in range(width + 1)]
+    for line, letter in enumerate(one, 1):
+        first, last = max(1, line - most), min(width, line + most)
+        new = [far] * (width + 1)
+        if line <= most:
+            new[0] = line
+        for column in range(first, last + 1):
+            is_same = letter == other[column - 1]
+            best = min(row[column - 1] + (not is_same), row[column] + 1, new[column - 1] + 1)
+            if (
+                line > 1
+                and column > 1
+                and letter == other[column - 2]
+                and one[line - 2] == other[column - 1]
+            ):
+                best = min(best, before[column - 2] + 1)
+            new[column] = best
+        if min(new) > most:
+            return far
+        before, row = row, new
+    return row[width]
