@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from grammar.ambiguity import is_ambiguous
@@ -17,6 +19,7 @@ from recovery.timeline import Content
 
 __all__ = ["ambiguous_lines", "remaining"]
 
+_REASONS = Path(__file__).with_name("leftover.tsv")
 _EXAMPLES = 20
 _LONGEST_LINE = 1_000
 
@@ -26,6 +29,9 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
 
     ``fact`` of a file is a fact that no KRL program breaks (`recovery.facts`) and this one does, at
     ``fact_line``: the file is no valid KRL, whatever the grammar. It is empty where none is known.
+    ``kind`` is invalid, template, damaged or waiting (for the verdict on a construct), and
+    ``reason`` says why: by a person for files of the public corpus, else by the broken fact. Both
+    are empty where nothing is known.
     """
     finder = FailureFinder(Recognizer(grammar))
     lines: list[dict[str, Any]] = []
@@ -33,6 +39,8 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
     for content, text in _texts(contents):
         failures = failures_of(finder, text, {})
         broken = violation(text)
+        known = ("invalid", broken.fact) if broken else ("", "")
+        kind, reason = _reasons().get(content.digest, known)
         files.append(
             {
                 "path": content.path,
@@ -43,6 +51,8 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
                 "failing": len(failures),
                 "fact": broken.fact if broken else "",
                 "fact_line": broken.line if broken else 0,
+                "kind": kind,
+                "reason": reason,
             }
         )
         lines += [
@@ -57,6 +67,14 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
             for failed in failures
         ]
     return {"remaining": lines, "remaining_files": files}
+
+
+@cache
+def _reasons() -> Mapping[str, tuple[str, str]]:
+    """Kind and reason by the digest of a file."""
+    lines = _REASONS.read_text(encoding="utf-8").splitlines()
+    rows = (line.split("\t") for line in lines if not line.startswith(("#", "sha256")))
+    return {digest: (kind, reason) for digest, kind, _, _, reason in rows}
 
 
 def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:

@@ -36,6 +36,9 @@ class StepRow:
     mended: int
 
 
+_NO_KRL = frozenset({"invalid", "template", "damaged"})
+
+
 @dataclass(frozen=True, slots=True)
 class LeftLine:
     """A failing line of a file that remains: before, in and after the offending token."""
@@ -48,10 +51,14 @@ class LeftLine:
 
 @dataclass(frozen=True, slots=True)
 class LeftFile:
-    """A file that does not parse at the end; ``why`` is a broken fact of KRL, if one is known."""
+    """A file that does not parse at the end.
+
+    ``kind`` is invalid, template, damaged, waiting or empty; ``why`` says why, ``why_line`` where.
+    """
 
     path: str
     failing: int
+    kind: str
     why: str
     why_line: int
     lines: tuple[LeftLine, ...]
@@ -107,7 +114,7 @@ def growth_view(record: Record) -> GrowthView:
         remaining=len(left),
         left=_left(record, left),
         left_out=max(0, len(left) - _MAX_FILES),
-        explained=sum(bool(text(file, "fact")) for file in left),
+        explained=sum(text(file, "kind") in _NO_KRL for file in left),
         decisions=count(look, "decisions"),
         one=percent(number(look, "one"), 100),
         two=percent(number(look, "two"), 100),
@@ -215,8 +222,9 @@ def _left(record: Record, files: Sequence[Record]) -> tuple[LeftFile, ...]:
             LeftFile(
                 path=_plain(text(file, "path"), 400),
                 failing=count(file, "failing"),
-                why=_plain(text(file, "fact"), 200),
-                why_line=count(file, "fact_line"),
+                kind=_plain(text(file, "kind"), 20),
+                why=_plain(text(file, "reason"), 200),
+                why_line=count(file, "fact_line") * (text(file, "fact") == text(file, "reason")),
                 lines=tuple(map(_left_line, own[:_MAX_LINES])),
                 more=max(0, len(own) - _MAX_LINES),
             )

@@ -108,7 +108,7 @@ def _print(record: Mapping[str, Any], page: Path) -> None:
     )
     left = record["remaining_files"]
     for file in left[:_LEFT]:
-        why = f"no valid KRL, {file['fact']}" if file["fact"] else "open"
+        why = f"{file['kind']}: {file['reason']}" if file["kind"] else "open"
         console.print(f"remains: {one_line(file['path'])}: {one_line(why)}", soft_wrap=True)
     if len(left) > _LEFT:
         console.print(f"… and {len(left) - _LEFT} more files remain")

@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import pytest
+
 from grammar.edits import AddAlternative, apply
 from grammar.g4 import Grammar, read, read_file
 from grammar.generate import GRAMMAR
+from recovery import leftover
 from recovery.leftover import ambiguous_lines, remaining
 from recovery.timeline import Content, contents_of
 
@@ -59,6 +62,7 @@ def test_all_failing_lines_remain_with_their_files(tmp_path: Path) -> None:
     (file,) = found["remaining_files"]
     assert (4, contents[0].size, 7) == (file["failing"], file["bytes"], file["lines"])
     assert (5, "two operands have an operator between them") == (file["fact_line"], file["fact"])
+    assert ("invalid", file["fact"]) == (file["kind"], file["reason"])
 
 
 def test_a_file_that_has_changed_is_left_out(tmp_path: Path) -> None:
@@ -66,3 +70,18 @@ def test_a_file_that_has_changed_is_left_out(tmp_path: Path) -> None:
     contents = lay(tmp_path, a="DEF A()\nHALT 1\nEND\n")
     (tmp_path / "a.src").write_text("DEF A()\nEND\n", encoding="utf-8")
     assert {"remaining": [], "remaining_files": []} == remaining(contents, START)
+
+
+def test_what_a_person_found_out_is_told_by_digest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file of the public corpus has the reason that was written down for its content."""
+    contents = lay(tmp_path, a="DEF A()\nHALT {}\nEND\n")
+    known = tmp_path / "known.tsv"
+    row = "\t".join((contents[0].digest, "template", "o", "a.src", "to be filled in"))
+    known.write_text(f"# why\nsha256\tkind\torigin\tname\treason\n{row}\n", encoding="utf-8")
+    monkeypatch.setattr(leftover, "_REASONS", known)
+    leftover._reasons.cache_clear()
+    (file,) = remaining(contents, START)["remaining_files"]
+    leftover._reasons.cache_clear()
+    assert ("template", "to be filled in") == (file["kind"], file["reason"])

@@ -484,6 +484,8 @@ def growth_record(steps: int = 40) -> Json:
                 "failing": 1,
                 "fact": fact,
                 "fact_line": line,
+                "kind": "invalid" if fact else "",
+                "reason": fact,
             }
             for path, fact, line in left
         ],

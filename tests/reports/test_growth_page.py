@@ -60,7 +60,7 @@ def test_what_remains_says_why(grown: RecordBuilder, tmp_path: Path) -> None:
     """A file that breaks a fact of KRL is no valid KRL; the others are open."""
     page = _page(grown("believable"), tmp_path)
     assert "What remains: 3 different files" in page
-    assert "no valid KRL: an aggregate begins with a name (line 4)" in page
+    assert "invalid: an aggregate begins with a name (line 4)" in page
     assert 1 == page.count('<span class="open-question">open</span>')
     assert 'LIN <span class="token">{</span>{ X 1' in page
 
