@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
 
 from grammar.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
 from grammar.tree import Node, Token, Tree
@@ -126,9 +127,19 @@ def _lines(expression: Expression, width: int) -> Iterator[str]:
     if len(flat) <= width or lead is None:
         yield flat
         return
-    rest = [f"  {line}" for inner in expression[lead:] for line in _lines(inner, width - 2)]
+    rest = [f"  {line}" for line in _inner_lines(expression[lead:], width - 2)]
     yield from [f"({' '.join(map(_flat, expression[:lead]))}", *rest[:-1]]
     yield f"{rest[-1]})"
+
+
+def _inner_lines(children: Iterable[Expression], width: int) -> Iterator[str]:
+    """Each rule in lines of its own; the tokens between two rules share one."""
+    for are_tokens, run in groupby(children, lambda child: isinstance(child, str)):
+        if are_tokens:
+            yield " ".join(map(_flat, run))
+        else:
+            for child in run:
+                yield from _lines(child, width)
 
 
 def _flat(expression: Expression) -> str:

@@ -4,11 +4,15 @@ How a case is written is told in `grammar.syntax_cases`. To rewrite the trees af
 grammar: ``python -m grammar.syntax_cases --update tests/grammar/syntax``, and read the diff.
 """
 
-from collections.abc import Sequence
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from grammar.coverage import Coverage
 from grammar.g4 import read as read_grammar
 from grammar.parse import Parser
 from grammar.recognizer import Recognizer
@@ -43,10 +47,73 @@ def test_syntax(reader: CaseReader, case: Case) -> None:
     assert difference is None, difference
 
 
-def test_titles_tell_cases_apart() -> None:
-    """No two cases of a topic have the same title."""
-    titles = [(topic, case.title) for topic, case in CASES]
-    assert len(titles) == len(set(titles))
+def test_cases_differ() -> None:
+    """No two cases of a topic have the same title, and no two cases the same source."""
+    titles = Counter((topic, case.title) for topic, case in CASES)
+    sources = Counter(case.source for _, case in CASES)
+    assert [] == [title for title, count in titles.items() if count > 1]
+    assert [] == [source for source, count in sources.items() if count > 1]
+
+
+@pytest.fixture(scope="module")
+def trees(krl_recognizer: Recognizer) -> list[tuple[str, Tree]]:
+    """The trees of all cases that are no errors, with their titles."""
+    parser = Parser(krl_recognizer)
+    parsed = [(case.title, parser.parse(case.source)) for _, case in CASES]
+    return [(title, tree) for title, tree in parsed if isinstance(tree, Tree)]
+
+
+def test_every_alternative_has_a_case(
+    krl_recognizer: Recognizer, trees: Sequence[tuple[str, Tree]]
+) -> None:
+    """Each alternative of each rule of the grammar in force is read by some case."""
+    coverage = Coverage(krl_recognizer.grammar)
+    for _, tree in trees:
+        coverage.add(tree)
+    assert [] == coverage.unused_alternatives
+
+
+def test_cases_have_one_reading(trees: Sequence[tuple[str, Tree]]) -> None:
+    """No case is ambiguous, soft keywords in the oddest places included."""
+    assert [] == [title for title, tree in trees if not tree.is_unique]
+
+
+def _with_comments(source: str) -> str:
+    """A comment behind every line, and a fold, a comment and a blank line above it."""
+    return re.sub(r"(?m)^(?!&)(.+)$", r';FOLD "x {\n; END\n\n\1;(((', source)
+
+
+@pytest.mark.parametrize(
+    ("change", "of_errors"),
+    [
+        pytest.param(lambda s: s.replace("\n", "\r\n"), True, id="line ends of Windows"),
+        pytest.param(lambda s: s.replace("\n", "\r"), True, id="carriage returns"),
+        pytest.param(lambda s: s.rstrip("\n"), False, id="no line end at the end of the file"),
+        pytest.param(str.lower, True, id="small letters"),
+        pytest.param(_with_comments, False, id="comments and blank lines"),
+        pytest.param(lambda s: re.sub("(?m)^", "\t ", s), False, id="indentation"),
+    ],
+)
+def test_what_makes_no_difference(
+    reader: CaseReader, change: Callable[[str], str], of_errors: bool
+) -> None:
+    """Line ends, letter case, comments, blank lines and blanks before a line change no case.
+
+    Comments and blanks move errors to other places, so only trees are compared there.
+    """
+    differing = [
+        (topic, case.title, changed)
+        for topic, case in CASES
+        if (of_errors or not case.is_error)
+        for changed in [reader.outcome(replace(case, source=change(case.source)))]
+        if _folded(reader.outcome(case)) != _folded(changed)
+    ]
+    assert [] == differing
+
+
+def _folded(outcome: tuple[bool, str]) -> tuple[bool, str]:
+    """The outcome in small letters: trees show tokens as they are written."""
+    return outcome[0], outcome[1].lower()
 
 
 # ------------------------------------------------------------------------- what trees show
@@ -96,6 +163,8 @@ def test_long_trees_are_broken_into_lines() -> None:
     assert "(a x\n  (b y (c))\n  +\n  (d long longer))" == write(tree, 20)
     assert "(a x\n  (b y (c))\n  +\n  (d long longer))" == write(tree, 18)
     assert "(a x\n  (b y\n    (c))\n  +\n  (d long longer))" == write(tree, 8)
+    tree = ("a", ("b", "x"), "STEP", "=", ("c", "y"), ("d", "z"), "WITH", "5")
+    assert "(a\n  (b x)\n  STEP =\n  (c y)\n  (d z)\n  WITH 5)" == write(tree, 20)
 
 
 @pytest.mark.parametrize(
