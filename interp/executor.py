@@ -1,0 +1,60 @@
+"""The port between whoever executes a program and whoever owns the world it acts on.
+
+The executor *is* the advance run: it runs ahead of the arm, statement by statement, and hands over
+a request whenever it needs the world (`interp.requests`). The controller owns clock, motion queue,
+interrupts, triggers, submit, inputs and outputs and system variables, and decides when the executor
+may go on. Neither knows more of the other than this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from interp.faults import Fault
+from interp.requests import Code, Path, Request, Value
+
+__all__ = ["Executor", "Reader"]
+
+#: Reads a system variable at once, for conditions; raises `interp.faults.Fault`.
+Reader = Callable[[Path], Value]
+
+
+class Executor(Protocol):
+    """Runs one program."""
+
+    def advance(self, reply: Value | Fault | None = None) -> Request:
+        """Compute until the world is needed.
+
+        ``reply`` answers the request before; a fault as reply is raised in the program at the
+        statement that asked, where ON_ERROR_PROCEED may take it [TYP-13]. After `End` at depth 0
+        and after `Fail` the executor has ended and returns the same request again.
+        """
+        ...
+
+    def enter(self, code: Code) -> None:
+        """Push a routine or action, which runs before the program goes on.
+
+        Allowed between two requests only. Its end is told by `interp.requests.End`, after which
+        the request that was open before is asked again by the next ``advance(None)``.
+        """
+        ...
+
+    def evaluate(self, code: Code, read: Reader) -> Value:
+        """The value of a condition, without side effects and without a request.
+
+        Raises `interp.faults.Fault`.
+        """
+        ...
+
+    def unwind(self, depth: int) -> None:
+        """Leave all routines deeper than ``depth``; the program goes on behind the call there.
+
+        [INT-10]
+        """
+        ...
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is; 0 in the routine it began with."""
+        ...
