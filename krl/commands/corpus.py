@@ -1,5 +1,6 @@
-"""`krl corpus`: the programs that the survey reads, our own and other people's."""
+"""`krl corpus`: the programs that the survey reads: our own, other people's, and made ones."""
 
+import re
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,7 +18,10 @@ __all__ = ["app"]
 CORPUS = Path("corpus")
 """In the working folder: the corpus is data of a checkout and does not travel with the package."""
 
-app = typer.Typer(help="List the programs of the corpus, and fetch the public ones.")
+_SYNTHETIC = Path("reports", "out", "synth")
+_UNITS = {"": 1, "k": 1_000, "m": 1_000_000, "g": 1_000_000_000}
+
+app = typer.Typer(help="List the programs of the corpus, fetch the public ones, make others.")
 
 
 @app.command("list")
@@ -87,6 +91,48 @@ def fetch(
     had = written + sum(result.kept for result in results)
     typer.echo(f"{had} of {wanted} files in {out}, {written} of them new")
     return FINDINGS if problems else FINE
+
+
+@app.command("synth")
+def synth(
+    size: Annotated[
+        str,
+        typer.Option(metavar="BYTES", help="How much: 500000, 300kB, 10MB, 1.5GB."),
+    ] = "1MB",
+    seed: Annotated[int, typer.Option(metavar="N", help="Another number, other programs.")] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Where they go; default: a folder in reports/out/synth."),
+    ] = None,
+) -> int:
+    """Write valid programs made by chance, whole cells of them, for tests of scale.
+
+    The same size and seed give the same files everywhere. They are no evidence for any grammar.
+    """
+    from krl.progress import progress_bar
+    from recovery.synth import write_cells
+
+    wanted = _bytes(size)
+    folder = out or _SYNTHETIC / f"{wanted}-{seed}"
+    if folder.exists() and not folder.is_dir():
+        raise Unusable(f"{folder}: not a folder")
+    with progress_bar("writing", wanted) as advance:
+        written = write_cells(folder, wanted, seed, advance)
+    cells = "1 cell" if written.cells == 1 else f"{written.cells} cells"
+    typer.echo(f"{written.bytes:,} bytes in {_files(written.files)} of {cells} in {folder}")
+    others = sum(path.is_file() for path in folder.rglob("*")) - written.files
+    if others:
+        typer.echo(f"{folder} has {_files(others)} beside them, from before", err=True)
+    return FINE
+
+
+def _bytes(text: str) -> int:
+    """A size as people write it, in bytes; kB is 1,000."""
+    found = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?([kmg]?)b?", text.strip(), re.IGNORECASE)
+    size = int(float(found[1]) * _UNITS[found[2].lower()]) if found else 0
+    if size < 1:
+        raise Unusable(f"--size {text}: not a number of bytes such as 500000, 300kB or 10MB")
+    return size
 
 
 def _sources() -> "tuple[PublicSource, ...]":

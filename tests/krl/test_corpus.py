@@ -126,3 +126,57 @@ def test_damaged_list_is_one_line(checkout: Path, capsys: pytest.CaptureFixture[
     said = capsys.readouterr().err
     assert said.startswith(f"krl: {Path('corpus', 'sources.toml')}: ")
     assert 1 == said.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("size", "least"),
+    [("20000", 20_000), ("20kB", 20_000), ("0.03 MB", 30_000), ("20K", 20_000), ("25000b", 25_000)],
+)
+def test_synth_writes_as_much_as_asked_for(
+    size: str, least: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`corpus synth` takes sizes as people write them, and says what it wrote and where."""
+    out = tmp_path / "made"
+    assert 0 == main(["corpus", "synth", "--size", size, "--seed", "3", "--out", str(out)])
+    sizes = [path.stat().st_size for path in out.rglob("*") if path.is_file()]
+    assert least <= sum(sizes) < least + 20_000
+    expected = f"{sum(sizes):,} bytes in {len(sizes)} files of 1 cell in {out}\n"
+    assert expected == capsys.readouterr().out
+
+
+def test_synth_has_a_folder_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without a folder the programs go where git ignores them, each size and seed apart."""
+    monkeypatch.chdir(tmp_path)
+    assert 0 == main(["corpus", "synth", "--size", "2kB", "--seed", "9"])
+    folder = Path("reports", "out", "synth", "2000-9")
+    assert folder.is_dir()
+    assert f" in {folder}\n" in capsys.readouterr().out
+
+
+def test_synth_tells_of_other_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Files that were in the folder before stay, and a line on stderr counts them."""
+    (tmp_path / "notes.txt").touch()
+    assert 0 == main(["corpus", "synth", "--size", "2kB", "--out", str(tmp_path)])
+    assert f"{tmp_path} has 1 file beside them, from before\n" == capsys.readouterr().err
+
+
+@pytest.mark.parametrize("size", ["", "0", "-5", "ten", "10 MBit", "1e6", "0.0001kB"])
+def test_synth_refuses_what_is_no_size(size: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A size that is none is one line and status 2."""
+    assert 2 == main(["corpus", "synth", f"--size={size}"])
+    expected = f"krl: --size {size}: not a number of bytes such as 500000, 300kB or 10MB\n"
+    assert expected.replace("  ", " ").replace(" :", ":") == capsys.readouterr().err.replace(
+        " :", ":"
+    )
+
+
+def test_synth_refuses_a_file_for_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file where the folder should be is one line and status 2."""
+    place = tmp_path / "a-file"
+    place.touch()
+    assert 2 == main(["corpus", "synth", "--out", str(place)])
+    assert f"krl: {place}: not a folder\n" == capsys.readouterr().err

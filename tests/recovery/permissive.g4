@@ -27,7 +27,7 @@ formals : formal (',' formal)* ;
 formal : type? name size? (':' ('IN' | 'OUT'))? | type size? (':' ('IN' | 'OUT'))? ;
 declaration
     : 'DECL'? 'GLOBAL'? 'CONST'? type item (',' item)*
-    | 'DECL'? 'GLOBAL'? 'ENUM' name word (',' word)*
+    | 'DECL'? 'GLOBAL'? 'ENUM' name constant (',' constant)*
     | 'DECL'? 'GLOBAL'? 'STRUC' name type word size? (',' type? word size?)*
     | 'DECL'? 'GLOBAL'? 'SIGNAL' name (path ('TO' path)? | 'FALSE')
     | 'CHANNEL' ':' name ':' name path
@@ -44,7 +44,9 @@ statement
     | motion
     | 'GOTO' name
     | 'HALT' | 'EXIT' | 'CONTINUE' | 'RESUME' | 'ON_ERROR_PROCEED'
-    | 'BRAKE' 'F'?
+    | 'BRAKE' ('F' | 'FF')?
+    | 'CONFIRM' expression
+    | 'MOVE_EMI' device device ('FLT' expression)?
     | 'RETURN' value?
     | 'WAIT' ('FOR' | 'SEC') expression
     | 'IF' expression 'THEN' eol line* ('ELSE' eol line*)? 'ENDIF'
@@ -64,7 +66,7 @@ statement
     | ('ANIN' | 'ANOUT' | 'DIGIN') ('ON' | 'OFF') path ('=' expression (name '=' expression)*)?
     ;
 branch : ('CASE' value (',' value)* | 'DEFAULT') eol line* ;
-action : assignment | call | 'BRAKE' 'F'? ;
+action : assignment | call | 'BRAKE' ('F' | 'FF')? ;
 assignment : path '=' value ;
 motion
     : ('PTP' | 'SPTP' | 'LIN' | 'SLIN' | 'CIRC' | 'SCIRC' | 'SPL' | 'PTP_REL' | 'SPTP_REL' | 'LIN_REL'
@@ -92,17 +94,29 @@ member : word size? value ;
 path : name size? ('.' word size?)* ;
 call : name '(' argument? (',' argument?)* ')' ;
 argument : expression | ':' name ;
+device : STRING | path ;
 
 // Names, and the words that may be names as well.
 name
     : NAME | 'STEP' | 'DELAY' | 'PATH' | 'DISTANCE' | 'PRIO' | 'ON' | 'OFF' | 'ENABLE' | 'DISABLE'
-    | 'IN' | 'OUT' | 'WHEN' | 'DO' | 'SEC' | 'START' | 'PART' | 'IS' | 'F' | 'STOP' | 'ONSTART'
+    | 'IN' | 'OUT' | 'WHEN' | 'DO' | 'SEC' | 'START' | 'PART' | 'IS' | 'F' | 'FF' | 'STOP'
+    | 'ONSTART' | 'FLT'
     | 'PUBLIC' | 'WITH' | 'CA' | 'C_PTP' | 'C_DIS' | 'C_VEL' | 'C_ORI' | 'C_SPL' | 'BRAKE' | 'SIGNAL'
     | 'CHANNEL' | 'CONST' | 'ANIN' | 'ANOUT' | 'DIGIN'
     ;
 word
     : name | 'END' | 'DEFAULT' | 'HALT' | 'EXIT' | 'CONTINUE' | 'RESUME' | 'CIRC' | 'LIN' | 'PTP'
     | 'LOOP' | 'REPEAT' | 'TO' | 'WAIT' | 'IF' | 'ELSE' | 'CASE' | 'SWITCH' | 'SPLINE' | 'INT' | 'REAL'
+    ;
+// Only enumerations have constants that are called so, behind a hash.
+constant
+    : word | 'AND' | 'ASYPTP' | 'BOOL' | 'B_AND' | 'B_EXOR' | 'B_NOT' | 'B_OR' | 'CHAR' | 'CIRC_REL'
+    | 'CONFIRM' | 'CONST_VEL' | 'DECL' | 'DEF' | 'DEFDAT' | 'DEFFCT' | 'ENDDAT' | 'ENDFCT' | 'ENDFOR'
+    | 'ENDIF' | 'ENDLOOP' | 'ENDSPLINE' | 'ENDSWITCH' | 'ENDWHILE' | 'ENUM' | 'EXOR' | 'EXT' | 'EXTFCT'
+    | 'EXTFCTP' | 'EXTP' | 'FALSE' | 'FOR' | 'GLOBAL' | 'GOTO' | 'IMPORT' | 'INTERRUPT' | 'LIN_REL'
+    | 'MOVE_EMI' | 'NOT' | 'ON_ERROR_PROCEED' | 'OR' | 'PTP_REL' | 'PTP_SPLINE' | 'RETURN' | 'SCIRC'
+    | 'SCIRC_REL' | 'SLIN' | 'SLIN_REL' | 'SPL' | 'SPL_REL' | 'SPTP' | 'SPTP_REL' | 'STRUC' | 'THEN'
+    | 'TIME_BLOCK' | 'TRIGGER' | 'TRUE' | 'UNTIL' | 'WHILE'
     ;
 
 AND : 'AND' ;
@@ -121,6 +135,7 @@ CHANNEL : 'CHANNEL' ;
 CHAR : 'CHAR' ;
 CIRC : 'CIRC' ;
 CIRC_REL : 'CIRC_REL' ;
+CONFIRM : 'CONFIRM' ;
 CONST : 'CONST' ;
 CONST_VEL : 'CONST_VEL' ;
 CONTINUE : 'CONTINUE' ;
@@ -159,6 +174,8 @@ EXTFCTP : 'EXTFCTP' ;
 EXTP : 'EXTP' ;
 F : 'F' ;
 FALSE : 'FALSE' ;
+FF : 'FF' ;
+FLT : 'FLT' ;
 FOR : 'FOR' ;
 GLOBAL : 'GLOBAL' ;
 GOTO : 'GOTO' ;
@@ -172,6 +189,7 @@ IS : 'IS' ;
 LIN : 'LIN' ;
 LIN_REL : 'LIN_REL' ;
 LOOP : 'LOOP' ;
+MOVE_EMI : 'MOVE_EMI' ;
 NOT : 'NOT' ;
 OFF : 'OFF' ;
 ON : 'ON' ;
