@@ -5,7 +5,9 @@ Nodes are frozen and compare by identity, so that side tables (types, symbols) c
 and of the one behind its last in the text it was read from. Comments and folds are no nodes: they
 are the text between the tokens, and `grammar.source` has them by line.
 
-Sequences are tuples. What a program may leave out is ``None``.
+Sequences are tuples. What a program may leave out is ``None``. Blocks nest without a limit, so
+walks over statements must not recurse; within a line nodes lie at most `grammar.plans.MAX_DEPTH`
+deep.
 """
 
 from __future__ import annotations
@@ -24,7 +26,10 @@ class Node:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Name(Node):
-    """A name as written. Letter case does not tell names apart: compare ``key``."""
+    """A name as written. Letter case does not tell names apart: compare ``key``.
+
+    Types whose names are keywords (INT, FRAME, E6POS …) are in upper case, as all keywords are.
+    """
 
     text: str
 
@@ -47,7 +52,10 @@ class TypeName(Node):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class IntegerLiteral(Node):
-    """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01]."""
+    """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
+
+    A number of more than 1,000 digits is read as ten to the power of 1,000.
+    """
 
     value: int
 

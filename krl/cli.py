@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from krl import door
-from krl.commands import bench, construct, corpus, recover
+from krl.commands import bench, construct, corpus, growth, recover
+from krl.commands.format import format_programs
 
 __all__ = ["app", "main"]
 
@@ -19,6 +20,8 @@ app = typer.Typer(
 )
 app.command("recover")(recover.recover)
 app.add_typer(construct.app, name="construct")
+app.command("format")(format_programs)
+app.command("growth")(growth.growth)
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")
 

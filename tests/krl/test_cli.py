@@ -21,7 +21,7 @@ def test_help_lists_the_commands(arguments: list[str], capsys: pytest.CaptureFix
     """`krl` alone and `krl --help` list the commands on stdout."""
     assert 0 == main(arguments)
     said = capsys.readouterr().out
-    assert all(f"\n  {command} " in said for command in ("recover", "corpus"))
+    assert all(f"\n  {command} " in said for command in ("recover", "growth", "corpus"))
 
 
 def test_module_runs_as_the_command(tmp_path: Path) -> None:

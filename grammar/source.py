@@ -1,0 +1,179 @@
+"""A source text and what the syntax tree does not hold: lines, comments, folds, where it is from.
+
+Comments are no tokens. They lie in the gaps between tokens, each at the end of a line, so they can
+be told from the text alone: a semicolon opens one unless it stands in a string or behind the ``&``
+of a header line. A text that does not parse has its comments all the same.
+
+A *fold* is a pair of comments, ``;FOLD`` and ``;ENDFOLD``, that an editor shows as one line. Folds
+nest, and mean nothing to the controller. The teach pendant writes folds of its own, for inline
+forms and for what it initialises. Their parameters stand behind ``;%{`` and, in newer releases, in
+a ``;Params`` line below; the pendant reads both.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import takewhile
+from pathlib import PurePosixPath
+
+__all__ = ["Comment", "Fold", "Source"]
+
+_LINE_END = re.compile(r"\r\n|\r|\n")
+# A string that is not closed ends nowhere: its quotation mark is a token alone.
+_COMMENT = re.compile(r'"[^"\r\n]*"|&[^\r\n]*|(;[^\r\n]*)')
+_FOLD = re.compile(r";[ \t]*FOLD(?:[ \t]+|(?=;)|$)(.*)", re.IGNORECASE | re.ASCII | re.DOTALL)
+_ENDFOLD = re.compile(r";[ \t]*ENDFOLD\b", re.IGNORECASE | re.ASCII)
+_PARAMETERS = re.compile(r";[ \t]*%\{")
+_PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A comment with its semicolon; ``is_alone`` where nothing stands before it on its line.
+
+    ``line`` and ``column`` count from 1, ``offset`` from 0.
+    """
+
+    line: int
+    column: int
+    offset: int
+    text: str
+    is_alone: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Fold:
+    """Lines that an editor shows as one.
+
+    ``first`` is the line of FOLD, ``last`` that of ENDFOLD, ``None`` where it is missing. ``level``
+    counts from 1. ``parameters`` are what the teach pendant keeps, on the line of FOLD and in the
+    ``Params`` line below, as written; ``None`` for folds of its users.
+    """
+
+    title: str
+    first: int
+    last: int | None
+    level: int
+    parameters: str | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Source:
+    """A text and the path it is shown with, ``/`` separated; line ends are as they were."""
+
+    text: str
+    path: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of the module: that of the file without its ending."""
+        return PurePosixPath(self.path).stem
+
+    @property
+    def kind(self) -> str:
+        """``src``, ``dat``, ``sub``, or whatever the name of the file ends in, in lower case."""
+        return PurePosixPath(self.path).suffix[1:].lower()
+
+    # ----------------------------------------------------------------------------- lines
+
+    @cached_property
+    def starts(self) -> tuple[int, ...]:
+        """Where each line begins; behind a line end at the end of the text there is one more."""
+        return (0, *(found.end() for found in _LINE_END.finditer(self.text)))
+
+    @cached_property
+    def lines(self) -> tuple[str, ...]:
+        """Every line without its line end."""
+        return tuple(_LINE_END.split(self.text))
+
+    @cached_property
+    def line_ends(self) -> tuple[str, ...]:
+        """Every line end as it was; one less than there are lines."""
+        return tuple(_LINE_END.findall(self.text))
+
+    def line(self, number: int) -> str:
+        """A line by its number, from 1, without its line end; empty where there is none."""
+        return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Line and column of a character, both from 1."""
+        line = bisect_right(self.starts, offset)
+        return line, offset - self.starts[line - 1] + 1
+
+    def offset(self, line: int, column: int) -> int:
+        """The inverse of `place`."""
+        return self.starts[line - 1] + column - 1
+
+    # -------------------------------------------------------------------------- comments
+
+    @cached_property
+    def comments(self) -> tuple[Comment, ...]:
+        """All comments, in order."""
+        return tuple(self._comments())
+
+    def _comments(self) -> Iterator[Comment]:
+        for found in _COMMENT.finditer(self.text):
+            if found.group(1) is not None:
+                offset = found.start()
+                line, column = self.place(offset)
+                before = self.text[offset - column + 1 : offset]
+                yield Comment(line, column, offset, found.group(1), not before.strip(" \t"))
+
+    @cached_property
+    def _by_line(self) -> Mapping[int, Comment]:
+        return {comment.line: comment for comment in self.comments}
+
+    def comment(self, line: int) -> Comment | None:
+        """The comment of a line, alone on it or behind something; a line has one at most."""
+        return self._by_line.get(line)
+
+    @cached_property
+    def headers(self) -> tuple[str, ...]:
+        """The lines of the controller's file system that the text begins with, ``&ACCESS`` …"""
+        written = (line for line in self.lines if line.strip(" \t"))
+        return tuple(line.lstrip(" \t") for line in takewhile(_is_header, written))
+
+    # ----------------------------------------------------------------------------- folds
+
+    @cached_property
+    def folds(self) -> tuple[Fold, ...]:
+        """All folds in the order of their first lines, those that are never closed included."""
+        return tuple(sorted(self._folds(), key=lambda fold: fold.first))
+
+    def _folds(self) -> Iterator[Fold]:
+        opened: list[tuple[Comment, str]] = []
+
+        def fold(last: int | None) -> Fold:
+            comment, title = opened.pop()
+            level = len(opened) + 1
+            shown, mark, hidden = _split(title)
+            below = self.comment(comment.line + 1)
+            more = below.text if below and _PARAMETER_LINE.match(below.text) else ""
+            parameters = f"{hidden}{more}" if mark or more else None
+            return Fold(shown.strip(), comment.line, last, level, parameters)
+
+        for comment in self.comments:
+            if not comment.is_alone:
+                continue
+            if found := _FOLD.match(comment.text):
+                opened.append((comment, found.group(1)))
+            elif opened and _ENDFOLD.match(comment.text):
+                yield fold(comment.line)
+        while opened:
+            yield fold(None)
+
+
+def _is_header(line: str) -> bool:
+    return line.lstrip(" \t").startswith("&")
+
+
+def _split(title: str) -> tuple[str, bool, str]:
+    """What a FOLD line shows, whether it has parameters, and these."""
+    found = _PARAMETERS.search(title)
+    if found is None:
+        return title, False, ""
+    return title[: found.start()], True, title[found.start() + 1 :].lstrip(" \t")

@@ -1,0 +1,125 @@
+"""`krl format`: programs set out in one style, and nothing else of them changed."""
+
+import shutil
+import tempfile
+from collections import Counter
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.door import FINDINGS, FINE, UNUSABLE, Unusable, one_line
+
+if TYPE_CHECKING:
+    from recovery.ingest import Found, Skipped
+
+__all__ = ["format_programs"]
+
+
+_LONGEST = 60  # characters of a token in a message
+
+
+class _Outcome(Enum):
+    """What became of a file, as the last line of output counts it."""
+
+    RIGHT = "as it should be"
+    FORMATTED = "formatted"
+    WOULD_CHANGE = "would change"
+    LEFT = "left alone"
+    NOT_WRITTEN = "not written"
+    SKIPPED = "skipped"
+
+
+def format_programs(
+    paths: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="PATH...",
+            help="Files, folders, .zip archives of controllers; archives are only checked.",
+        ),
+    ],
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; name the files that would change.")
+    ] = False,
+) -> int:
+    """Set out programs: indentation, blanks, keywords in upper case.
+
+    Comments, folds, headers, lines and their ends, encoding, and what a program says stay as they
+    are. Exit status 1 where a file has syntax errors and was left alone, and where one would change
+    but may not be written: with --check, and in archives.
+    """
+    from recovery.ingest import IngestError, discover
+
+    counts: Counter[_Outcome] = Counter()
+    try:
+        for found in discover(paths):
+            counts[_format(found, check)] += 1
+    except IngestError as error:
+        raise Unusable(str(error)) from error
+    typer.echo(
+        ", ".join(f"{counts[outcome]:,} {outcome.value}" for outcome in _Outcome if counts[outcome])
+    )
+    if counts[_Outcome.NOT_WRITTEN]:
+        return UNUSABLE
+    return FINDINGS if counts[_Outcome.LEFT] or counts[_Outcome.WOULD_CHANGE] else FINE
+
+
+def _format(found: "Found | Skipped", check: bool) -> _Outcome:
+    """Format one file, and say on one line what is not as it should be."""
+    from grammar.layout import LayoutDefect, layouter
+    from recovery.ingest import Skipped, decode, read
+
+    data = found if isinstance(found, Skipped) else read(found)
+    source = data.reason if isinstance(data, Skipped) else decode(data)
+    if isinstance(found, Skipped) or isinstance(data, Skipped) or isinstance(source, str):
+        return _complain(found.path, f"skipped: {source}", _Outcome.SKIPPED)
+    try:
+        text = layouter().layout(source.text, found.path)
+    except LayoutDefect as defect:
+        return _complain(found.path, f"left alone, please report it: {defect}", _Outcome.LEFT)
+    if isinstance(text, list):
+        first = text[0]
+        place = f"{found.path}:{first.line}:{first.column}"
+        what = first.reason or f"syntax error at {_token(first.text)}"
+        return _complain(place, f"left alone: {what}", _Outcome.LEFT)
+    if text == source.text:
+        return _Outcome.RIGHT
+    if check or found.member is not None:
+        typer.echo(f"would change {one_line(found.path)}")
+        return _Outcome.WOULD_CHANGE
+    # what decoding leaves out, a mark at the start and padding at the end, stays as it is
+    before, _, after = data.partition(source.text.encode(source.encoding))
+    try:
+        _write(found.file, before + text.encode(source.encoding) + after)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        return _complain(found.path, f"not written: {reason}", _Outcome.NOT_WRITTEN)
+    typer.echo(f"formatted {one_line(found.path)}")
+    return _Outcome.FORMATTED
+
+
+def _complain(path: str, what: str, outcome: _Outcome) -> _Outcome:
+    typer.echo(one_line(f"{path}: {what}"), err=True)
+    return outcome
+
+
+def _token(text: str) -> str:
+    if not text:
+        return "the end of the file"
+    return text[:_LONGEST] if text.strip() else "the end of the line"
+
+
+def _write(file: Path, data: bytes) -> None:
+    """Put `data` in the place of a file, whole or not at all; who may do what stays."""
+    with tempfile.NamedTemporaryFile(dir=file.parent, prefix=".krl-format-", delete=False) as part:
+        scratch = Path(part.name)
+        try:
+            part.write(data)
+            part.close()
+            shutil.copymode(file, scratch)
+            scratch.replace(file)
+        except BaseException:
+            part.close()
+            scratch.unlink(missing_ok=True)
+            raise
