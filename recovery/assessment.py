@@ -14,6 +14,7 @@ from typing import Any
 from grammar.edits import (
     AddAlternative,
     Address,
+    AddToken,
     Edit,
     Insert,
     MakeOptional,
@@ -96,7 +97,10 @@ def assess(
         noticed = any(s.word in mutant.keywords for s in swallowed)
         seconds = time.perf_counter() - began
         return Verdict(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
-    clusters = cluster(found, judge=judge(mutant.grammar))
+    texts_of = dict(shown)
+    clusters = cluster(
+        found, judge=judge(mutant.grammar), text_of=lambda file: texts_of[file.digest]
+    )
     seconds = time.perf_counter() - began
     base = Recognizer(mutant.grammar)
     ordered = list(_proposals(clusters))
@@ -189,7 +193,13 @@ def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str
     wider = base
     for entry in clusters.ranked:
         if entry.proposals:
-            wider = edited(wider, entry.proposals[0].edits) or wider
+            known = wider.grammar.by_name
+            edits = [
+                edit
+                for edit in entry.proposals[0].edits
+                if not (isinstance(edit, AddToken) and edit.name in known)
+            ]
+            wider = edited(wider, edits) or wider
     return 1 if all(map(wider.accepts, texts)) else None
 
 

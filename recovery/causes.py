@@ -8,36 +8,46 @@ not mend are searched again.
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
+from grammar.edits import AddAlternative, Edit
 from grammar.recognizer import Recognizer
-from recovery.candidates import Candidate, CandidateFinder, Line
+from recovery.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
+from recovery.joined import one_choice, reach_the_same, together
+from recovery.phrases import Word
 from recovery.progress import Progress, unheard
-from recovery.trial import Outcome, Trial
+from recovery.trial import Outcome, Trial, changed_rules
+from recovery.whole import WholeFiles
 
-__all__ = ["Cause", "Judge", "Proposal", "find_causes", "no_judge"]
+__all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
 
 # Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
 # that a first trial looks at: what is kept after it is tried on everything.
 _SPECIMENS = 3
-_MOST_TRIED = 90
+_MOST_TRIED = 80
 # Behind the groups that hold back most a quicker look has to do.
-_HEAVY_GROUPS = 30
+_HEAVY_GROUPS = 12
 _MOST_TRIED_LIGHT = 40
-_FIRST_TRIAL = 24
-_KEPT = 8
-_MOST_JUDGED = 40
-_MOST_JUDGED_LIGHT = 15
+_FIRST_TRIAL = 12
+# Lines whose openings are compared for what they have in common.
+_VARIED = 6
+_KEPT = 10
+_KEPT_LIGHT = 6
+_KEPT_OF_A_RULE = 3
+_MOST_JUDGED = 24
+_MOST_JUDGED_LIGHT = 12
 _ALIKE = 12
 _SHOWN = 5
+# What the lines themselves count where whole files cannot be read on behind them.
+_LINE_COUNTS = 0.2
+# Causes that a later one is compared with: the first ones hold back most.
+_MOST_JOINED = 40
 _ROUNDS = 4
-# What an edit loses of its worth for each step in breadth: of two that mend nearly as much, the
-# one that lets in less is preferred.
-_BREADTH_COSTS = 0.995
+# What an edit gains that mends every line which fails at the same token: it leaves none to explain.
+_ALL_ALIKE = 1.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,13 +89,15 @@ def find_causes(
     groups: Sequence[Sequence[int]],
     judge: Judge,
     on_done: Progress = unheard,
+    whole: WholeFiles | None = None,
 ) -> list[Cause]:
     """Group ``lines`` by cause.
 
     ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
-    heaviest first. ``on_done`` is told of each group dealt with.
+    heaviest first. ``on_done`` is told of each group dealt with. ``whole`` has files in which the
+    lines fail first.
     """
-    search = _Search(recognizer, lines, weights, judge)
+    search = Search(recognizer, lines, weights, judge, whole)
     causes: list[Cause] = []
     for place, group in enumerate(groups):
         search.thorough = place < _HEAVY_GROUPS
@@ -104,27 +116,34 @@ def find_causes(
             search.open.difference_update(left)
             causes.append(Cause(tuple(left), ()))
         on_done(1)
-    return causes
+    return search.joined(causes)
 
 
-class _Search:
+class Search:
+    """Searches edits for the lines of one grammar."""
+
     def __init__(
         self,
         recognizer: Recognizer,
         lines: Sequence[Line],
         weights: Sequence[int],
         judge: Judge,
+        whole: WholeFiles | None = None,
     ) -> None:
         self.lines = lines
         self.weights = weights
         self.judge = judge
+        self.whole = whole or WholeFiles(recognizer, {})
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.thorough = True
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
+        self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
+        self.same_lead: dict[Word, list[int]] = defaultdict(list)
         for number in sorted(self.open, key=lambda n: (-weights[n], n)):
             self.same_token[self._token(number)].append(number)
+            self.same_lead[lines[number].words()[0]].append(number)
 
     def best_for(self, group: Sequence[int]) -> Cause | None:
         """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
@@ -141,21 +160,20 @@ class _Search:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
         specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
         most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
-        tried: dict[tuple[Edit, ...], Candidate] = {}
-        for number in specimens:
-            for candidate in self.finder.find(self.lines[number])[:most]:
-                tried.setdefault(candidate.edits, candidate)
+        alike = self._alike(specimens[0])
+        led_alike = self._led_alike(specimens[0])
+        near = dict.fromkeys((*specimens, *_spread(heavy, _VARIED)))
+        varied = dict.fromkeys((*near, *_spread(alike, _VARIED), *_spread(led_alike, _VARIED)))
+        tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
         sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
-        sample |= set(_spread(self._alike(specimens[0]), _FIRST_TRIAL))
-        first = [
-            (candidate, self.trial.outcome(candidate.edits, sample)) for candidate in tried.values()
-        ]
+        sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
+        first = [(candidate, self.trial.outcome(candidate.edits, sample)) for candidate in tried]
         first += [
             (candidate, self.trial.outcome(candidate.edits, sample))
-            for candidate in _merged([c for c, o in first if o.mended])
+            for candidate in one_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        for candidate, negatives in self._kept(first):
+        for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
             outcome = self.trial.outcome(candidate.edits, self.open)
             proposals.append(
                 Proposal(
@@ -166,11 +184,86 @@ class _Search:
                     negatives,
                 )
             )
-        return self._ranked(proposals)[:_SHOWN]
+        return self._ranked(proposals, heavy)[:_SHOWN]
+
+    def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
+        """The best of the blocks that a line may open, with the negatives they let in."""
+        line = self.lines[number]
+        opener = self._lead(line)
+        if not opener:
+            return []
+        texts = self.whole.texts(heavy)
+        found = [
+            (self.whole.share(wider, heavy), candidate)
+            for candidate in self.finder.find_blocks(line, opener, texts, self._meant)
+            if (wider := self.trial.wider(candidate.edits)) is not None
+        ]
+        found.sort(
+            key=lambda pair: (-pair[0] * BREADTH_COSTS ** pair[1].breadth, str(pair[1].edits))
+        )
+        return [
+            (candidate, self.judge(candidate.edits)) for _, candidate in found[:_KEPT_OF_A_RULE]
+        ]
+
+    def _lead(self, line: Line) -> str:
+        """The keyword or would-be keyword that a line begins with."""
+        kind, keyword = line.words()[0]
+        lexer = self.finder.recognizer.lexer
+        return keyword or (lexer.display[kind] if lexer.is_keyword(kind) else "")
+
+    def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
+        """The edits tried on all lines, whatever their cause."""
+        outcome = self.trial.outcome(edits)
+        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+
+    def joined(self, causes: Sequence[Cause]) -> list[Cause]:
+        """Causes of which one is missing in several places made one."""
+        out: list[Cause] = []
+        for cause in causes:
+            for place, other in enumerate(out[:_MOST_JOINED] if cause.proposals else ()):
+                one = self._as_one(other, cause) if other.proposals else None
+                if one is not None:
+                    out[place] = one
+                    break
+            else:
+                out.append(cause)
+        return out
+
+    def _as_one(self, first: Cause, second: Cause) -> Cause | None:
+        """The two as one cause, where one edit mends what the best edits of both mend."""
+        one, other = first.proposals[0], second.proposals[0]
+        negatives = one.accepts_negatives + other.accepts_negatives
+        lines = tuple(sorted({*first.lines, *second.lines}))
+        for edits, breadth in self._for_both(one, other):
+            both = self.proposal(edits, breadth)
+            if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
+                return Cause(lines, (both, *first.proposals)[:_SHOWN])
+        return None
+
+    def _for_both(self, one: Proposal, other: Proposal) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """Edits that might do what two proposals do."""
+        layout = self.finder.layout
+        if changed_rules(one.edits) == changed_rules(other.edits):
+            yield other.edits, other.breadth
+        pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
+        for choice in one_choice(pair, self._may_be_chosen):
+            yield choice.edits, choice.breadth
+        if reach_the_same(layout, one.edits, other.edits):
+            yield together(one.edits, other.edits), max(one.breadth, other.breadth) + 1
+
+    def _may_be_chosen(self, edit: Edit, place: int) -> bool:
+        """Whether words there are a choice: those that begin alternatives name constructs."""
+        if not isinstance(edit, AddAlternative):
+            return True
+        return place > 0 or self.finder.layout.is_set_of_words(edit.rule)
 
     def _alike(self, number: int) -> list[int]:
         """Other lines that fail at the same token, whatever else they look like."""
         return [n for n in self.same_token[self._token(number)] if n in self.open]
+
+    def _led_alike(self, number: int) -> list[int]:
+        """Other lines that begin with the same kind of token or the same word."""
+        return [n for n in self.same_lead[self.lines[number].words()[0]] if n in self.open]
 
     def _token(self, number: int) -> tuple[int, str | None]:
         line = self.lines[number]
@@ -183,7 +276,7 @@ class _Search:
 
     def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
         """Gain, less a little for all that an edit lets in besides."""
-        return self._gain(outcome) * _BREADTH_COSTS**candidate.breadth
+        return self._gain(outcome) * BREADTH_COSTS**candidate.breadth
 
     def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
         """The most worthwhile candidates, first those that let in no negatives."""
@@ -191,10 +284,19 @@ class _Search:
         useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
         clean: list[tuple[Candidate, int]] = []
         costly: list[tuple[Candidate, int]] = []
-        for candidate, _ in useful[: _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT]:
+        in_rule: Counter[str] = Counter()
+        judged = 0
+        for candidate, _ in useful:
+            rule = getattr(candidate.edits[-1], "rule", "")
+            if in_rule[rule] >= _KEPT_OF_A_RULE:
+                continue
             negatives = self.judge(candidate.edits)
+            judged += 1
+            in_rule[rule] += not negatives
             (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == _KEPT:
+            if len(clean) == (_KEPT if self.thorough else _KEPT_LIGHT) or judged == (
+                _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
+            ):
                 break
         return clean + costly[: _KEPT - len(clean)]
 
@@ -212,11 +314,17 @@ class _Search:
             for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[:_ALIKE]
         ]
 
-    def _ranked(self, proposals: list[Proposal]) -> list[Proposal]:
-        """No negatives first; then by worth."""
-        return sorted(
-            proposals, key=lambda p: (p.accepts_negatives, -self._worth(p, p), str(p.edits))
-        )
+    def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
+        """No negatives first; then by worth, and by how much of whole files can be read."""
+        worth = {}
+        alike = self._alike(lines[0])
+        for p in proposals:
+            wider = self.trial.wider(p.edits)
+            share = 0.0 if wider is None else self.whole.share(wider, lines)
+            worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
+            if p.mended.issuperset(alike):
+                worth[p.edits] *= _ALL_ALIKE
+        return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
 
 
 _T = TypeVar("_T")
@@ -227,43 +335,3 @@ def _spread(items: Sequence[_T], count: int) -> list[_T]:
     if len(items) <= count:
         return list(items)
     return [items[i * len(items) // count] for i in range(count)]
-
-
-def _merged(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that differ in one word only, as one with a choice of words."""
-    families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
-    for candidate in candidates:
-        edit = candidate.edits[-1]
-        if not isinstance(edit, Insert | Widen | AddAlternative):
-            continue
-        words = edit.text.strip("()?*").split(" ")
-        place = () if isinstance(edit, AddAlternative) else edit.at
-        for i, word in enumerate(words):
-            frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
-            families[*frame, edit.text[-1]][word] = candidate
-    out = []
-    for family, members in families.items():
-        if len(members) < 2:
-            continue
-        words = sorted(members)
-        left, right = family[3], family[4]
-        assert isinstance(left, tuple)
-        assert isinstance(right, tuple)
-        choice = words[0] if len(words) == 1 else f"({' | '.join(words)})"
-        body = " ".join((*left, choice, *right))
-        some = next(iter(members.values()))
-        last = some.edits[-1]
-        if isinstance(last, Insert):
-            text = f"({body}){last.text[-1]}" if left or right else f"{choice}{last.text[-1]}"
-            edit = Insert(last.rule, last.at, text)
-        elif isinstance(last, Widen):
-            edit = Widen(last.rule, last.at, body)
-        else:
-            assert isinstance(last, AddAlternative)
-            edit = AddAlternative(last.rule, body)
-        tokens = sorted(
-            {e.name for c in members.values() for e in c.edits if isinstance(e, AddToken)}
-        )
-        breadth = max(c.breadth for c in members.values()) + 1
-        out.append(Candidate((*(AddToken(t) for t in tokens), edit), breadth))
-    return out

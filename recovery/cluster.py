@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from grammar.failures import Context, FailureFinder
 from grammar.recognizer import Recognizer
@@ -14,8 +15,11 @@ from recovery.causes import Cause, Judge, Proposal, find_causes, no_judge
 from recovery.progress import Progress, unheard
 from recovery.shapes import Shape, Shaper
 from recovery.survey import Failed, Survey, SurveyedFile
+from recovery.whole import WholeFiles
 
 __all__ = ["Cluster", "Clusters", "Member", "cluster"]
+
+_FILES_A_LINE = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,23 +71,36 @@ class Clusters:
     contexts: tuple[Context, ...]
 
 
+def text_on_disk(file: SurveyedFile) -> str:
+    """The text of a file, read again; empty where it has changed since the survey."""
+    return "\n".join(file.lines())
+
+
 def cluster(
     found: Survey,
     *,
     judge: Judge = no_judge,
+    text_of: Callable[[SurveyedFile], str] = text_on_disk,
     on_found: Progress = unheard,
     on_done: Progress = unheard,
 ) -> Clusters:
     """Group the failures of a survey by cause.
 
-    ``judge`` counts the negatives an edit lets in; ``on_found`` and ``on_done`` report progress.
+    ``judge`` counts the negatives an edit lets in; ``text_of`` gives the text of a file again;
+    ``on_found`` and ``on_done`` report progress.
     """
     groups = _Lines(found)
     causes: Sequence[Cause] = ()
     if groups.lines:
         on_found(len(groups.by_shape))
         causes = find_causes(
-            groups.recognizer, groups.lines, groups.weights, groups.by_shape, judge, on_done
+            groups.recognizer,
+            groups.lines,
+            groups.weights,
+            groups.by_shape,
+            judge,
+            on_done,
+            WholeFiles(groups.recognizer, groups.starting(text_of)),
         )
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)
@@ -102,6 +119,7 @@ class _Lines:
             for index, failed in enumerate(file.failures)
             if not failed.follows
         ]
+        self._firsts = [(file, index) for file, index, _ in direct if index == 0]
         self.shaper = Shaper(
             self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
         )
@@ -130,6 +148,21 @@ class _Lines:
         self.by_shape = sorted(
             by_shape.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
         )
+
+    def starting(
+        self, text_of: Callable[[SurveyedFile], str]
+    ) -> dict[int, list[Callable[[], str]]]:
+        """For each line the smallest files that fail there first, to be read when needed."""
+        files: dict[int, list[SurveyedFile]] = defaultdict(list)
+        for file, index in self._firsts:
+            files[self.line_of[file.digest, index]].append(file)
+        return {
+            line: [
+                partial(text_of, file)
+                for file in sorted(starting, key=lambda f: (f.size, f.digest))[:_FILES_A_LINE]
+            ]
+            for line, starting in files.items()
+        }
 
     def _context(
         self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]

@@ -3,21 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 
 from grammar.edits import Edit
 from grammar.g4 import Grammar
 from grammar.recognizer import Recognizer
 from recovery.causes import Judge
+from recovery.invalid import generate
 from recovery.negatives import Negative, NegativeSet
 from recovery.trial import edited
 
 __all__ = ["judge_of"]
 
+# A sample of the programs that facts of the language prove invalid: enough to tell edits apart,
+# few enough to be read for every candidate that is kept.
+_GENERATED = 250
+_SEED = 1
+
 
 def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
-    """A judge for edits of ``grammar``; what it accepts already is not held against them."""
+    """A judge for edits of ``grammar``; what it accepts already is not held against them.
+
+    It judges by ``negatives`` and by a fixed sample of generated ones (`recovery.invalid`).
+    """
     recognizer = Recognizer(grammar)
-    rejected = NegativeSet(negatives).rejected_by(recognizer)
+    rejected = NegativeSet((*negatives, *_generated())).rejected_by(recognizer)
     known: dict[tuple[Edit, ...], int] = {}
 
     def judge(edits: Sequence[Edit]) -> int:
@@ -28,3 +38,8 @@ def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
         return known[key]
 
     return judge
+
+
+@cache
+def _generated() -> tuple[Negative, ...]:
+    return tuple(generate(count=_GENERATED, seed=_SEED))

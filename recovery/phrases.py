@@ -7,6 +7,8 @@ is for the corpus and the negatives to tell, so all are proposed.
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import islice, product
@@ -22,6 +24,10 @@ _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
 _MOST_SPELLINGS = 12
 _MOST_REMEMBERED = 200_000
+_NAMES = re.compile(r"\w+")
+_OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
+# What a rule that reads several operands in a row costs for each seam: more than writing them out.
+_LOOSE = 30
 
 
 class Phraser:
@@ -29,6 +35,8 @@ class Phraser:
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
+        self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
+        self._opened: dict[tuple[int, ...], list[str]] = {}
         self._spans: dict[tuple[int, ...], frozenset[str]] = {}
 
     @cached_property
@@ -40,6 +48,22 @@ class Phraser:
             for rule in network.entry
             if rule != self.recognizer.grammar.start
         }
+
+    @cached_property
+    def _callers(self) -> dict[str, frozenset[str]]:
+        """For each rule the other rules that call it."""
+        network = self.recognizer.network
+        callers: dict[str, set[str]] = {name: set() for name in network.entry}
+        for position, calls in enumerate(network.calls):
+            for entry, _ in calls:
+                callers[network.rule[entry]].add(network.rule[position])
+        return {name: frozenset(found - {name}) for name, found in callers.items()}
+
+    def _is_one_level(self, rule: str) -> bool:
+        """Whether a rule is only a step within another that stands for it alone."""
+        return len(self._callers[rule]) == 1 and all(
+            rule in self._wider[caller] for caller in self._callers[rule]
+        )
 
     @cached_property
     def _uses(self) -> dict[str, int]:
@@ -72,13 +96,24 @@ class Phraser:
             closed(rule)
         return out
 
+    def is_unused(self, rule: str) -> bool:
+        """Whether nothing calls a rule."""
+        return not self._uses[rule]
+
     def opened_by(self, kinds: Sequence[int]) -> list[str]:
         """Rules that go on over the end of a line which begins them so."""
+        key = tuple(kinds)
+        known = self._opened.get(key)
+        if known is not None:
+            return known
         out = []
         for rule, entry in self._entries.items():
             state, failed = self.recognizer.run(entry, kinds)
             if failed is None and not self.recognizer.ends(state):
                 out.append(rule)
+        if len(self._opened) >= _MOST_REMEMBERED:
+            self._opened.clear()
+        self._opened[key] = out
         return out
 
     def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
@@ -98,7 +133,46 @@ class Phraser:
 
     def breadth(self, symbols: Sequence[str]) -> int:
         """How much a phrase lets in: nothing for tokens, more for rules that stand for more."""
-        return sum(1 + len(self._wider[s]) for s in symbols if s in self._wider)
+        names = (name for symbol in symbols for name in _NAMES.findall(symbol))
+        return sum(1 + len(self._wider[name]) for name in names if name in self._wider)
+
+    def sign(self, span: Sequence[Word]) -> str | None:
+        """The text of a keyword or sign; ``None`` for what carries a value."""
+        if len(span) != 1 or (span[0][1] is None and self._is_operand(span[0][0])):
+            return None
+        return self._token(span[0])
+
+    def stands_for_a_rule(self, span: Sequence[Word], *, is_listed: bool) -> bool:
+        """Whether some rule reads the span by itself (``TRUE`` is a literal too).
+
+        That a rule which reads almost any keyword reads this one says nothing, unless the keyword
+        is an item of a list.
+        """
+        if any(keyword is not None for _, keyword in span):
+            return False
+        rules = self.rules_for(tuple(kind for kind, _ in span))
+        return bool(rules if is_listed else rules - self._careless)
+
+    @cached_property
+    def _careless(self) -> frozenset[str]:
+        """Rules that read many keywords by themselves."""
+        lexer = self.recognizer.lexer
+        keywords = [kind for kind in lexer.kind_of.values() if lexer.is_keyword(kind)]
+        counts = Counter(rule for kind in keywords for rule in self.rules_for((kind,)))
+        return frozenset(rule for rule, count in counts.items() if 4 * count > len(keywords))
+
+    def rules_for_all(
+        self, spans: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
+    ) -> tuple[str, ...]:
+        """What can stand for each of the spans, from the narrowest to the widest."""
+        if any(keyword is not None or kind < 0 for span in spans for kind, keyword in span):
+            return ()
+        kinds = {tuple(kind for kind, _ in span) for span in spans}
+        rules = frozenset.intersection(*map(self.rules_for, kinds))
+        token = self._token(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
+        if not rules:
+            return (token,) if token else ()
+        return self._levels_of(rules, near)
 
     def phrases(
         self, words: Sequence[Word], near: frozenset[str] = frozenset()
@@ -118,7 +192,7 @@ class Phraser:
 
     def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
         """The words as they are, then with rules for their operands, narrow ones first."""
-        parts = self._parts(words)
+        parts = self.parts(words)
         if parts is None:
             return
         plain = [self._token(word) for word in words]
@@ -128,20 +202,48 @@ class Phraser:
         if all(choices):
             yield from islice(product(*choices), _MOST_SPELLINGS)
 
-    def _parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
+    def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
         """The words cut into the fewest operands and single tokens."""
+        key = tuple(words)
+        if key not in self._cuts:
+            if len(self._cuts) >= _MOST_REMEMBERED:
+                self._cuts.clear()
+            self._cuts[key] = self._cut(key)
+        return self._cuts[key]
+
+    def _cut(self, words: tuple[Word, ...]) -> list[tuple[Word, ...]] | None:
         count = len(words)
         best: list[tuple[int, list[tuple[Word, ...]]] | None] = [None] * count + [(0, [])]
         for start in range(count - 1, -1, -1):
             for end in range(start + 1, count + 1):
-                rest, part = best[end], tuple(words[start:end])
-                if rest is None or not self._levels(part):
+                rest, part = best[end], words[start:end]
+                if rest is None or not self._can_be_written(part):
                     continue
-                cost = rest[0] + (10 if len(part) == 1 else 9)
+                cost = rest[0] + (10 if len(part) == 1 else 9 + _LOOSE * self._seams(part))
                 known = best[start]
                 if known is None or cost < known[0]:
                     best[start] = (cost, [part, *rest[1]])
         return best[0][1] if best[0] else None
+
+    def _seams(self, part: tuple[Word, ...]) -> int:
+        """Where a part could fall into operands: at commas outside of brackets, between values."""
+        depth = seams = 0
+        was_value = False
+        for kind, _ in part:
+            text = self.recognizer.lexer.display[kind]
+            depth += (text in _OPENING) - (text in _CLOSING)
+            is_value = depth == 0 and self._is_operand(kind)
+            seams += (depth == 0 and text == ",") + (is_value and was_value)
+            was_value = is_value
+        return seams
+
+    def _can_be_written(self, part: tuple[Word, ...]) -> bool:
+        """Whether a part is one token, or what some rule reads."""
+        if len(part) == 1:
+            return part[0][1] is not None or part[0][0] >= 0
+        if any(keyword is not None or kind < 0 for kind, keyword in part):
+            return False
+        return bool(self.rules_for(tuple(kind for kind, _ in part)))
 
     def _levels(
         self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
@@ -157,12 +259,17 @@ class Phraser:
         if not rules:
             token = self._token(part[0])
             return (token,) if len(part) == 1 and token else ()
+        return self._levels_of(rules, near)
+
+    def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
+        close = sorted(rules & near)[:2]
+        rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
         # a rule that nothing uses waits to be used: it comes first
         narrow = min(
             rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), -self._uses[r], r)
         )
         wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
-        return tuple(dict.fromkeys((narrow, *sorted(rules & near)[:2], wide)))
+        return tuple(dict.fromkeys((narrow, *close, wide)))
 
     def _token(self, word: Word) -> str | None:
         kind, keyword = word
@@ -195,12 +302,12 @@ def repeated(symbols: tuple[str, ...]) -> tuple[str, ...] | None:
 
 
 def as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:
-    """``a , a , a`` as ``a (',' a)*``; other symbols as they are."""
-    if "','" not in symbols:
+    """``x a , a , a`` as ``x a (',' a)*``; other symbols as they are."""
+    commas = [place for place, symbol in enumerate(symbols) if symbol == "','"]
+    if not commas:
         return symbols
-    size = symbols.index("','")
-    unit, rest = symbols[:size], symbols[size:]
-    count, left = divmod(len(rest), size + 1)
-    if size and not left and rest == ("','", *unit) * count:
-        return (*unit, f"(',' {' '.join(unit)})*")
-    return symbols
+    size = (commas[1] if len(commas) > 1 else len(symbols)) - commas[0] - 1
+    unit, lead = symbols[commas[0] - size : commas[0]], symbols[: commas[0]]
+    if not 0 < size <= commas[0] or symbols[commas[0] :] != ("','", *unit) * len(commas):
+        return symbols
+    return (*lead, f"(',' {' '.join(unit)})*")

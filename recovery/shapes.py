@@ -20,6 +20,8 @@ from recovery.outcome import Failed
 __all__ = ["Shape", "Shaper"]
 
 _ELLIPSIS = "…"
+# Signs that no plain name at the beginning of a line has behind it, but a keyword can.
+_BEGINS_OPERAND = frozenset("{-+")
 # A word is a would-be keyword when it stands so in so many files and beside so many different
 # words on one side (a declared name stands beside its type only), or this often with none …
 _WORD_FILES = 2
@@ -117,7 +119,7 @@ class Shaper:
         before = kinds[place - 1] if place else None
         after = kinds[place + 1] if place + 1 < len(kinds) else None
         if before is None:
-            return after not in self._signs
+            return after not in self._signs or self.lexer.display[after] in _BEGINS_OPERAND
         return self._is_operand(before) or self._is_operand(after) or self._is_sign(before, ":")
 
     def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from grammar.edits import AddRule, AddToken, Edit, RemoveRule, apply
+from grammar.edits import AddRule, AddToken, Comment, Edit, Preamble, RemoveRule, apply
 from grammar.g4 import GrammarError
 from grammar.network import is_left_recursive, network_of, with_rule
 from grammar.paths import Paths
@@ -18,6 +18,9 @@ from grammar.recognizer import Frames, Recognizer, State
 from recovery.candidates import Line
 
 __all__ = ["Outcome", "Trial", "edited"]
+
+
+_MOST_REMEMBERED = 160
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +42,26 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
         for edit in edits:
             if isinstance(edit, AddToken):
                 lexer = lexer.with_keyword(edit.name)
-        changed = [e.rule for e in edits if not isinstance(e, AddToken | AddRule | RemoveRule)]
-        if len(changed) == 1 and not any(isinstance(e, AddRule | RemoveRule) for e in edits):
-            rule = grammar.by_name[changed[0]]
-            network = with_rule(recognizer.network, grammar, rule, lexer)
-        else:
+        if any(isinstance(e, AddRule | RemoveRule) for e in edits):
             network = network_of(grammar, lexer)
+        else:
+            network = recognizer.network
+            for name in sorted(changed_rules(edits)):
+                network = with_rule(network, grammar, grammar.by_name[name], lexer)
+            if network.lexer is not lexer:  # words reserved, and no rule has changed
+                network = replace(network, lexer=lexer)
     except (GrammarError, KeyError):
         return None
     return None if is_left_recursive(network) else Recognizer(grammar, network)
+
+
+def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
+    """The rules whose text the edits change."""
+    return frozenset(
+        e.rule
+        for e in edits
+        if not isinstance(e, AddToken | AddRule | RemoveRule | Comment | Preamble)
+    )
 
 
 class Trial:
@@ -58,6 +72,7 @@ class Trial:
         self.lines = lines
         paths = Paths(recognizer.network)
         self._prefix: dict[Frames, list[int]] = {}
+        self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
         self._by_rule: dict[str, list[int]] = defaultdict(list)
         self._by_keyword: dict[str, set[int]] = defaultdict(set)
         for number, line in enumerate(lines):
@@ -87,6 +102,8 @@ class Trial:
         rule_of = recognizer.network.rule
         state = recognizer.restore(form.before)
         rules = {rule_of[p] for p, _ in recognizer.sites(state)}
+        if not form.index:  # the line end before it may be what would be read in another way
+            rules |= {rule_of[p] for frames in form.before for p in frames}
         for kind in form.kinds[: form.index]:
             following = recognizer.step(state, kind)
             assert following is not None
@@ -101,12 +118,21 @@ class Trial:
             return sorted(found)
         if any(isinstance(e, AddRule) for e in edits):
             return list(range(len(self.lines)))
-        rules = {e.rule for e in edits if not isinstance(e, AddToken | AddRule)}
+        rules = changed_rules(edits)
         return sorted({n for rule in rules for n in self._by_rule.get(rule, ())})
+
+    def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
+        """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
+        key = tuple(edits)
+        if key not in self._wider:
+            if len(self._wider) >= _MOST_REMEMBERED:
+                del self._wider[next(iter(self._wider))]
+            self._wider[key] = edited(self.recognizer, edits)
+        return self._wider[key]
 
     def outcome(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> Outcome:
         """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
-        wider = edited(self.recognizer, edits)
+        wider = self.wider(edits)
         if wider is None:
             return Outcome(frozenset(), frozenset())
         chosen = self.relevant(edits)

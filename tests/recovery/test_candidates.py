@@ -160,12 +160,25 @@ def grammar_of(name: str) -> Grammar:
 @cache
 def candidates_of(name: str) -> list[Candidate]:
     """The candidates for the first failing line of an example."""
-    missing, grammar = CONSTRUCTS[name], grammar_of(name)
-    found = survey_texts([("a.src", missing.text)], grammar)
+    return CandidateFinder(Recognizer(grammar_of(name))).find(failing_line(name))
+
+
+def failing_line(name: str) -> Line:
+    """The first failing line of an example."""
+    missing = CONSTRUCTS[name]
+    found = survey_texts([("a.src", missing.text)], grammar_of(name))
     failed = found.files[0].failures[0]
     meant = ((i, word) for i, word in enumerate(failed.words) if word in missing.keywords)
-    line = Line(found.forms[failed.form], tuple(meant))
-    return CandidateFinder(Recognizer(grammar)).find(line)
+    return Line(found.forms[failed.form], tuple(meant))
+
+
+@cache
+def hopeful(name: str) -> list[tuple[Grammar, Network]]:
+    """What the candidates that a search would try make of the grammar."""
+    line, grammar = failing_line(name), grammar_of(name)
+    found = CandidateFinder(Recognizer(grammar)).find_common([line], FIRST)
+    grammars = (apply(grammar, candidate.edits) for candidate in found)
+    return [(grammar, network_of(grammar)) for grammar in grammars]
 
 
 @cache
@@ -187,7 +200,7 @@ def test_the_right_edit_is_among_the_first(name: str) -> None:
         wanted = all(map(accepts, [missing.text, *missing.good]))
         return wanted and not any(map(accepts, missing.bad))
 
-    assert any(is_right(*pair) for pair in edited(name)[:FIRST])
+    assert any(is_right(*pair) for pair in hopeful(name))
 
 
 @pytest.mark.parametrize("name", CONSTRUCTS)
@@ -207,7 +220,6 @@ def test_every_candidate_changes_the_grammar_into_another(name: str) -> None:
     assert sample == [read(text).text for text in sample]
 
 
-@pytest.mark.xfail(reason="a rule may be proposed where it would begin itself; trials drop it")
 def test_no_candidate_is_left_recursive() -> None:
     """What no recogniser could read is not proposed."""
     recursive = {

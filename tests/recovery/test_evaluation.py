@@ -131,7 +131,7 @@ def test_without_a_ground_it_is_refused(origins: int, tmp_path: Path) -> None:
     """What at most one origin shows needs a rule, a manual or a verdict."""
     text = f"DEF A()\n{LOOP}END\n" if origins else "DEF A()\nEND\n"
     (why,) = refusals(replace(STEP, evidence=Evidence()), evidence=written(tmp_path, o__a=text))
-    assert why.startswith(f"no ground: {'only one' if origins else 'no'} origin shows it")
+    assert why.startswith(f"no ground: {'only one' if origins else 'no'} file shows it")
 
 
 def test_what_the_oracle_refused_is_refused() -> None:

@@ -1,0 +1,199 @@
+"""What several phrases have in common: one phrase that reads all of them.
+
+Lines of one construct differ in their operands and in the parts that may be left out. Laid beside
+one another by their keywords and signs, each column of operands is read by a rule that reads all of
+them, what only some have becomes optional, and where some have one thing and the others another,
+a choice: from ``LIN A`` and ``LIN {X 1} C_DIS`` comes ``LIN target C_DIS?``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from recovery.phrases import Phraser, Word
+
+__all__ = ["common_phrases"]
+
+_MOST_ROWS = 16
+_MOST_COLUMNS = 14
+_MOST_RULES = 3
+
+_Span = tuple[Word, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A keyword or sign (``key`` is its text), or an operand, or a list of operands."""
+
+    key: str
+    spans: tuple[_Span, ...]
+
+    @property
+    def is_operand(self) -> bool:
+        return not self.key
+
+
+@dataclass(slots=True)
+class _Column:
+    """Parts of the same kind, by the row they are in."""
+
+    key: str
+    cells: dict[int, _Part] = field(default_factory=dict)
+
+
+def common_phrases(
+    phraser: Phraser, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
+) -> Iterator[tuple[str, ...]]:
+    """Phrases as symbols, some of them in brackets, that read all of ``phrases``.
+
+    The most restrictive first; none where the phrases have too little in common to be one.
+    """
+    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:_MOST_ROWS]
+    if not rows:
+        return
+    columns = _columns(rows)
+    shared = sum(len(column.cells) == len(rows) for column in columns)
+    if len(columns) > _MOST_COLUMNS or 2 * shared < len(columns):
+        return
+    seen = set()
+    for level in range(3):
+        written = [_written(phraser, column, level, near) for column in columns]
+        symbols = tuple(_grouped(columns, written, len(rows)))
+        if all(written) and symbols not in seen:
+            seen.add(symbols)
+            yield symbols
+
+
+def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
+    return -len(row), str([(p.key, p.spans) for p in row])
+
+
+def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
+    """A phrase cut into parts; ``a , a , a`` is one part."""
+    out: list[_Part] = []
+    spans = phraser.parts(words) or []
+    signs = [phraser.sign(span) for span in spans]
+    for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
+        # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty
+        is_listed = "','" in signs[max(0, place - 1) : place + 2]
+        is_word = bool(out) and sign is not None and sign[0] != "'"
+        if is_word and phraser.stands_for_a_rule(span, is_listed=is_listed):
+            part = _Part("", (span,))
+        else:
+            part = _Part(sign or "", () if sign else (span,))
+        if part.is_operand and len(out) > 1 and out[-1].key == "','" and out[-2].is_operand:
+            out[-2:] = [_Part("", (*out[-2].spans, span))]
+        else:
+            out.append(part)
+    return out
+
+
+def _columns(rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
+    """The rows beside one another; the longest gives the order."""
+    columns: list[_Column] = []
+    for number, row in enumerate(rows):
+        merged: list[_Column] = []
+        place = used = 0
+        for here, there in _matches([c.key for c in columns], [p.key for p in row]):
+            merged += columns[used:here]
+            merged += [_Column(p.key, {number: p}) for p in row[place:there]]
+            columns[here].cells[number] = row[there]
+            merged.append(columns[here])
+            used, place = here + 1, there + 1
+        merged += columns[used:]
+        merged += [_Column(p.key, {number: p}) for p in row[place:]]
+        columns = merged
+    return columns
+
+
+def _matches(left: Sequence[str], right: Sequence[str]) -> list[tuple[int, int]]:
+    """Indices of a longest common subsequence."""
+    best = [[0] * (len(right) + 1) for _ in range(len(left) + 1)]
+    for i in range(len(left) - 1, -1, -1):
+        for j in range(len(right) - 1, -1, -1):
+            best[i][j] = max(
+                best[i + 1][j], best[i][j + 1], (left[i] == right[j]) + best[i + 1][j + 1]
+            )
+    out = []
+    i = j = 0
+    while i < len(left) and j < len(right):
+        if left[i] == right[j] and best[i][j] == 1 + best[i + 1][j + 1]:
+            out.append((i, j))
+            i, j = i + 1, j + 1
+        elif best[i][j] == best[i + 1][j]:
+            i += 1
+        else:
+            j += 1
+    return out
+
+
+def _written(
+    phraser: Phraser, column: _Column, level: int, near: frozenset[str]
+) -> tuple[str, ...]:
+    """A column as symbols: a sign, a rule that reads every cell, or a choice of few; or nothing."""
+    if column.key:
+        return (column.key,)
+    spans = sorted({span for part in column.cells.values() for span in part.spans}, key=str)
+    chosen = phraser.rules_for_all(spans, near)
+    if chosen:
+        symbol = chosen[min(level, len(chosen) - 1)]
+    else:
+        several = _cover(phraser, spans)
+        if several is None:
+            return ()
+        symbol = f"({' | '.join(several)})" if len(several) > 1 else several[0]
+    if any(len(part.spans) > 1 for part in column.cells.values()):
+        return (symbol, f"(',' {symbol})*")
+    return (symbol,)
+
+
+def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
+    """A few rules or tokens that read all the spans between them."""
+    left = list(spans)
+    out: list[str] = []
+    while left and len(out) < _MOST_RULES:
+        reads: dict[str, list[_Span]] = {}
+        for span in left:
+            for rule in phraser.rules_for_all([span]):
+                reads.setdefault(rule, []).append(span)
+        if not reads:
+            return None
+        best = min(reads, key=lambda rule: (-len(reads[rule]), phraser.breadth([rule]), rule))
+        out.append(best)
+        left = [span for span in left if span not in reads[best]]
+    return None if left else sorted(out)
+
+
+def _grouped(
+    columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
+) -> Iterator[str]:
+    """The symbols of all columns, those not in every row made optional or a choice."""
+    runs: list[tuple[frozenset[int], list[str]]] = []
+    for column, symbols in zip(columns, written, strict=True):
+        present = frozenset(column.cells)
+        if not runs or runs[-1][0] != present:
+            runs.append((present, []))
+        runs[-1][1].extend(symbols)
+    place = 0
+    while place < len(runs):
+        present, body = runs[place]
+        place += 1
+        if len(present) == rows:
+            yield from body
+            continue
+        choice = [" ".join(body)]
+        while place < len(runs) and not present & runs[place][0]:
+            present |= runs[place][0]
+            choice.append(" ".join(runs[place][1]))
+            place += 1
+        text = " | ".join(choice)
+        if len(present) == rows:
+            yield f"({text})"
+        else:
+            yield f"{text}?" if len(choice) == 1 and _is_one(body) else f"({text})?"
+
+
+def _is_one(symbols: Sequence[str]) -> bool:
+    """Whether the symbols are one that a suffix can be put behind."""
+    return len(symbols) == 1 and symbols[0][-1] not in "?*+"

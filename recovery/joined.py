@@ -1,0 +1,92 @@
+"""Causes that are one: the same word or phrase is missing in several places.
+
+What a shape keeps apart, an edit can show to be one thing. ``A == B`` and ``A < B`` fail at
+different signs, but the edits that mend them differ in one word at the same place; a phrase may be
+missing in two rules, or two lost alternatives may be all that ever used a rule. Such causes become
+one, with the edits of both.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+
+from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
+from recovery.candidates import Candidate
+from recovery.layout import Layout
+
+__all__ = ["one_choice", "reach_the_same", "together"]
+
+
+def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
+    """The edits of both, each once, in an order in which no edit moves the place of another."""
+    edits = list(dict.fromkeys((*first, *second)))
+    tokens = [e for e in edits if isinstance(e, AddToken)]
+    places = [e for e in edits if not isinstance(e, AddToken | AddAlternative)]
+    places.sort(key=lambda e: (getattr(e, "rule", ""), getattr(e, "at", ())), reverse=True)
+    return (*tokens, *places, *(e for e in edits if isinstance(e, AddAlternative)))
+
+
+def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
+    """Whether two edits let in one thing: a word, a phrase, or what alone used a rule."""
+    new = {e.name for e in first if isinstance(e, AddToken)}
+    if new & {e.name for e in second if isinstance(e, AddToken)}:
+        return True
+    one, other = first[-1], second[-1]
+    if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
+        other, Insert | Widen | AddAlternative
+    ):
+        return False
+    if type(one) is type(other) and one.text == other.text and one.rule != other.rule:
+        return True
+    unused = layout.unused_in(one.text), layout.unused_in(other.text)
+    if one.rule == other.rule and isinstance(one, AddAlternative) and type(one) is type(other):
+        # what gathered several rules is gone, or what had several forms without a word of its own
+        return all(unused) or bool(layout.operands(one.text) & layout.operands(other.text))
+    return bool(unused[0] & unused[1])
+
+
+def one_choice(
+    candidates: Sequence[Candidate],
+    allowed: Callable[[Edit, int], bool] = lambda _edit, _place: True,
+) -> list[Candidate]:
+    """Candidates that differ in one word only, as one with a choice of words.
+
+    ``allowed`` is asked whether words at a place in the text of an edit may be a choice.
+    """
+    families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
+    for candidate in candidates:
+        edit = candidate.edits[-1]
+        if not isinstance(edit, Insert | Widen | AddAlternative):
+            continue
+        words = edit.text.strip("()?*").split(" ")
+        place = () if isinstance(edit, AddAlternative) else edit.at
+        for i, word in enumerate(words):
+            if allowed(edit, i):
+                frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
+                families[*frame, edit.text[-1]][word] = candidate
+    return [
+        _chosen(family[3], family[4], members)
+        for family, members in families.items()
+        if len(members) > 1
+    ]
+
+
+def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:
+    assert isinstance(left, tuple)
+    assert isinstance(right, tuple)
+    choice = f"({' | '.join(sorted(members))})"
+    body = " ".join((*left, choice, *right))
+    last = next(iter(members.values())).edits[-1]
+    edit: Edit
+    if isinstance(last, Insert):
+        text = f"({body}){last.text[-1]}" if left or right else f"{choice}{last.text[-1]}"
+        edit = Insert(last.rule, last.at, text)
+    elif isinstance(last, Widen):
+        edit = Widen(last.rule, last.at, body)
+    else:
+        assert isinstance(last, AddAlternative)
+        edit = AddAlternative(last.rule, body)
+    tokens = sorted({e.name for c in members.values() for e in c.edits if isinstance(e, AddToken)})
+    breadth = max(c.breadth for c in members.values()) + 1
+    return Candidate((*(AddToken(t) for t in tokens), edit), breadth)

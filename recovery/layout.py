@@ -1,0 +1,398 @@
+"""How the rules of a grammar look to somebody who is about to change one.
+
+How many rules lead to a rule, which rules gather kinds of statement or operand, what an alternative
+is like beside those that are there: what decides how restrictive and how fitting an edit is.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import SequenceMatcher
+from functools import cached_property
+
+from grammar.edits import (
+    AddAlternative,
+    Address,
+    AddToken,
+    Edit,
+    Insert,
+    MakeOptional,
+    Widen,
+    sequences,
+)
+from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
+from grammar.recognizer import Recognizer
+
+__all__ = ["Layout"]
+
+#: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
+_HUB = 4
+_ALIKE = 0.6
+_NAMES = re.compile(r"\w+")
+_TOGETHER = 6
+_LIKE = 6
+# Twice as many rules around a rule are so many steps in breadth.
+_WIDENS = 5
+
+
+class Layout:
+    """Knows the rules of one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self.grammar = recognizer.grammar
+        self._sequences: dict[str, dict[Address, Alternative]] = {}
+        self._classes: dict[str, list[list[str]]] = {}
+
+    def sequence(self, rule: str, address: Address) -> Alternative:
+        """The alternative at an address of a rule."""
+        known = self._sequences.get(rule)
+        if known is None:
+            known = self._sequences[rule] = dict(sequences(self.grammar.by_name[rule]))
+        return known[address]
+
+    def alternatives(self, rule: str) -> frozenset[str]:
+        """The alternatives a rule has, as written."""
+        found = self.grammar.by_name[rule]
+        return frozenset(" ".join(found.source_of(a).split()) for a in found.alternatives)
+
+    def closing(self, rule: str) -> str | None:
+        """What every alternative of a rule ends with, where that is a line end."""
+        found = self.grammar.by_name[rule]
+        ends = {found.source_of(a.elements[-1]) for a in found.alternatives if a.elements}
+        return self.line_end if ends == {self.line_end} else None
+
+    @cached_property
+    def of_lines(self) -> frozenset[str]:
+        """Rules whose alternatives end with a line end, or are all blocks."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and rule.name not in self.line_ends
+            and (
+                self.closing(rule.name)
+                or all(
+                    len(a.elements) == 1
+                    and isinstance(e := a.elements[0], Reference)
+                    and e.name in self.blocks
+                    for a in rule.alternatives
+                )
+            )
+        )
+
+    def unused_in(self, text: str) -> frozenset[str]:
+        """Rules of a text that nothing in the grammar calls."""
+        return self._unused.intersection(_NAMES.findall(text))
+
+    @cached_property
+    def _unused(self) -> frozenset[str]:
+        network = self.recognizer.network
+        used = {network.rule[entry] for calls in network.calls for entry, _ in calls}
+        return frozenset(network.entry) - used - {self.grammar.start}
+
+    def operands(self, text: str) -> frozenset[str]:
+        """The names in a text that has no keyword, none in one that has."""
+        names = frozenset(_NAMES.findall(text))
+        lexer = self.recognizer.lexer
+        known = self.grammar.by_name
+        words = (n for n in names if n not in known or lexer.is_keyword(lexer.kind_of.get(n, 0)))
+        return frozenset() if any(words) else names & known.keys()
+
+    def is_set_of_words(self, rule: str) -> bool:
+        """Whether each alternative of a rule is one token."""
+        return all(
+            len(a.elements) == 1
+            and (
+                isinstance(e := a.elements[0], Literal) or (isinstance(e, Reference) and e.is_token)
+            )
+            for a in self.grammar.by_name[rule].alternatives
+        )
+
+    def only_passes_on(self, rule: str) -> bool:
+        """Whether a rule is nothing but another rule: it waits for something."""
+        alternatives = self.grammar.by_name[rule].alternatives
+        elements = [e for a in alternatives for e in a.elements]
+        return (
+            len(elements) == 1 and isinstance(elements[0], Reference) and not (elements[0].is_token)
+        )
+
+    def is_hub(self, rule: str) -> bool:
+        """Whether a rule gathers kinds of something."""
+        return len(self.grammar.by_name[rule].alternatives) >= _HUB
+
+    def has_choice(self, rule: str) -> bool:
+        """Whether a rule has more than one alternative."""
+        return len(self.grammar.by_name[rule].alternatives) > 1
+
+    def near(self, rule: str) -> frozenset[str]:
+        """Rules that a rule refers to."""
+        return frozenset(
+            e.name
+            for a in self.grammar.by_name[rule].alternatives
+            for e in walk(a)
+            if isinstance(e, Reference) and not e.is_token
+        )
+
+    def width(self, rule: str) -> int:
+        """How far an edit reaches: the more, the more rules lead to this one."""
+        return self._ancestors[rule]
+
+    @cached_property
+    def _ancestors(self) -> dict[str, int]:
+        out = {}
+        for name in self._callers:
+            seen: set[str] = set()
+            todo = [name]
+            while todo:
+                for caller in self._callers[todo.pop()] - seen:
+                    seen.add(caller)
+                    todo.append(caller)
+            out[name] = round(_WIDENS * math.log2(1 + len(seen)))
+        return out
+
+    @cached_property
+    def _callers(self) -> dict[str, set[str]]:
+        """For each rule those that call it."""
+        network = self.recognizer.network
+        callers: dict[str, set[str]] = {name: set() for name in network.entry}
+        for position, calls in enumerate(network.calls):
+            for entry, _ in calls:
+                callers[network.rule[entry]].add(network.rule[position])
+        return callers
+
+    @cached_property
+    def blocks(self) -> frozenset[str]:
+        """Rules of several lines: with a line end that is not their last element."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and any(
+                isinstance(e, Reference) and (e.name in self.line_ends or e.name == "NEWLINE")
+                for a in rule.alternatives
+                for e in a.elements[:-1]
+            )
+        )
+
+    @cached_property
+    def line_ends(self) -> frozenset[str]:
+        """Rules that only say where a line ends: nothing of a line belongs there."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and all(
+                isinstance(e, Reference) and e.name == "NEWLINE"
+                for a in rule.alternatives
+                for e in walk(a)
+                if not isinstance(e, Repeat | Group)
+            )
+        )
+
+    @cached_property
+    def line_end(self) -> str:
+        """What a rule writes where a line ends."""
+        return min(self.line_ends, default="NEWLINE")
+
+    @cached_property
+    def loops(self) -> frozenset[str]:
+        """Rules that stand in a loop somewhere."""
+        return frozenset(
+            e.item.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            for a in rule.alternatives
+            for e in walk(a)
+            if isinstance(e, Repeat) and e.operator != "?" and isinstance(e.item, Reference)
+        )
+
+    @cached_property
+    def bodies(self) -> list[tuple[str, ...]]:
+        """What stands between the first line of a block and its last, in the blocks there are."""
+        found: Counter[tuple[str, ...]] = Counter()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                body: list[str] = []
+                within = False
+                for element in sequence.elements:
+                    text = rule.source_of(element)
+                    if text == self.line_end:
+                        within, body = True, []
+                    elif within and isinstance(element, Repeat) and text in self._line_loops:
+                        body.append(text)
+                    elif within and body:
+                        found[tuple(body)] += 1
+                        within = False
+                if within and body:
+                    found[tuple(body)] += 1
+        return sorted(found, key=lambda body: (-found[body], body))
+
+    @cached_property
+    def _line_loops(self) -> frozenset[str]:
+        return frozenset(f"{name}*" for name in self.loops - self.line_ends)
+
+    # ------------------------------------------------------------------------------- elements
+
+    def first(self, sequence: Alternative, number: int) -> frozenset[int]:
+        """The tokens with which the element at a place itself begins, rules left aside."""
+        if number > len(sequence.elements):
+            return frozenset()
+        return frozenset(self._tokens(sequence.elements[number - 1]))
+
+    def _tokens(self, element: Element) -> Iterator[int]:
+        if isinstance(element, Repeat):
+            yield from self._tokens(element.item)
+        elif isinstance(element, Group):
+            for alternative in element.alternatives:
+                if alternative.elements:
+                    yield from self._tokens(alternative.elements[0])
+        elif isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
+            yield self.recognizer.lexer.kind_of[self.grammar.token_of(element)]
+
+    def is_keyword(self, element: Element) -> bool:
+        """Whether an element is a reserved word."""
+        lexer = self.recognizer.lexer
+        return (
+            isinstance(element, Reference)
+            and element.is_token
+            and lexer.is_keyword(lexer.kind_of[element.name])
+        )
+
+    # --------------------------------------------------------------------------- alternatives
+
+    def unlike(self, rule: str, symbols: Sequence[str]) -> int:
+        """How little a rule asks for an alternative: below 0 where it has one just like it.
+
+        Keywords are alike; so are the same rules, signs and kinds of token. A rule of many
+        alternatives is made to take more, one of a single form is not.
+        """
+        known = self._classes.get(rule)
+        if known is None:
+            known = self._classes[rule] = [
+                [self._class(rule, e) for e in a.elements]
+                for a in self.grammar.by_name[rule].alternatives
+            ]
+        new = [self._class_of(symbol) for symbol in symbols]
+        matcher = SequenceMatcher(None, b=new, autojunk=False)
+        best = 0.0
+        for old in known:
+            matcher.set_seq1(old)
+            best = max(best, matcher.ratio())
+        if self.only_passes_on(rule):
+            return 0
+        if self._gathers(rule):
+            return -3 * _LIKE if self._is_single(symbols) else _LIKE
+        leads = {self._lead(rule, a) for a in self.grammar.by_name[rule].alternatives}
+        if len(leads) == 1 and "" not in leads:
+            return -_LIKE if symbols[0] in leads else 2 * _LIKE
+        if best >= _ALIKE and len(known) > 1:
+            return -round(_LIKE * best)
+        return 2 + max(0, _TOGETHER - len(known))
+
+    def _gathers(self, rule: str) -> bool:
+        """Whether most alternatives of a rule are one rule or token each."""
+        alternatives = self.grammar.by_name[rule].alternatives
+        single = sum(
+            len(a.elements) == 1 and isinstance(a.elements[0], Reference) for a in alternatives
+        )
+        return len(alternatives) > 2 and 2 * single >= len(alternatives)
+
+    def _is_single(self, symbols: Sequence[str]) -> bool:
+        """Whether the symbols are one rule or one reserved word."""
+        if len(symbols) != 1:
+            return False
+        known = self.grammar.by_name.get(symbols[0])
+        is_rule = known is not None and not known.is_lexer
+        return is_rule or self._class_of(symbols[0]) != symbols[0]
+
+    @cached_property
+    def _word_lists(self) -> tuple[str, ...]:
+        """Rules that list reserved words, many of all there are."""
+        lexer = self.recognizer.lexer
+        all_words = sum(lexer.is_keyword(kind) for kind in lexer.kind_of.values())
+        return tuple(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and self.is_set_of_words(rule.name)
+            and 4 * len(rule.alternatives) > all_words
+        )
+
+    def reserve(self, keywords: Iterable[str]) -> tuple[Edit, ...]:
+        """The edits that reserve words, and enter them where all reserved words are listed."""
+        edits: list[Edit] = []
+        for word in sorted(set(keywords)):
+            edits.append(AddToken(word))
+            edits += [AddAlternative(rule, word) for rule in self._word_lists]
+        return tuple(edits)
+
+    def _lead(self, rule: str, alternative: Alternative) -> str:
+        """The reserved word an alternative begins with."""
+        first = alternative.elements[0] if alternative.elements else None
+        if first is None or not self.is_keyword(first):
+            return ""
+        return self.grammar.by_name[rule].source_of(first)
+
+    def _class(self, rule: str, element: Element) -> str:
+        return self._class_of(self.grammar.by_name[rule].source_of(element))
+
+    def _class_of(self, symbol: str) -> str:
+        suffix = symbol[-1] if symbol[-1] in "?*+" else ""
+        name = symbol.rstrip("?*+")
+        if name in self.grammar.by_name and not name[0].isupper():
+            if len(self._callers[name]) > 1 or name in self.line_ends:
+                return symbol
+            return ("block" if name in self.blocks else "kind") + suffix
+        lexer = self.recognizer.lexer
+        kind = lexer.kind_of.get(name)
+        if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
+            return "keyword" + suffix
+        return symbol
+
+    # ------------------------------------------------------------------------- left recursion
+
+    def is_left_recursive(self, edit: Edit) -> bool:
+        """Whether an edit lets a rule begin with itself, so that no reading of it would end."""
+        match edit:
+            case AddAlternative(rule=rule, text=text):
+                return rule in self._leading(text)
+            case Insert(rule=rule, at=at, text=text) | Widen(rule=rule, at=at, text=text):
+                return rule in self._leading(text) and self.is_at_start(rule, at)
+            case MakeOptional(rule=rule, at=at, count=count):
+                behind = self.sequence(rule, at[:-1]).elements[at[-1] - 1 + count :]
+                text = " ".join(map(self.grammar.by_name[rule].source_of, behind))
+                return rule in self._leading(text) and self.is_at_start(rule, at)
+            case _:
+                return False
+
+    def _leading(self, text: str) -> frozenset[str]:
+        """Rules that may come before the first token of a text, the optional ones passed over."""
+        network = self.recognizer.network
+        found: frozenset[str] = frozenset()
+        for symbol in text.replace("(", " ").replace(")", " ").split():
+            name = symbol.rstrip("?*+")
+            entry = network.entry.get(name)
+            if entry is None:
+                if symbol[-1] in "?*" and name:
+                    continue
+                break
+            reach = network.reach(entry)
+            found |= reach.rules
+            if not reach.ends and symbol[-1] not in "?*":
+                break
+        return found
+
+    def is_at_start(self, rule: str, at: Address) -> bool:
+        """Whether a place may be reached before the rule has read anything."""
+        network = self.recognizer.network
+        entry = network.entry[rule]
+        places = network.automata[rule].places
+        return any(
+            not returns and at in places[position - entry]
+            for position, returns in network.reach(entry).sites
+            if network.rule[position] == rule
+        )

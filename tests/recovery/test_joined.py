@@ -1,0 +1,37 @@
+"""Edits that let in one thing in several places belong together."""
+
+from grammar.edits import AddAlternative, AddToken, Insert, Widen
+from grammar.g4 import read_file
+from grammar.generate import GRAMMAR
+from grammar.recognizer import Recognizer
+from recovery.candidates import Candidate
+from recovery.joined import one_choice, reach_the_same, together
+from recovery.layout import Layout
+
+LAYOUT = Layout(Recognizer(read_file(GRAMMAR.with_name("preliminary.g4"))))
+
+
+def test_words_at_one_place_become_a_choice() -> None:
+    """Edits that differ in one word are one edit with both words."""
+    edits = [Insert("motion", (1, 3), f"{word}?") for word in ("C_VEL", "C_ORI")]
+    found = one_choice([Candidate((AddToken(e.text[:-1]), e), 3) for e in edits])
+    assert Insert("motion", (1, 3), "(C_ORI | C_VEL)?") in [c.edits[-1] for c in found]
+
+
+def test_the_same_word_or_phrase_is_one_thing() -> None:
+    """A shared new word or the same text in two rules is one thing; two statements are not."""
+    brake = AddAlternative("simpleStatement", "BRAKE"), AddAlternative("interruptAction", "BRAKE")
+    assert reach_the_same(LAYOUT, brake[:1], brake[1:])
+    new = AddToken("C_VEL")
+    assert reach_the_same(
+        LAYOUT,
+        [new, Insert("motion", (1, 3), "C_VEL?")],
+        [new, Widen("motion", (2, 3), "C_VEL")],
+    )
+    assert not reach_the_same(LAYOUT, brake[:1], [AddAlternative("simpleStatement", "HALT")])
+
+
+def test_no_edit_moves_the_place_of_another() -> None:
+    """Of two insertions into one rule the later place comes first, and each edit comes once."""
+    early, late = Insert("motion", (1, 2), "A?"), Insert("motion", (1, 3), "B?")
+    assert (late, early) == together([early], [late, early])
