@@ -1,0 +1,7 @@
+"""The arm: where it is, how it moves, and what it is told to do.
+
+`frames` and `machine` need nothing beyond Python. `kinematics` and all that builds upon it need the
+extra `arm`, and are imported only by those who move an arm.
+"""
+
+__all__: list[str] = []

@@ -1,0 +1,138 @@
+"""Poses: where a frame stands in another one, and the geometric operator that joins them.
+
+Lengths are millimetres and angles degrees, as KRL has them. A, B and C turn about Z, then about the
+new Y, then about the new X: ``R = Rz(A) Ry(B) Rx(C)`` [ARI-09]. With ``left @ right``, ``right`` is
+told in the frame ``left`` [ARI-08].
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["IDENTITY", "Pose", "Row", "sine_cosine"]
+
+Row = tuple[float, float, float, float]
+
+_LOCKED = 1e-12
+"""Cosine of B below which A and C turn about the same axis; the orientation is off by no more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A pose as the upper three rows of its homogeneous matrix: rotation, and position in mm."""
+
+    rows: tuple[Row, Row, Row]
+
+    @classmethod
+    def of(
+        cls,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        a: float = 0.0,
+        b: float = 0.0,
+        c: float = 0.0,
+    ) -> Pose:
+        """The pose of a FRAME: mm and degrees. Multiples of 90 degrees are exact."""
+        sa, ca = sine_cosine(a)
+        sb, cb = sine_cosine(b)
+        sc, cc = sine_cosine(c)
+        return cls(
+            (
+                (ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc, x),
+                (sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc, y),
+                (-sb, cb * sc, cb * cc, z),
+            )
+        )
+
+    @classmethod
+    def from_matrix(cls, matrix: Sequence[Sequence[float]]) -> Pose:
+        """The pose of a homogeneous matrix of three or four rows."""
+        first, second, third = (
+            (float(row[0]), float(row[1]), float(row[2]), float(row[3])) for row in matrix[:3]
+        )
+        return cls((first, second, third))
+
+    @property
+    def matrix(self) -> tuple[Row, Row, Row, Row]:
+        """The homogeneous matrix, four by four."""
+        return (*self.rows, (0.0, 0.0, 0.0, 1.0))
+
+    @property
+    def position(self) -> tuple[float, float, float]:
+        """X, Y and Z in mm."""
+        return self.rows[0][3], self.rows[1][3], self.rows[2][3]
+
+    @property
+    def angles(self) -> tuple[float, float, float]:
+        """A, B and C in degrees: A and C above -180 and up to 180, B from -90 to 90.
+
+        Composed again they give the same rotation, at and near B = ±90 as well. Where only the sum
+        or the difference of A and C counts, A is 0.
+        """
+        (r00, r01, r02, _), (r10, r11, r12, _), (r20, _, _, _) = self.rows
+        cb = math.hypot(r00, r10)
+        a = math.atan2(r10, r00) if cb > _LOCKED else 0.0
+        # C from what A leaves over, so that rounding in A is made good.
+        sa, ca = math.sin(a), math.cos(a)
+        c = math.atan2(sa * r02 - ca * r12, ca * r11 - sa * r01)
+        return _degrees(a), _degrees(math.atan2(-r20, cb)), _degrees(c)
+
+    @property
+    def components(self) -> tuple[float, float, float, float, float, float]:
+        """X, Y, Z in mm, and A, B, C in degrees: the components of a FRAME."""
+        return (*self.position, *self.angles)
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether every number in it is one."""
+        return all(math.isfinite(value) for row in self.rows for value in row)
+
+    def __matmul__(self, other: Pose) -> Pose:
+        (b00, b01, b02, bx), (b10, b11, b12, by), (b20, b21, b22, bz) = other.rows
+        first, second, third = (
+            (
+                m0 * b00 + m1 * b10 + m2 * b20,
+                m0 * b01 + m1 * b11 + m2 * b21,
+                m0 * b02 + m1 * b12 + m2 * b22,
+                m0 * bx + m1 * by + m2 * bz + place,
+            )
+            for m0, m1, m2, place in self.rows
+        )
+        return Pose((first, second, third))
+
+    def inverse(self) -> Pose:
+        """The pose of the outer frame in this one."""
+        (r00, r01, r02, x), (r10, r11, r12, y), (r20, r21, r22, z) = self.rows
+        return Pose(
+            (
+                (r00, r10, r20, -(r00 * x + r10 * y + r20 * z)),
+                (r01, r11, r21, -(r01 * x + r11 * y + r21 * z)),
+                (r02, r12, r22, -(r02 * x + r12 * y + r22 * z)),
+            )
+        )
+
+
+def sine_cosine(degrees: float) -> tuple[float, float]:
+    """Sine and cosine of an angle in degrees, exact at multiples of 90; NaN where it is no number.
+
+    Degrees are reduced before they become radians, so many turns cost no precision.
+    """
+    if not math.isfinite(degrees):
+        return math.nan, math.nan
+    quarter = round(math.fmod(degrees, 360.0) / 90.0)
+    rest = math.radians(math.fmod(degrees, 360.0) - 90.0 * quarter)
+    sine, cosine = math.sin(rest), math.cos(rest)
+    turned = ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarter % 4]
+    return turned[0] + 0.0, turned[1] + 0.0  # no negative zeros
+
+
+def _degrees(radians: float) -> float:
+    value = math.degrees(radians) + 0.0
+    return 180.0 if value == -180.0 else value
+
+
+IDENTITY = Pose.of()
+"""The pose of a frame in itself, $NULLFRAME."""

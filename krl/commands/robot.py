@@ -1,0 +1,214 @@
+"""`krl robot`: an arm by its machine data, without a program."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from krl.door import FINE, Unusable
+
+if TYPE_CHECKING:
+    from interp.robot.frames import Pose
+    from interp.robot.kinematics import Arm
+
+__all__ = ["app"]
+
+app = typer.Typer(help="Ask what an arm does, by its machine data.")
+
+_COMPONENTS = "xyzabc"
+_NEEDED = {"numpy", "scipy", "py_opw_kinematics"}
+_DIGITS = 9  # of a degree; more would be noise
+
+
+@app.callback()
+def _robot() -> None:
+    """Keep `status-turn` a command by its name, though it is the only one."""
+
+
+@app.command("status-turn")
+def status_turn(
+    points: Annotated[
+        Path,
+        typer.Argument(
+            metavar="POINTS.json",
+            help='A list of {"id","x","y","z","a","b","c","s"} in mm and degrees, each with "tool" '
+            'and "base" of its own if it has any. "t" may stand with them: it chooses among whole '
+            "turns of an axis.",
+        ),
+    ],
+    machine: Annotated[
+        Path, typer.Option(metavar="FILE", help="The $machine.dat of the arm, from R1/Mada.")
+    ],
+    tool: Annotated[
+        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Tool of the points that have none.")
+    ] = "0,0,0,0,0,0",
+    base: Annotated[
+        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Base of the points that have none.")
+    ] = "0,0,0,0,0,0",
+) -> int:
+    """Print joints and Turn of taught points, for the branch that their Status names.
+
+    Prints a JSON list of {"id","reachable","joints","s","t"}, the joints in degrees within the
+    software limits. Where an axis can reach the point in several whole turns, that of the Turn is
+    taken if the point has one ("agrees" says whether it fits), else the one nearest to 0. Points
+    out of reach have no joints, and "message" is what the controller would say.
+    """
+    default_tool, default_base = _listed("--tool", tool), _listed("--base", base)
+    arm = _arm(machine)
+    given = _read_points(points)
+    answers = [_answer(arm, point, default_tool, default_base) for point in given]
+    lines = ",\n".join(f" {json.dumps(answer)}" for answer in answers)
+    typer.echo(f"[\n{lines}\n]" if lines else "[]")
+    return FINE
+
+
+@dataclass(frozen=True, slots=True)
+class _Point:
+    """A taught point as it was given; ``None`` for what it leaves to the options."""
+
+    name: str | int | float
+    pose: "Pose"
+    status: int
+    turn: int | None
+    tool: "Pose | None"
+    base: "Pose | None"
+
+
+def _arm(path: Path) -> "Arm":
+    """The arm of a $machine.dat; imports are late because they take longer than most commands."""
+    from interp.robot.data_list import DataListError
+    from interp.robot.machine import MachineDataError, read_machine
+    from recovery.decode import decode
+
+    source = decode(path.read_bytes())
+    if isinstance(source, str):
+        raise Unusable(f"{path}: not machine data: {source}")
+    try:
+        machine = read_machine(source.text, str(path))
+    except (DataListError, MachineDataError) as error:
+        raise Unusable(str(error)) from error
+    try:
+        from interp.robot.kinematics import Arm
+
+        return Arm(machine)
+    except MachineDataError as error:
+        raise Unusable(f"{path}: {error}") from error
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in _NEEDED:
+            raise
+        raise Unusable(
+            f"the arm needs {error.name}, which is not installed: pip install 'krl-workbench[arm]'"
+        ) from error
+
+
+def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
+    from interp.faults import Fault
+    from interp.robot.placement import Placement
+    from interp.robot.targets import solve
+
+    placement = Placement(point.base or base, point.tool or tool, arm.machine.robroot)
+    answer: dict[str, object] = {"id": point.name, "reachable": False, "joints": None}
+    answer |= {"s": point.status, "t": None}
+    try:
+        found = solve(arm, placement.flange(point.pose), status=point.status, turn=point.turn)
+    except Fault as fault:
+        return answer | {"message": fault.number, "text": fault.text}
+    joints = [round(value, _DIGITS) + 0.0 for value in found.axes]
+    answer |= {"reachable": True, "joints": joints, "t": found.turn}
+    return answer if point.turn is None else answer | {"agrees": found.turn == point.turn}
+
+
+# ------------------------------------------------------------------------------- what was given
+
+
+def _read_points(path: Path) -> list[_Point]:
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        given = json.loads(text)
+    except UnicodeDecodeError:
+        raise Unusable(f"{path}: not a text in UTF-8") from None
+    except json.JSONDecodeError as error:
+        raise Unusable(f"{path}:{error.lineno}: not JSON: {error.msg}") from None
+    except (RecursionError, ValueError):  # nested too deeply, or a number of too many digits
+        raise Unusable(f"{path}: not JSON that can be read") from None
+    if not isinstance(given, list):
+        raise Unusable(f"{path}: not a list of points")
+    return [_point(f"{path}: point {place}", point) for place, point in enumerate(given, start=1)]
+
+
+def _point(where: str, given: object) -> _Point:
+    from interp.robot.frames import Pose
+
+    members = _members(where, given)
+    if "id" not in members:
+        raise Unusable(f"{where} has no id")
+    name = members["id"]
+    if isinstance(name, bool) or not (isinstance(name, str | int) or _is_finite(name)):
+        raise Unusable(f"{where}: its id is neither a text nor a number")
+    where = f"{where} ({name!r})"
+    pose = Pose.of(*(_number(where, members, key) for key in _COMPONENTS))
+    turn = _bits(where, members, "t") if members.get("t") is not None else None
+    tool, base = (_frame(f"{where}, {key}", members.get(key)) for key in ("tool", "base"))
+    return _Point(name, pose, _bits(where, members, "s"), turn, tool, base)
+
+
+def _frame(where: str, given: object) -> "Pose | None":
+    """A frame; components left out are 0."""
+    from interp.robot.frames import Pose
+
+    if given is None:
+        return None
+    members = _members(where, given)
+    if unknown := sorted(set(members) - set(_COMPONENTS)):
+        raise Unusable(f"{where}: {unknown[0]} is no component of a frame")
+    return Pose.of(*(_number(where, {key: 0} | dict(members), key) for key in _COMPONENTS))
+
+
+def _members(where: str, given: object) -> Mapping[str, Any]:
+    """An object of JSON with its keys in lower case."""
+    if not isinstance(given, dict):
+        raise Unusable(f"{where} is not an object with named members")
+    return {key.lower(): value for key, value in given.items()}
+
+
+def _number(where: str, members: Mapping[str, Any], key: str) -> float:
+    if key not in members:
+        raise Unusable(f"{where} has no {key}")
+    value = members[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise Unusable(f"{where}: {key} is not a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise Unusable(f"{where}: {key} is not a finite number")
+    return number
+
+
+def _is_finite(value: object) -> bool:
+    return isinstance(value, float) and math.isfinite(value)
+
+
+def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
+    number = _number(where, members, key)
+    if number < 0 or not number.is_integer():
+        raise Unusable(f"{where}: {key} is not a whole number from 0")
+    return int(number)
+
+
+def _listed(option: str, text: str) -> "Pose":
+    """A frame from six numbers with commas between them."""
+    from interp.robot.frames import Pose
+
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != len(_COMPONENTS) or not all(map(math.isfinite, numbers)):
+        raise Unusable(f"{option} takes six numbers X,Y,Z,A,B,C, not {text!r}")
+    return Pose.of(*numbers)
