@@ -17,6 +17,7 @@ from grammar.types import (
     FINE,
     INT,
     REAL,
+    UNKNOWN,
     Aggregate,
     Array,
     Constant,
@@ -152,10 +153,10 @@ def _to_array(to: Array, value: Type) -> Verdict:
 def declarable(parameter: Type, *, is_out: bool) -> Verdict:
     """Whether a routine can have such a parameter: arrays are passed :OUT only [SCO-07].
 
-    Predefined functions take texts :IN all the same.
+    Texts may be passed :IN all the same: predefined functions and KUKA's own programs do so.
     """
-    if isinstance(parameter, Array) and not is_out:
-        return Verdict(False, ("SCO-07",), "an array can only be passed :OUT")
+    if isinstance(parameter, Array) and not is_out and parameter.element not in (CHAR, UNKNOWN):
+        return Verdict(False, ("SCO-07",), "an array that is no text can only be passed :OUT")
     return FINE
 
 
@@ -172,6 +173,8 @@ def passable(parameter: Type, argument: Type, *, is_out: bool, is_variable: bool
         verdict = assignable(parameter, argument)
         if verdict:
             return verdict
+        if isinstance(parameter, Array) and not isinstance(argument, Array):
+            verdict = _refused(parameter, argument)
         message = verdict.message if verdict.message in (2052, 2125, 2296) else 2274
         return replace(verdict, rules=("ARI-04", *verdict.rules), message=message)
     if is_same(parameter, argument):

@@ -63,7 +63,7 @@ def unary(operator: str, operand: Type) -> Typed:
         case "NOT":
             return _typed(BOOL, _not(BOOL, operator, operand, "ARI-11"))
         case "B_NOT":
-            return _typed(INT, _not(INT, operator, operand, "ARI-07"))
+            return _typed(INT, _no_bits(operator, operand))
     raise ValueError(f"{operator!r} is no operator of one operand")
 
 
@@ -78,8 +78,7 @@ def binary(operator: str, left: Type, right: Type) -> Typed:
         bad = _first(*(_not(BOOL, operator, side, "ARI-11") for side in (left, right)))
         return _typed(BOOL, bad)
     if operator in BITWISE:
-        bad = _first(*(_not(INT, operator, side, "ARI-07") for side in (left, right)))
-        return _typed(INT, bad)
+        return _typed(INT, _first(_no_bits(operator, left), _no_bits(operator, right)))
     if operator == ":":
         return _typed(right, _first(_not_pose(left), _not_pose(right)), "ARI-08")
     raise ValueError(f"{operator!r} is no operator of two operands")
@@ -121,6 +120,11 @@ def _not(wanted: Type, operator: str, operand: Type, rule: str) -> Verdict | Non
     if isinstance(operand, Array):
         return without_index(operand)
     return Verdict(False, (rule,), f"{operator} works on {wanted}, and this is {operand}")
+
+
+def _no_bits(operator: str, operand: Type) -> Verdict | None:
+    """Bits are those of an INT; that letters have none is written nowhere [ARI-07]."""
+    return None if operand in (CHAR, Text(1)) else _not(INT, operator, operand, "ARI-07")
 
 
 def _not_pose(operand: Type) -> Verdict | None:
@@ -187,6 +191,13 @@ def _is_text(type_: Type) -> bool:
 # -------------------------------------------------------------------- indices and components
 
 
+_INDICES = {
+    1: "one dimension has one index",
+    2: "two dimensions has two indices",
+    3: "three dimensions has three indices",
+}
+
+
 def subscript(type_: Type, given: Sequence[bool]) -> Typed:
     """The type of ``x[…]``: for each index whether it is given or left out.
 
@@ -198,8 +209,7 @@ def subscript(type_: Type, given: Sequence[bool]) -> Typed:
         bad = Verdict(False, ("TYP-20", "MSG-21"), f"{type_} has no index", 2295)
         return Typed(UNKNOWN, bad)
     if len(given) != len(type_.sizes):
-        dimensions = "one dimension" if len(type_.sizes) == 1 else f"{len(type_.sizes)} dimensions"
-        reason = f"an array of {dimensions} has as many indices, not {len(given)}"
+        reason = f"an array of {_INDICES[len(type_.sizes)]}, not {len(given)}"
         return Typed(UNKNOWN, Verdict(False, ("TYP-08", "TYP-20"), reason))
     left = tuple(size for size, is_given in zip(type_.sizes, given, strict=True) if not is_given)
     return Typed(Array(type_.element, left) if left else type_.element)

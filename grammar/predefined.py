@@ -141,6 +141,10 @@ class _Entries(Mapping[str, _T]):
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and name.upper() in self._rows
 
+    def cell(self, name: str, column: str) -> str:
+        """What a row of the table has in a column, as written."""
+        return self._rows[name.upper()][self._columns.index(column)]
+
     def __iter__(self) -> Iterator[str]:
         return reversed(self._rows)
 
@@ -188,6 +192,18 @@ class System:
         Those that a delivered ``$config.dat`` declares are open: another one may have more.
         """
         return self._types
+
+    def is_described(self, type_: Type) -> bool:
+        """Whether a rule tells what parts a type has, and not the tables of one release alone.
+
+        Types that files declare are described by these.
+        """
+        if (
+            not isinstance(type_, Structure | Enumeration)
+            or self._types.get(type_.name) is not type_
+        ):
+            return True
+        return any(key in tiers() for key in self._types.cell(type_.name, "source").split())
 
     @property
     def functions(self) -> Mapping[str, Function]:

@@ -12,8 +12,8 @@ assigned to what is told by `grammar.assignability`, what operators make of oper
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from grammar.rules import is_confirmed
 
@@ -141,6 +141,11 @@ class Structure:
     name: str
     members: tuple[Member, ...]
     is_open: bool = False
+    _types: Mapping[str, Type] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        types = {member.name.upper(): member.type for member in reversed(self.members)}
+        object.__setattr__(self, "_types", types)
 
     def __str__(self) -> str:
         return self.name
@@ -148,28 +153,39 @@ class Structure:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Structure):
             return NotImplemented
-        return self is other or (
-            self.name.upper() == other.name.upper()
-            and len(self.members) == len(other.members)
-            and all(
-                mine.name.upper() == its.name.upper() and mine.type == its.type
-                for mine, its in zip(self.members, other.members, strict=True)
-            )
-        )
+        return self is other or _is_equal(self, other)
 
     def __hash__(self) -> int:
         return hash(self.name.upper())
 
     def __contains__(self, name: str) -> bool:
-        return self.member(name) is not None
+        return self.is_open or name.upper() in self._types
 
     def member(self, name: str) -> Type | None:
         """The type of a component; ``None`` where there is none of that name."""
-        wanted = name.upper()
-        for member in self.members:
-            if member.name.upper() == wanted:
-                return member.type
-        return UNKNOWN if self.is_open else None
+        found = self._types.get(name.upper())
+        return UNKNOWN if found is None and self.is_open else found
+
+
+def _is_equal(one: Structure, other: Structure) -> bool:
+    """Whether two structures say the same; each pair of structures within them is compared once."""
+    todo: list[tuple[Type, Type]] = [(one, other)]
+    seen: set[tuple[int, int]] = set()
+    while todo:
+        left, right = todo.pop()
+        if isinstance(left, Array) and isinstance(right, Array) and left.sizes == right.sizes:
+            left, right = left.element, right.element
+        if isinstance(left, Structure) and isinstance(right, Structure):
+            pair = id(left), id(right)
+            if left is right or pair in seen:
+                continue
+            seen.add(pair)
+            if left.name.upper() != right.name.upper() or list(left._types) != list(right._types):
+                return False
+            todo += zip(left._types.values(), right._types.values(), strict=True)
+        elif left != right:
+            return False
+    return True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -179,6 +195,11 @@ class Enumeration:
     name: str
     constants: tuple[str, ...]
     is_open: bool = False
+    _keys: Mapping[str, None] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        keys = dict.fromkeys(constant.upper() for constant in self.constants)
+        object.__setattr__(self, "_keys", keys)
 
     def __str__(self) -> str:
         return self.name
@@ -187,17 +208,14 @@ class Enumeration:
         if not isinstance(other, Enumeration):
             return NotImplemented
         return self is other or (
-            self.name.upper() == other.name.upper() and list(self._keys()) == list(other._keys())
+            self.name.upper() == other.name.upper() and list(self._keys) == list(other._keys)
         )
 
     def __hash__(self) -> int:
         return hash(self.name.upper())
 
     def __contains__(self, name: str) -> bool:
-        return self.is_open or name.upper() in self._keys()
-
-    def _keys(self) -> Iterator[str]:
-        return (constant.upper() for constant in self.constants)
+        return self.is_open or name.upper() in self._keys
 
 
 Type = Scalar | Array | Structure | Enumeration | Text | Constant | Aggregate | Unknown

@@ -270,6 +270,34 @@ def test_arrays_are_passed_out_only() -> None:
     assert declarable(INT, is_out=False)
 
 
+def test_texts_are_passed_in() -> None:
+    """KUKA's own programs pass arrays of CHAR :IN, and so do predefined functions."""
+    assert declarable(NAME, is_out=False)
+    assert declarable(TEXTS, is_out=False)
+    assert passable(NAME, Text(3), is_out=False, is_variable=False)
+    refused = passable(NAME, INT, is_out=False, is_variable=False)
+    assert (2274, "CHAR[8] cannot receive INT") == (refused.message, refused.reason)
+
+
+def test_bits_of_a_letter() -> None:
+    """That letters have no bits is written nowhere, so nothing is said of it [ARI-07]."""
+    assert INT == binary("B_AND", CHAR, INT).type
+    assert INT == unary("B_NOT", CHAR).type
+
+
+def test_structures_within_structures_are_compared_once() -> None:
+    """Equality takes no longer for a structure that holds another one many times over."""
+
+    def tower(last: Type) -> Structure:
+        built = Structure("T", (Member("A", last), Member("B", last)))
+        for _ in range(40):
+            built = Structure("T", (Member("A", built), Member("B", Array(built, (2,)))))
+        return built
+
+    assert tower(INT) == tower(INT)
+    assert tower(INT) != tower(REAL)
+
+
 # ---------------------------------------------------------------------------------- places
 
 

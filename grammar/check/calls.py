@@ -1,0 +1,128 @@
+"""Calls: how many arguments, of which types, and whether there is a value.
+
+An argument passed :IN is converted where that loses nothing but a fraction, a variable passed :OUT
+has the type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; only the
+controller's own functions are known to need them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grammar import ast
+from grammar.assignability import passable
+from grammar.check.sides import side_of
+from grammar.scopes import Found, Scope, SystemScope
+from grammar.symbols import Kind, ParameterSymbol, RoutineSymbol
+from grammar.types import UNKNOWN, Type, Verdict
+
+if TYPE_CHECKING:
+    from grammar.check.expressions import Typer
+
+__all__ = ["call"]
+
+
+def call(typer: Typer, node: ast.Call, *, is_value: bool) -> Type:
+    """Check a call; gives the type of its value, `UNKNOWN` where there is none."""
+    found = typer.context.found(node.name)
+    if found is None or not isinstance(found.symbol, RoutineSymbol):
+        for argument in node.arguments:
+            if argument is not None:
+                typer.type(argument)
+        made: Type = UNKNOWN
+    else:
+        _check_arguments(typer, node, found.symbol, found.scope)
+        made = _value(typer, node, found, is_value=is_value)
+    typer.context.types[node] = made
+    return made
+
+
+def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
+    """Whether the parameters are known from recollection only."""
+    if not isinstance(scope, SystemScope):
+        return False
+    return scope.system.functions[symbol.name].is_unconfirmed
+
+
+def _value(typer: Typer, node: ast.Call, found: Found, *, is_value: bool) -> Type:
+    symbol = found.symbol
+    if symbol.type is not None or symbol.given is not None:
+        if not is_value:
+            message = f"the value of {symbol.name} is dropped"
+            typer.tell("value-unused", node.name, message)
+        return typer.of(found)
+    if is_value:
+        message = f"{symbol.name} has no value"
+        reason = "" if isinstance(found.scope, SystemScope) else "it is a DEF and no DEFFCT"
+        typer.tell("no-value", node, message, reason=reason)
+    return UNKNOWN
+
+
+def _check_arguments(typer: Typer, node: ast.Call, symbol: RoutineSymbol, scope: Scope) -> None:
+    given, wanted = node.arguments, symbol.parameters
+    is_uncertain = _is_uncertain(symbol, scope)
+    if len(given) > len(wanted) and not symbol.has_more:
+        many = "no arguments" if not wanted else _counted(len(wanted))
+        message = f"{symbol.name} takes {many}, and this is one more"
+        if len(given) > len(wanted) + 1:
+            message = f"{symbol.name} takes {many}, and these are {len(given)}"
+        first = next(filter(None, given[len(wanted) :]), node)
+        typer.tell("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
+    if isinstance(scope, SystemScope):
+        _check_missing(typer, node, symbol)
+    for parameter, argument in zip(wanted, given, strict=False):
+        if argument is not None:
+            _check(typer, parameter, scope, argument, is_uncertain=is_uncertain)
+    for argument in given[len(wanted) :]:
+        if argument is not None:
+            typer.type(argument)
+    _check_output(typer, node, symbol, scope)
+
+
+def _counted(number: int) -> str:
+    return "one argument" if number == 1 else f"{number} arguments"
+
+
+def _check_missing(typer: Typer, node: ast.Call, symbol: RoutineSymbol) -> None:
+    """The controller's own functions need their arguments.
+
+    KUKA's own programs leave some of them empty, but end no list early.
+    """
+    missing = [parameter.name for parameter in symbol.parameters[len(node.arguments) :]]
+    if missing:
+        message = f"{symbol.name} needs {_counted(len(symbol.parameters))}"
+        reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
+        typer.tell("argument-missing", node, message, reason=reason)
+
+
+def _check(
+    typer: Typer,
+    parameter: ParameterSymbol,
+    scope: Scope,
+    argument: ast.Expression,
+    *,
+    is_uncertain: bool,
+) -> None:
+    wanted = typer.of_symbol(parameter, scope)
+    is_out = parameter.mode == "OUT"
+    is_variable = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
+    if is_variable and is_out:
+        root = typer.root(argument)
+        is_variable = root is None or root.kind is not Kind.CONSTANT
+
+    def judge(to: Type, value: Type) -> Verdict:
+        return passable(to, value, is_out=is_out, is_variable=is_variable)
+
+    typer.fit(wanted, argument, judge, "wrong-argument", is_unconfirmed=is_uncertain)
+    if is_out and not is_variable and typer.context.types[argument] != UNKNOWN:
+        message = f"{parameter.name} is passed :OUT, and there is no variable to change"
+        typer.tell("nothing-to-change", argument, message)
+
+
+def _check_output(typer: Typer, node: ast.Call, symbol: RoutineSymbol, scope: Scope) -> None:
+    """PULSE acts on an output [IOT-07]."""
+    if symbol.name != "PULSE" or not isinstance(scope, SystemScope) or not node.arguments:
+        return
+    output = node.arguments[0]
+    if output is not None and side_of(typer.context, output) == "inputs":
+        typer.tell("not-an-output", output, "PULSE acts on an output, and this is an input")

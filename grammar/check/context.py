@@ -1,0 +1,192 @@
+"""What every check is given: a file, what its names mean, and what its expressions are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from grammar import ast
+from grammar.ast import Node, Span
+from grammar.check.hints import Hints
+from grammar.codes import Severity, code, of_message
+from grammar.diagnostics import Diagnostic, Fix, Region, diagnose
+from grammar.link import Project
+from grammar.predefined import System
+from grammar.resolve import Resolution
+from grammar.rules import is_confirmed
+from grammar.scopes import Found, Module, Scope
+from grammar.source import Source
+from grammar.symbols import ModuleTable, RoutineTable
+from grammar.types import Enumeration, Type, Verdict
+
+__all__ = ["Context", "Placed", "RoutineBody", "placed"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """A statement and the one that it stands in: a block, SWITCH or spline block."""
+
+    statement: ast.Statement | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
+    inside: Placed | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RoutineBody:
+    """A routine with its table and scope.
+
+    ``statements`` are all of them, those in blocks too, in the order of the text. What an interrupt
+    or a trigger does is part of its statement and none of its own.
+    """
+
+    node: ast.Routine
+    table: RoutineTable
+    scope: Scope
+    statements: tuple[Placed, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """A file to check.
+
+    ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
+    the first check, `grammar.check.statements`: the type of each expression but literals, the
+    enumeration of each constant, and the values of expressions that have to be constant.
+    """
+
+    project: Project
+    module: Module
+    source: Source
+    resolution: Resolution
+    system: System
+    types: dict[Node, Type] = field(default_factory=dict)
+    enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
+    values: dict[Node, Any] = field(default_factory=dict)
+    hints: Hints = field(default_factory=Hints)
+
+    # ----------------------------------------------------------------------- the file
+
+    @property
+    def syntax(self) -> ast.Module:
+        """The tree."""
+        assert self.module.syntax is not None, "only what can be read is checked"
+        return self.module.syntax
+
+    @property
+    def table(self) -> ModuleTable:
+        """What the file declares."""
+        assert self.module.table is not None, "only what can be read is checked"
+        return self.module.table
+
+    @property
+    def data(self) -> ast.DataList | None:
+        """The data list, if the file is one."""
+        content = self.syntax.content
+        return content if isinstance(content, ast.DataList) else None
+
+    @property
+    def scope(self) -> Scope:
+        """What is known at the first level of the file."""
+        return self.project.scope(self.module)
+
+    @cached_property
+    def routines(self) -> tuple[RoutineBody, ...]:
+        """The routines in the order of the file; none in a data list."""
+        content = self.syntax.content
+        if isinstance(content, ast.DataList):
+            return ()
+        return tuple(
+            RoutineBody(node, table, self.project.scope(self.module, table), placed(node.body))
+            for node, table in zip(content.routines, self.table.routines, strict=True)
+        )
+
+    def found(self, name: ast.Name) -> Found | None:
+        """What a name means, if that is known."""
+        return self.resolution.found(name)
+
+    # ----------------------------------------------------------------------- findings
+
+    def finding(
+        self,
+        slug: str,
+        where: Node | Span,
+        message: str,
+        *,
+        reason: str = "",
+        rules: tuple[str, ...] | None = None,
+        severity: Severity | None = None,
+        is_unconfirmed: bool = False,
+        fix: Fix | None = None,
+    ) -> Diagnostic:
+        """A finding at a node or a span of the text; the rest as `grammar.diagnostics.diagnose`.
+
+        What rests on unconfirmed rules alone is no error.
+        """
+        region = Region.of(self.source, where.span if isinstance(where, Node) else where)
+        rules = code(slug).rules if rules is None else rules
+        return diagnose(
+            slug,
+            self.source.path,
+            region,
+            message,
+            reason=reason,
+            rules=rules,
+            severity=severity,
+            is_unconfirmed=is_unconfirmed or not is_confirmed(rules),
+            fix=fix,
+        )
+
+    def refusal(
+        self,
+        slug: str,
+        where: Node | Span,
+        verdict: Verdict,
+        *,
+        fix: Fix | None = None,
+        is_unconfirmed: bool = False,
+    ) -> Diagnostic:
+        """A finding from a bad verdict; the controller's own message comes before ``slug``."""
+        entry = None if verdict.message is None else of_message(verdict.message)
+        return self.finding(
+            entry.slug if entry else slug,
+            where,
+            verdict.reason,
+            rules=verdict.rules,
+            is_unconfirmed=is_unconfirmed,
+            fix=fix,
+        )
+
+
+_INSIDE: Mapping[type[Any], tuple[str, ...]] = {
+    ast.If: ("body", "otherwise"),
+    ast.For: ("body",),
+    ast.While: ("body",),
+    ast.Repeat: ("body",),
+    ast.Loop: ("body",),
+    ast.SplineBlock: ("items",),
+}
+
+
+def placed(body: tuple[ast.Statement, ...]) -> tuple[Placed, ...]:
+    """All statements of a body with those they stand in, in the order of the text."""
+    found: list[Placed] = []
+    todo: list[tuple[Iterator[Any], Placed | None]] = [(iter(body), None)]
+    while todo:
+        statements, inside = todo[-1]
+        for statement in statements:
+            here = Placed(statement, inside)
+            found.append(here)
+            kind = type(statement)
+            if kind is ast.Switch:
+                parts = [branch.body for branch in statement.branches]
+                parts.append(statement.default or ())
+            elif kind in _INSIDE:
+                parts = [getattr(statement, name) or () for name in _INSIDE[kind]]
+            else:
+                continue
+            todo.extend((iter(part), here) for part in reversed(parts))
+            break
+        else:
+            todo.pop()
+    return tuple(found)

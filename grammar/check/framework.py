@@ -1,0 +1,121 @@
+"""All checks, and how they run over a file, a project, a workspace.
+
+What is found in a file depends on its text and on the tables of other files, never on their
+statements. `Findings` of a file can be pickled and kept; those of its project are made of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from grammar import ast
+from grammar.ast import Node
+from grammar.check import (
+    declarations,
+    flow,
+    initials,
+    limits,
+    names,
+    places,
+    splines,
+    statements,
+    twice,
+    unknowns,
+)
+from grammar.check.context import Context
+from grammar.check.folding import Value
+from grammar.check.unknowns import Reference
+from grammar.diagnostics import Diagnostic, in_order
+from grammar.link import Project, Workspace
+from grammar.predefined import System
+from grammar.resolve import Resolution, resolve
+from grammar.scopes import Module
+from grammar.source import Source
+from grammar.types import Enumeration, Type
+
+__all__ = [
+    "CHECKS",
+    "Check",
+    "Checked",
+    "Context",
+    "Findings",
+    "check",
+    "check_module",
+    "check_project",
+]
+
+Check = Callable[[Context], Iterator[Diagnostic]]
+
+#: In this order: the first two type the expressions, for all that follow.
+CHECKS: tuple[Check, ...] = (
+    statements.check,
+    initials.check,
+    declarations.check,
+    twice.check,
+    unknowns.check,
+    names.check,
+    flow.check,
+    places.check,
+    splines.check,
+    limits.check,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """What the check of one file found; ``references`` are names that other files may declare."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    references: tuple[Reference, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Checked:
+    """A file that was checked: its findings, and what is known of its tree.
+
+    The tables are keyed by nodes, by identity: ``types`` has every expression, `UNKNOWN` where
+    nothing is known; ``enumerations`` those of constants; ``values`` what is known before the
+    program runs, where that was asked for.
+    """
+
+    module: Module
+    findings: Findings
+    resolution: Resolution
+    types: Mapping[Node, Type]
+    enumerations: Mapping[ast.EnumConstant, Enumeration]
+    values: Mapping[Node, Value]
+
+
+def check_module(project: Project, module: Module, source: Source) -> Checked:
+    """Check one file that can be read; ``source`` is its text."""
+    context = Context(project, module, source, resolve(project, module), System.load())
+    found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
+    return Checked(
+        module,
+        Findings(tuple(found), unknowns.references(context)),
+        context.resolution,
+        context.types,
+        context.enumerations,
+        context.values,
+    )
+
+
+def check_project(findings: Iterable[Findings]) -> list[Diagnostic]:
+    """All findings of a project, from those of its files, in order."""
+    kept = list(findings)
+    found = [diagnostic for one in kept for diagnostic in one.diagnostics]
+    found += unknowns.of_project(reference for one in kept for reference in one.references)
+    return in_order(found)
+
+
+def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[Diagnostic]:
+    """Check all files of a workspace that can be read; the findings are in order."""
+    found: list[Diagnostic] = []
+    for project in workspace.projects:
+        found += check_project(
+            check_module(project, module, source_of(module)).findings
+            for module in project.modules
+            if module.syntax is not None
+        )
+    return in_order(found)

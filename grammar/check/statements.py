@@ -1,0 +1,253 @@
+"""What statements are made of: the types of conditions, targets, values, times, numbers.
+
+This check types the expressions of a program, for all that come after it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from grammar import ast
+from grammar.assignability import case_label, condition, integer, number, selector, target
+from grammar.check.aggregates import aggregate
+from grammar.check.assignments import assign
+from grammar.check.calls import call
+from grammar.check.context import Context, RoutineBody
+from grammar.check.expressions import Judge, Typer, stripped
+from grammar.check.folding import constant
+from grammar.diagnostics import Diagnostic
+from grammar.types import (
+    REAL,
+    UNKNOWN,
+    Structure,
+    Type,
+    Verdict,
+)
+
+__all__ = ["check"]
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Type all expressions in the routines of a file."""
+    typer = Typer(context)
+    for routine in context.routines:
+        checker = _Routine(typer, routine)
+        for placed in routine.statements:
+            rule = _RULES.get(type(placed.statement))
+            if rule is not None:
+                rule(checker, placed.statement)
+    yield from typer.found
+
+
+def _condition(_to: Type, value: Type) -> Verdict:
+    return condition(value)
+
+
+def _number(_to: Type, value: Type) -> Verdict:
+    return number(value)
+
+
+def _integer(_to: Type, value: Type) -> Verdict:
+    return integer(value)
+
+
+def _bound(_to: Type, value: Type) -> Verdict:
+    """FOR counts with INT; that a REAL is refused is recollection [CTL-05]."""
+    verdict = integer(value, "CTL-05")
+    return replace(verdict, rules=("CTL-05",)) if value == REAL else verdict
+
+
+class _Routine:
+    """Checks the statements of one routine."""
+
+    def __init__(self, typer: Typer, routine: RoutineBody) -> None:
+        self.typer = typer
+        self.context = typer.context
+        self.routine = routine
+
+    # ----------------------------------------------------------------------- places
+
+    def needs(
+        self, judge: Judge, slug: str, *nodes: ast.Expression | None, to: Type = UNKNOWN
+    ) -> None:
+        """Type values that a statement needs; those that are left out need nothing."""
+        for node in nodes:
+            if node is not None:
+                self.typer.fit(to, node, judge, slug)
+
+    def condition(self, node: ast.Expression) -> None:
+        """A truth value."""
+        self.needs(_condition, "not-a-truth-value", node)
+
+    def numbers(self, *nodes: ast.Expression | None) -> None:
+        """Numbers: times, distances, angles."""
+        self.needs(_number, "not-a-number-here", *nodes, to=REAL)
+
+    def integers(self, *nodes: ast.Expression | None) -> None:
+        """Integers: numbers of interrupts, priorities."""
+        self.needs(_integer, "not-an-integer", *nodes)
+
+    def types(self, *nodes: ast.Expression | None) -> None:
+        """Expressions that may be anything."""
+        for node in nodes:
+            if node is not None:
+                self.typer.type(node)
+
+    def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
+        """What a trigger or an interrupt does."""
+        if isinstance(node, ast.Assignment):
+            assign(self.typer, node)
+        elif isinstance(node, ast.CallStatement):
+            call(self.typer, node.call, is_value=False)
+
+    # ----------------------------------------------------------------- control flow
+
+    def loop(self, node: ast.For) -> None:
+        """FOR: its counter, bounds and step are INT, the step a constant [CTL-05]."""
+        found = self.context.found(node.counter)
+        if found is not None:
+            verdict = _bound(UNKNOWN, self.typer.of(found))
+            if not verdict:
+                self.typer.refuse("wrong-counter", node.counter, verdict)
+        self.needs(_bound, "wrong-counter", node.first, node.last)
+        if node.step is not None:
+            self._step(node.step)
+
+    def _step(self, node: ast.Expression) -> None:
+        before = len(self.typer.found)
+        self.needs(_bound, "wrong-counter", node)
+        if len(self.typer.found) > before:
+            return
+        value = constant(self.context, node)
+        if value == 0:
+            self.typer.tell("wrong-step", node, "STEP cannot be zero")
+        elif value is None and self.context.types[node] != UNKNOWN:
+            self.typer.tell("wrong-step", node, "STEP is a constant")
+
+    def switch(self, node: ast.Switch) -> None:
+        """SWITCH over CHAR, INT or an enumeration; CASE has constants of that [CTL-03]."""
+        self.needs(lambda _to, value: selector(value), "wrong-selector", node.selector)
+        chosen = self.context.types[node.selector]
+        is_known = bool(selector(chosen))
+        seen: set[object] = set()
+        for branch in node.branches:
+            for label in branch.values:
+                if is_known:
+                    self.typer.fit(chosen, label, case_label, "wrong-selector")
+                else:
+                    self.typer.type(label)
+                value = constant(self.context, label)
+                if value is not None and (type(value), value) in seen:
+                    message = "this constant stands in an earlier CASE"
+                    self.typer.tell("case-twice", label, message)
+                seen.add((type(value), value))
+
+    def returned(self, node: ast.Return) -> None:
+        """RETURN has a value in functions, and in these only [CTL-09]."""
+        result = self.routine.node.result
+        name = self.routine.node.name.text
+        if node.value is None:
+            if result is not None:
+                message = f"{name} is a function, so RETURN needs a value"
+                self.typer.tell("return-without-value", node, message)
+        elif result is None:
+            self.typer.type(node.value)
+            message = f"{name} is no function, so RETURN has no value"
+            self.typer.tell("return-with-value", node.value, message)
+        else:
+            symbol, scope = self.routine.table.routine, self.routine.scope
+            self.typer.fit(self.typer.of_symbol(symbol, scope), node.value)
+
+    # ---------------------------------------------------------------------- motions
+
+    def motion(self, node: ast.Motion) -> None:
+        """A motion goes to positions."""
+        for place in (node.auxiliary, node.target):
+            if place is not None:
+                self._target(place)
+        self.numbers(node.angle)
+        self.values(node.values)
+        if node.reference is not None:
+            self._reference(node.reference)
+
+    def values(self, nodes: tuple[ast.Assignment, ...]) -> None:
+        """What stands behind WITH [SPL-08]."""
+        for node in nodes:
+            assign(self.typer, node)
+
+    def stop(self, node: ast.StopWhen) -> None:
+        """STOP WHEN PATH … IF [SPL-06]."""
+        self.numbers(node.place)
+        self.condition(node.condition)
+
+    def _target(self, node: ast.Expression) -> None:
+        inner = stripped(node)
+        if isinstance(inner, ast.Aggregate):
+            aggregate(self.typer, inner, self._position(inner))
+        else:
+            self.needs(lambda _to, value: target(value), "not-a-position", node)
+
+    def _position(self, node: ast.Aggregate) -> Structure | None:
+        """The structure of a position that is written out: axes, or a pose."""
+        is_axes = any(_AXIS.fullmatch(part.name.text) for part in node.components)
+        found = self.context.system.types["E6AXIS" if is_axes else "E6POS"]
+        return found if isinstance(found, Structure) else None
+
+    def _reference(self, node: ast.EnumConstant) -> None:
+        self.typer.type(node)
+        if node.name.key not in _REFERENCES:
+            message = f"a relative motion refers to #BASE or #TOOL, not to #{node.name.text}"
+            self.typer.tell("no-such-constant", node, message, rules=("MOT-14",))
+
+    def trigger(self, node: ast.Trigger) -> None:
+        """TRIGGER: place and delay are numbers, the priority is an integer [TRG-01 to TRG-06]."""
+        self.numbers(node.place, node.delay)
+        self.integers(node.priority)
+        self.action(node.action)
+
+    def interrupt(self, node: ast.InterruptDeclaration) -> None:
+        """INTERRUPT DECL: a number, an event, a routine [INT-01, INT-06]."""
+        self.integers(node.number)
+        self.condition(node.condition)
+        self.action(node.action)
+
+    # ---------------------------------------------------------------------- signals
+
+    def signal_on(self, node: ast.SignalOn) -> None:
+        """ANIN, ANOUT and DIGIN compute numbers again and again [IOT-05, IOT-09]."""
+        assign(self.typer, node.assignment)
+        self.numbers(node.delay, node.minimum, node.maximum)
+
+
+_AXIS = re.compile(r"A[1-6]", re.IGNORECASE)
+_REFERENCES = frozenset({"BASE", "TOOL"})
+
+_Rule = Callable[[_Routine, Any], None]
+
+_RULES: Mapping[type[Any], _Rule] = {
+    ast.Assignment: lambda routine, node: assign(routine.typer, node),
+    ast.CallStatement: _Routine.action,
+    ast.If: lambda routine, node: routine.condition(node.condition),
+    ast.For: _Routine.loop,
+    ast.While: lambda routine, node: routine.condition(node.condition),
+    ast.Repeat: lambda routine, node: routine.condition(node.condition),
+    ast.Switch: _Routine.switch,
+    ast.Return: _Routine.returned,
+    ast.Confirm: lambda routine, node: routine.types(node.number),
+    ast.WaitFor: lambda routine, node: routine.condition(node.condition),
+    ast.WaitSeconds: lambda routine, node: routine.numbers(node.duration),
+    ast.SignalOn: _Routine.signal_on,
+    ast.SignalOff: lambda routine, node: routine.types(node.variable),
+    ast.Motion: _Routine.motion,
+    ast.EmilyMotion: lambda routine, node: routine.types(node.device, node.action, node.number),
+    ast.SplineBlock: lambda routine, node: routine.values(node.values),
+    ast.ConstantVelocity: lambda routine, node: routine.numbers(node.place),
+    ast.TimeBlock: lambda routine, node: routine.numbers(node.value),
+    ast.StopWhen: _Routine.stop,
+    ast.InterruptDeclaration: _Routine.interrupt,
+    ast.InterruptSwitch: lambda routine, node: routine.integers(node.number),
+    ast.Trigger: _Routine.trigger,
+}

@@ -1,0 +1,135 @@
+"""Calls: arguments by number, mode and type; values; the controller's own functions."""
+
+from collections.abc import Callable
+
+import pytest
+
+Agrees = Callable[..., None]
+
+ROUTINES = """DEF TAKE(A:IN, B:OUT)
+  DECL INT A
+  DECL REAL B
+  B = A
+END
+DEF FILL(TEXT[]:OUT, LIST[]:OUT)
+  DECL CHAR TEXT[]
+  DECL INT LIST[]
+  TEXT[] = "A"
+  LIST[1] = 1
+END
+DEFFCT INT COUNT(TEXT[]:IN)
+  DECL CHAR TEXT[]
+  RETURN STRLEN(TEXT[])
+ENDFCT
+"""
+
+
+def program(*lines: str) -> str:
+    """A routine with variables of many types, and others to call."""
+    body = "".join(f"  {line}\n" for line in lines)
+    return f"""DEF NEG()
+  DECL INT I, LIST[3]
+  DECL REAL R
+  DECL CHAR TEXT[8]
+  DECL STATE_T STATE
+  I = 1
+{body}END
+{ROUTINES}"""
+
+
+@pytest.mark.parametrize(
+    ("rule", "line"),
+    [
+        ("ARI-04", "TAKE(I, R)"),
+        ("ARI-04", "TAKE(R, R) ;> KRL209-"),
+        ("ARI-04", "TAKE(I, I) ;> KSS2274"),
+        ("ARI-04", 'TAKE("A", R) ;> KSS2274'),
+        ("ARI-04", 'TAKE("AB", R) ;> KSS2274'),
+        ("ARI-04", "TAKE(TRUE, R) ;> KSS2274"),
+        ("ARI-04", "TAKE(#NONE, R) ;> KSS2274"),
+        ("ARI-04", "TAKE(I, 5) ;> KRL308-"),
+        ("SCO-06", "TAKE(I, R * 2) ;> KRL308-"),
+        ("SCO-06", "TAKE(I, R, I) ;> KRL301"),
+        ("SCO-13", "TAKE(I)"),
+        ("SCO-13", "TAKE(, R)"),
+        ("SCO-13", "TAKE()"),
+        ("SCO-07", "FILL(TEXT[], LIST[])"),
+        ("SCO-07", "FILL(LIST[], LIST[]) ;> KSS2274"),
+        ("SCO-07", "FILL(I, LIST[]) ;> KSS2274"),
+        ("TYP-20", "FILL(TEXT, LIST[]) ;> KSS2052"),
+        ("TYP-11", "I = COUNT(TEXT[])"),
+        ("TYP-11", 'I = COUNT("FIVE")'),
+        ("CTL-09", "I = TAKE(I, R) ;> KRL303?"),
+        ("CTL-09", "COUNT(TEXT[]) ;> KRL309-"),
+        ("FCT-01", "R = SIN(I) + SQRT(2)"),
+        ("FCT-01", "R = ABS(1, 2) ;> KRL301"),
+        ("FCT-01", "R = ROUND(2.5) ;> KRL102"),
+        ("FCT-01", "R = ATAN2(1.0) ;> KRL302?"),
+        ("FCT-04", 'I = STRFIND(1, TEXT[], "A", #CASE_SENS)'),
+        ("FCT-04", 'I = STRFIND(1, TEXT[], "A", #CASE_SENSITIVE) ;> KSS2296'),
+        ("FCT-09", 'SWRITE(TEXT[], STATE, I, "%d %f", I, R)'),
+        ("IOT-07", "PULSE($OUT[1], TRUE, 0.5)"),
+        ("IOT-07", "PULSE($IN[1], TRUE, 0.5) ;> KRL513?"),
+        ("IOT-07", "PULSE($OUT[1], TRUE) ;> KRL302?"),
+    ],
+)
+def test_call(agrees: Agrees, rule: str, line: str) -> None:
+    """A call is judged as its rule has it."""
+    assert rule
+    agrees(program(line))
+
+
+def test_a_routine_of_another_module(agrees: Agrees) -> None:
+    """Arguments are judged by the declaration that a call leads to, in its own place."""
+    agrees(
+        {
+            "NEG.src": """DEF NEG()
+  OTHER(#RED)
+  OTHER(#BLACK) ;> KSS2296
+  OTHER(1) ;> KSS2274
+END
+""",
+            "OTHER.src": "DEF OTHER(C:IN)\n  DECL COLOUR C\nEND\n",
+            "OTHER.dat": "DEFDAT OTHER PUBLIC\n  GLOBAL ENUM COLOUR RED, BLUE\nENDDAT\n",
+        }
+    )
+
+
+def test_a_routine_that_is_only_announced(agrees: Agrees) -> None:
+    """EXT tells the types of parameters; that the routine itself is not here is told once."""
+    agrees(
+        """
+DEF NEG()
+  EXT OTHER(INT:IN, REAL:OUT)
+  OTHER(1) ;> KRL701-
+  OTHER(TRUE) ;> KSS2274
+  OTHER(1, , 3) ;> KRL301
+END
+""",
+    )
+
+
+def test_an_undeclared_parameter(agrees: Agrees) -> None:
+    """A parameter has its type from the body of its routine; without one it fits everything."""
+    agrees(
+        """
+DEF NEG()
+  WORK(TRUE)
+  WORK(1)
+END
+DEF WORK(A:IN) ;> KRL115?
+END
+"""
+    )
+
+
+def test_arrays_by_value(agrees: Agrees) -> None:
+    """An array is passed :OUT, but texts are passed :IN by KUKA's own programs [SCO-07]."""
+    agrees(
+        """
+DEF NEG(TEXT[]:IN, LIST[]:IN, GRID[,]:OUT) ;> KRL307
+  DECL CHAR TEXT[]
+  DECL INT LIST[], GRID[,]
+END
+"""
+    )
