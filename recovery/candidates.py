@@ -180,16 +180,10 @@ class CandidateFinder:
         rank = opening.rank + self.phraser.breadth(symbols) + len(" ".join(symbols).split(" "))
         tokens = self._openings.reserved(words)
         match opening.kind:
-            case "alternative":
-                text = " ".join(symbols)
-                if text not in self.layout.alternatives(rule):
-                    rank += self.layout.unlike(rule, symbols)
-                    yield rank, (*tokens, AddAlternative(rule, text))
+            case "alternative" if not self.layout.closing(rule):  # else it is of the kind ``line``
+                yield from self._alternative(rule, symbols, rank, tokens)
             case "line":
-                text = f"{' '.join(symbols)} {self.layout.line_end}"
-                if text not in self.layout.alternatives(rule):
-                    rank += self.layout.unlike(rule, (*symbols, self.layout.line_end))
-                    yield rank, (*tokens, AddAlternative(rule, text))
+                yield from self._alternative(rule, (*symbols, self.layout.line_end), rank, tokens)
             case "widen":
                 yield rank, (*tokens, Widen(rule, place, " ".join(symbols)))
             case "lines":
@@ -209,6 +203,13 @@ class CandidateFinder:
                 if again[0] == "','" or unit or looped:
                     text = f"({' '.join(again)})*" if len(again) > 1 else f"{again[0]}*"
                     yield rank + 1, (*tokens, Insert(rule, place, text))
+
+    def _alternative(
+        self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
+    ) -> Iterator[Ranked]:
+        text = " ".join(symbols)
+        if text not in self.layout.alternatives(rule):
+            yield rank + self.layout.unlike(rule, symbols), (*tokens, AddAlternative(rule, text))
 
 
 def _hope(lines: int, rank: int) -> float:

@@ -27,10 +27,10 @@ __all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
 # Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
 # that a first trial looks at: what is kept after it is tried on everything.
 _SPECIMENS = 3
-_MOST_TRIED = 80
+_MOST_TRIED = 140
 # Behind the groups that hold back most a quicker look has to do.
 _HEAVY_GROUPS = 12
-_MOST_TRIED_LIGHT = 40
+_MOST_TRIED_LIGHT = 60
 _FIRST_TRIAL = 12
 # Lines whose openings are compared for what they have in common.
 _VARIED = 6
@@ -46,6 +46,8 @@ _LINE_COUNTS = 0.2
 # Causes that a later one is compared with: the first ones hold back most.
 _MOST_JOINED = 40
 _ROUNDS = 4
+# What a mended line counts that is of another group than the one a cause is sought for.
+_OTHERS_COUNT = 0.3
 # What an edit gains that mends every line which fails at the same token: it leaves none to explain.
 _ALL_ALIKE = 1.25
 
@@ -137,6 +139,7 @@ class Search:
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.thorough = True
+        self._sought: frozenset[int] = frozenset()
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
@@ -147,7 +150,7 @@ class Search:
 
     def best_for(self, group: Sequence[int]) -> Cause | None:
         """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
-        members = set(group)
+        members = self._sought = frozenset(group)
         proposals = self._proposals(group)
         for place, best in enumerate(proposals):
             # what an edit lets be read further has its first cause here, and others behind it
@@ -184,7 +187,8 @@ class Search:
                     negatives,
                 )
             )
-        return self._ranked(proposals, heavy)[:_SHOWN]
+        useful = [proposal for proposal in proposals if self._gain(proposal)]
+        return self._ranked(useful, heavy)[:_SHOWN]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
         """The best of the blocks that a line may open, with the negatives they let in."""
@@ -270,9 +274,14 @@ class Search:
         return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
 
     def _gain(self, outcome: Outcome | Proposal) -> float:
-        whole = sum(self.weights[n] for n in outcome.mended)
-        further = sum(self.weights[n] for n in outcome.advanced)
-        return whole + further / 4
+        """What the lines count that are mended; those a cause is sought for count most."""
+        sought = self._sought
+        whole = sum(self.weights[n] for n in outcome.mended & sought)
+        further = sum(self.weights[n] for n in outcome.advanced & sought)
+        if not whole and not further:
+            return 0.0
+        others = sum(self.weights[n] for n in outcome.mended - sought)
+        return whole + further / 4 + others * _OTHERS_COUNT
 
     def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
         """Gain, less a little for all that an edit lets in besides."""

@@ -17,6 +17,8 @@ from recovery.layout import Layout
 
 __all__ = ["one_choice", "reach_the_same", "together"]
 
+_MOST_TOGETHER = 3
+
 
 def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     """The edits of both, each once, in an order in which no edit moves the place of another."""
@@ -27,11 +29,19 @@ def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     return (*tokens, *places, *(e for e in edits if isinstance(e, AddAlternative)))
 
 
+def _main(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
+    """The edits but for those that reserve words."""
+    reserving = layout.reserve(e.name for e in edits if isinstance(e, AddToken))
+    return [e for e in edits if e not in reserving]
+
+
 def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
-    """Whether two edits let in one thing: a word, a phrase, or what alone used a rule."""
-    new = {e.name for e in first if isinstance(e, AddToken)}
-    if new & {e.name for e in second if isinstance(e, AddToken)}:
-        return True
+    """Whether two edits let in one thing: a phrase, or what alone used a rule.
+
+    A few edits at most make one cause: a person has to see at a glance that they are one.
+    """
+    if len({*_main(layout, first), *_main(layout, second)}) > _MOST_TOGETHER:
+        return False
     one, other = first[-1], second[-1]
     if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
         other, Insert | Widen | AddAlternative

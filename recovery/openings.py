@@ -319,6 +319,8 @@ class OpeningFinder:
         # the end of the line itself is never part of a phrase
         for end in range(max(start + 1, earliest), min(len(kinds), start + _LONGEST_RUN)):
             unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
+            if unknown == end:
+                continue  # a word that the grammar lacks belongs to the phrase
             _, failed = self.recognizer.run(state, kinds[end:unknown])
             if failed is None:
                 whole.append(end)
