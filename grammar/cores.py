@@ -9,6 +9,10 @@ below, shared by all its configurations, stay apart in the *tail*, so the inside
 the same core however deep the IF is nested. A core that can leave its own stacks is *open*; it
 takes frames back from the tail before it reads on.
 
+Right recursion (``factor : NOT factor | primary``) leaves behind frames that can only pass a return
+on, one for each level and all of them reached by the first return. However many there are, they do
+what one of them does: a stack holds a few in a row, and no more.
+
 What a position can read is not known here: see `grammar.recognizer`, which asks whether a text is a
 program, and `grammar.derivation`, which remembers how it is one.
 """
@@ -23,25 +27,46 @@ __all__ = ["Automaton", "Configuration", "Core", "Stack", "Tail"]
 # Deep stacks within one line (nested parentheses) are cut as well, so that each level does not
 # become a core of its own.
 _DEEP = 96
+# So many frames in a row that only pass a return on are kept. One would do; these are so many that
+# for anything that a person writes the stack tells every rule at work.
+_LONGEST_RUN = 8
 
 
 class Stack:
-    """An interned list of positions to return to; two stacks are equal when identical."""
+    """An interned list of positions to return to; two stacks are equal when identical.
 
-    __slots__ = ("above", "depth", "position", "rest")
+    From the positions ``passing`` there is no way on but to return once more. ``run`` counts those
+    on top of the stack.
+    """
 
-    def __init__(self, position: int, rest: Stack | None) -> None:
+    __slots__ = ("above", "depth", "passing", "position", "rest", "run")
+
+    def __init__(
+        self, position: int, rest: Stack | None, passing: Collection[int] = frozenset()
+    ) -> None:
         self.position = position
         self.rest = rest
+        self.passing = passing
         self.depth: int = 0 if rest is None else rest.depth + 1
+        self.run: int = rest.run + 1 if rest is not None and position in passing else 0
         self.above: dict[int, Stack] = {}
 
     def push(self, position: int) -> Stack:
-        """The stack with one more position on top."""
+        """The stack with one more position on top, or one that returns to the same."""
         found = self.above.get(position)
         if found is None:
-            found = self.above[position] = Stack(position, self)
+            known = self._already(position) if self.run >= _LONGEST_RUN else None
+            found = self.above[position] = known or Stack(position, self, self.passing)
         return found
+
+    def _already(self, position: int) -> Stack | None:
+        """The stack down to where the run on top has this position, if it has."""
+        stack: Stack | None = self
+        while stack is not None and stack.run:
+            if stack.position == position:
+                return stack
+            stack = stack.rest
+        return None
 
     def pushed(self, positions: Iterable[int]) -> Stack:
         """The stack with more positions on top, the last one the topmost."""
@@ -87,17 +112,18 @@ class Core(dict[int, "Core"]):
 class Automaton(ABC):
     """Builds cores; what their configurations can read is for the classes that derive from it.
 
-    ``line_kind`` is the kind of token after which stacks are cut.
+    ``line_kind`` is the kind of token after which stacks are cut, ``passing`` the positions from
+    which there is no way on but to return.
     """
 
     #: How a core keeps its configurations: as a set, or as a tuple where their order has a meaning.
     _kernel: Callable[[Iterable[Configuration]], Collection[Configuration]] = frozenset
 
-    def __init__(self, line_kind: int) -> None:
+    def __init__(self, line_kind: int, passing: Collection[int] = frozenset()) -> None:
         self.line_kind = line_kind
-        self._bottom = Stack(-1, None)
+        self._bottom = Stack(-1, None, passing)
         self._cores: dict[Collection[Configuration], Core] = {}
-        self._no_tail = Stack(-1, None)
+        self._no_tail = Stack(-1, None, passing)
 
     @property
     def size(self) -> int:

@@ -9,6 +9,9 @@ ANTLR takes: the first one in the order of decisions, from left to right, of all
 For each core and kind of token it is worked out once from which configuration each of the next core
 comes. A file is then read forward, remembering a core a token, and walked through backward from
 its last configuration: a few look-ups a token, whatever the depth of nesting.
+
+Where a rule is called as the last thing in its caller, both end as one. Such a call is marked and
+leaves nothing on the stack, so right recursion ends in one step, as deep as it may be.
 """
 
 from __future__ import annotations
@@ -23,12 +26,20 @@ from grammar.lexer import Lexer
 from grammar.model import Grammar
 from grammar.written import written
 
-__all__ = ["Action", "Derivation", "Deriver"]
+__all__ = ["Action", "Begin", "Derivation", "Deriver"]
 
 _END = -1  # what comes after a rule, as a position
 
-#: Rules that begin, by their names, and ``None`` where the innermost one ends.
-Steps = tuple[str | None, ...]
+
+class Begin(NamedTuple):
+    """A rule begins; where it ``is_last`` in the rule around it, that ends when this one does."""
+
+    rule: str
+    is_last: bool
+
+
+#: Rules that begin, and ``None`` where the innermost one ends.
+Steps = tuple[Begin | None, ...]
 
 
 class Action(NamedTuple):
@@ -129,12 +140,16 @@ class _Rules:
             if entry is None:
                 yield _Way(self._kind_of[symbol], target, (), steps, is_sole)
                 continue
+            is_last = self._moves[target] == [None]
+            returns = () if is_last else (target,)
             for way in self.ways(entry):
-                within, sole = (*steps, symbol, *way.steps), is_sole and way.is_sole
+                sole = is_sole and way.is_sole
                 if way.kind is None:
-                    yield from self._follow(target, (*within, None), sole, met)
+                    within = (*steps, Begin(symbol, False), *way.steps, None)
+                    yield from self._follow(target, within, sole, met)
                 else:
-                    yield _Way(way.kind, way.target, (target, *way.returns), within, sole)
+                    within = (*steps, Begin(symbol, is_last), *way.steps)
+                    yield _Way(way.kind, way.target, (*returns, *way.returns), within, sole)
 
 
 def _merged(moves: Sequence[tuple[str, list[_Move]]]) -> list[int]:

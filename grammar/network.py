@@ -68,6 +68,11 @@ class Network:
     start: int
     known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
 
+    def passing(self) -> frozenset[int]:
+        """Positions from which there is no way on but to leave the rule."""
+        ways = zip(self.final, self.shifts, self.calls, strict=True)
+        return frozenset(p for p, (f, s, c) in enumerate(ways) if f and not s and not c)
+
     def reach(self, position: int) -> Reach:
         """What can be done from a position. A grammar with left recursion has no answer."""
         found = self.known.get(position)

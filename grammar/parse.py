@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from grammar.derivation import Action, Deriver
+from grammar.derivation import Action, Begin, Deriver
 from grammar.lexer import SKIPPED
 from grammar.recognizer import Recognizer, State
 from grammar.tree import Outline, Tree
@@ -44,16 +44,9 @@ class Stop:
     state: State
 
 
-@dataclass(frozen=True, slots=True)
-class _Begin:
-    """A rule begins and stays open."""
-
-    rule: str
-
-
-#: What a line does to the open rules: ends the innermost (``None``), begins one within it, or adds
-#: to it a child that is complete.
-_Change = None | _Begin | Outline | int
+#: What a line does to the open rules: ends the innermost (``None``) and those it is the last thing
+#: in, begins one within it that stays open, or adds to it a child that is complete.
+_Change = None | Begin | Outline | int
 
 
 class Parser:
@@ -90,25 +83,28 @@ class Parser:
 
     def _outline(self, kinds: Sequence[int], actions: Sequence[int]) -> Outline:
         children: list[Outline | int] = []
-        rules = [self.recognizer.grammar.start]
+        rules = [Begin(self.recognizer.grammar.start, False)]
         outer: list[list[Outline | int]] = []
         for line in self._lines(kinds, actions):
             for change in self._changes_of(line):
                 if change is None:
-                    outline = Outline(rules.pop(), tuple(children))
-                    children = outer.pop()
-                    children.append(outline)
-                elif isinstance(change, _Begin):
-                    rules.append(change.rule)
+                    is_last = True
+                    while is_last:
+                        rule, is_last = rules.pop()
+                        outline = Outline(rule, tuple(children))
+                        children = outer.pop()
+                        children.append(outline)
+                elif isinstance(change, Begin):
+                    rules.append(change)
                     outer.append(children)
                     children = []
                 else:
                     children.append(change)
         while outer:
-            outline = Outline(rules.pop(), tuple(children))
+            outline = Outline(rules.pop().rule, tuple(children))
             children = outer.pop()
             children.append(outline)
-        return Outline(rules.pop(), tuple(children))
+        return Outline(rules.pop().rule, tuple(children))
 
     def _lines(self, kinds: Sequence[int], actions: Sequence[int]) -> Iterator[tuple[int, ...]]:
         """The actions of each line of a file, and of what follows the last one."""
@@ -136,20 +132,23 @@ class Parser:
     def _worked_out(self, actions: Iterable[Action]) -> Iterator[_Change]:
         """What the actions of a line come to."""
         changes: list[_Change] = []
-        begun: list[tuple[str, list[Outline | int]]] = []
+        begun: list[tuple[Begin, list[Outline | int]]] = []
         for steps, kind in actions:
-            for rule in steps:
-                if rule is not None:
-                    begun.append((rule, []))
-                elif begun:
-                    name, inside = begun.pop()
-                    (begun[-1][1] if begun else changes).append(self._shared(name, tuple(inside)))
-                else:
+            for step in steps:
+                if step is not None:
+                    begun.append((step, []))
+                    continue
+                while begun:
+                    (rule, is_last), inside = begun.pop()
+                    (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
+                    if not is_last:
+                        break
+                else:  # what ends began on an earlier line
                     changes.append(None)
             (begun[-1][1] if begun else changes).append(kind)
         yield from changes
-        for name, inside in begun:
-            yield _Begin(name)
+        for begin, inside in begun:
+            yield begin
             yield from inside
 
     def _shared(self, rule: str, children: tuple[Outline | int, ...]) -> Outline:

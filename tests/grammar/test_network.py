@@ -175,6 +175,16 @@ def check_reach(network: Network, position: int) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(chance=MANY)
+def test_positions_that_pass_a_return_on(chance: Random, random_grammar: RandomGrammar) -> None:
+    """From these, and from no others, the rule can end and nothing else can be done."""
+    network = network_of(random_grammar(chance))
+    for position in range(len(network.rule)):
+        found = surroundings(network, position)
+        assert (({(position, ())}, set(), True) == found) == (position in network.passing())
+
+
+@settings(max_examples=60, deadline=None)
+@given(chance=MANY)
 def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
     """A network with one rule exchanged reads like one linked anew; other positions stay."""
     rule = chance.choice([r for r in PRELIMINARY.rules if not r.is_lexer])

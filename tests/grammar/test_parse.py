@@ -395,8 +395,9 @@ def test_own_programs_have_one_reading(trees: Mapping[Path, Tree]) -> None:
         (f"DEF A()\nX={'(' * 5000}1{')' * 5000}\nEND\n", "primary", 5001),
         (f"DEF A()\nX={'A[' * 5000}1{']' * 5000}\nEND\n", "index", 5000),
         (f"DEF A()\nF({'1,' * 5000}1)\nEND\n", "expression", 5001),
+        (f"DEF A()\nX={'NOT ' * 5000}A\nEND\n", "factor", 5001),
     ],
-    ids=["blocks", "brackets", "indices", "arguments"],
+    ids=["blocks", "brackets", "indices", "arguments", "signs"],
 )
 def test_deep_nesting_is_parsed(parser: Parser, text: str, rule: str, depth: int) -> None:
     """Depth and length meet no limit of Python's, neither in making a tree nor in walking it."""
@@ -408,6 +409,42 @@ def test_deep_nesting_is_parsed(parser: Parser, text: str, rule: str, depth: int
         todo += [child for child in outline.children if not isinstance(child, int)]
     assert depth == found
     assert sum(1 for _ in tree.root.walk()) > depth
+
+
+def test_right_recursion_leaves_little_to_remember(recognizer: Recognizer) -> None:
+    """Ten times the depth adds no set of configurations and no action, and lengthens none."""
+    found = set()
+    for depth in (200, 2_000, 20_000):
+        parser = Parser(recognizer)
+        parsed(parser, "DEF A()\nX=" + "NOT " * depth + "A\nEND\n")
+        deriver = parser._deriver
+        longest = max(len(action.steps) for action in deriver.actions)
+        found.add((deriver.size, len(deriver.actions), longest))
+        assert 1 == len(found), depth
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("AABD", ("s", ("r", "A", ("r", "A", ("r", "B"))), "D", "EOF")),
+        ("A\nBD", ("s", ("r", "A", "NEWLINE", ("r", "B")), "D", "EOF")),
+        (
+            "A\nAA\nC\nD",
+            ("s", ("r", "A", "NEWLINE", ("r", "A", ("r", "A", "NEWLINE",
+             ("e", "C", ("t", "NEWLINE"))))), "D", "EOF"),
+        ),
+        ("AED", ("s", ("r", "A", ("e", "E", ("t",))), "D", "EOF")),
+    ],
+)  # fmt: skip
+def test_rules_that_end_as_one(text: str, expected: Plain) -> None:
+    """What is the last thing in a rule ends with it, on the line where it began or later."""
+    rules = [
+        "s : r D EOF",
+        "r : A r | A NEWLINE (r | e) | A e | B",
+        "e : (C | E) t",
+        "t : NEWLINE?",
+    ]
+    assert expected == tree_of(rules, text)
 
 
 def test_what_is_forgotten_is_worked_out_again(

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grammar import cores
 from grammar.g4 import read, read_file
 from grammar.generate import GRAMMAR
 from grammar.lexer import EOF, ERROR
@@ -81,6 +82,19 @@ def test_it_reads_as_all_readings_together_do(
         recognizer.run(recognizer.at_rule(rule), [chance.randrange(len(names)) for _ in range(4)])
     for _ in range(6):
         agrees(recognizer, some_tokens(recognizer.grammar, chance, 14, mutated), parse)
+
+
+@settings(max_examples=150, deadline=None)
+@given(chance=MANY)
+def test_of_frames_that_pass_a_return_on_one_is_enough(
+    chance: Random, random_grammar: RandomGrammar, mutated: Mutated, parse: Parse
+) -> None:
+    """The same where stacks keep as few of these frames in a row as they can."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cores, "_LONGEST_RUN", 1)
+        recognizer = Recognizer(random_grammar(chance))
+        for _ in range(4):
+            agrees(recognizer, some_tokens(recognizer.grammar, chance, 14, mutated), parse)
 
 
 @pytest.mark.parametrize("name", OWN)
@@ -272,6 +286,67 @@ def test_depth_adds_no_sets_of_configurations() -> None:
         line = "X=" + "(" * depth + "1" + ")" * depth
         assert recognizer.accepts(f"DEF A()\n{line}\nEND\n")
     assert recognizer.size < sizes[0] + 200
+
+
+RIGHT_RECURSION = {
+    "one rule": ("s : r EOF ;\nr : A r | B ;\n", "a"),
+    "two rules": ("s : r EOF ;\nr : A t | B ;\nt : A r A? | C r | B ;\n", "ac"),
+    "over lines": ("s : r EOF ;\nr : (A | NEWLINE) r | B ;\n", "a\n"),
+}
+LETTERS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\nNEWLINE : '\\n' ;\n"
+
+
+@pytest.mark.parametrize("name", RIGHT_RECURSION)
+def test_right_recursion_adds_no_sets_of_configurations(name: str) -> None:
+    """A rule that ends with itself is read as a loop would be: ten times the depth costs no set."""
+    rules, repeated = RIGHT_RECURSION[name]
+    grammar = read(f"grammar T;\n{rules}{LETTERS}")
+    found = set()
+    for depth in (200, 2_000, 20_000):
+        recognizer = Recognizer(grammar)
+        assert recognizer.accepts(repeated * depth + "b")
+        assert not recognizer.accepts(repeated * depth + "bb")
+        state, _ = recognizer.run(recognizer.start, recognizer.kinds(repeated * depth)[:-1])
+        deepest = max(map(len, recognizer.frames(state)))
+        found.add((recognizer.size, deepest))
+        assert 1 == len(found), depth
+        assert deepest < 40
+
+
+def test_signs_add_no_sets_of_configurations() -> None:
+    """An operand may have thousands of signs, and whatever follows it is read as behind one."""
+    sizes = set()
+    for depth in (200, 2_000, 20_000):
+        recognizer = Recognizer(OWN["preliminary"].grammar)
+        line = "X=" + "NOT " * depth + "(A+" + "NOT " * depth + "B) AND C"
+        assert recognizer.accepts(f"DEF A()\n{line}\nEND\n")
+        kinds = recognizer.kinds(f"DEF A()\n{line} D\nEND\n")
+        assert len(kinds) - 5 == recognizer.run(recognizer.start, kinds)[1]
+        sizes.add(recognizer.size)
+        assert 1 == len(sizes), depth
+
+
+def test_a_way_into_right_recursion(recognizer: Recognizer) -> None:
+    """However deep it is, its configuration is one that some program comes to."""
+    kinds = recognizer.kinds("DEF A()\nX=" + "NOT " * 300)[:-1]
+    state, index = recognizer.run(recognizer.start, kinds)
+    assert index is None
+    (frames,) = recognizer.frames(state)
+    there, index = recognizer.run(recognizer.start, Paths(recognizer.network).prefix(frames))
+    assert index is None
+    assert (frames,) == recognizer.frames(there)
+    assert recognizer.expected(state) == recognizer.expected(there)
+
+
+def test_frames_that_read_something_are_counted() -> None:
+    """Between frames that only pass a return on each of the others is kept."""
+    rules = f"s : r EOF ;\nr : A r | B r C | D ;\n{LETTERS}D : 'd' ;\n"
+    recognizer = Recognizer(read(f"grammar T;\n{rules}"))
+    for depth in (1, 7, 8, 9, 200):
+        text = ("b" + "a" * 20) * depth + "d"
+        assert recognizer.accepts(text + "c" * depth)
+        assert not recognizer.accepts(text + "c" * (depth - 1))
+        assert not recognizer.accepts(text + "c" * (depth + 1))
 
 
 def test_deep_blocks_fail_where_they_should() -> None:
