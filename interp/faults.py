@@ -1,8 +1,24 @@
-"""What can go wrong while a program runs [design section 8]."""
+"""What can go wrong while a program runs, and the catalogue of all faults [design section 8].
+
+A fault is made from its slug by `fault` and from nothing else. Its text tells no values and no
+names, so that every executor, the one in C included, stops a program with an equal fault.
+"""
 
 from __future__ import annotations
 
-__all__ = ["BudgetExhausted", "Fault", "LinkError", "RuntimeFailure"]
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+__all__ = [
+    "FAULTS",
+    "BudgetExhausted",
+    "Fault",
+    "FaultKind",
+    "LinkError",
+    "RuntimeFailure",
+    "fault",
+]
 
 
 class RuntimeFailure(Exception):
@@ -42,3 +58,52 @@ class Fault(RuntimeFailure):
 
 class BudgetExhausted(RuntimeFailure):
     """The program has used up the statements it was allowed: it may never end."""
+
+
+@dataclass(frozen=True, slots=True)
+class FaultKind:
+    """An entry of the catalogue; ``code`` is its place, by which a machine without texts names it.
+
+    ``number`` is that of the KSS message, ``None`` where no message at hand fits.
+    """
+
+    code: int
+    slug: str
+    text: str
+    number: int | None
+    rules: tuple[str, ...]
+
+
+def _kinds() -> Mapping[str, FaultKind]:
+    """The catalogue. New entries come last: images and C code know the codes."""
+    rows: tuple[tuple[str, str, int | None, str], ...] = (
+        ("division_by_zero", "division by zero", None, "ARI-02"),
+        ("overflow", "the result is too large for its type", None, "TYP-01 TYP-02 ARI-12"),
+        ("domain", "the function has no value there", None, "FCT-01 FCT-02"),
+        ("index", "an array index lies outside the array", 1444, "TYP-09 MSG-15"),
+        ("uninitialised", "a value is used that was never set", None, "TYP-13"),
+        ("stack", "the program stack overflows", 1424, "SCO-11 MSG-12"),
+        ("nesting", "variables are nested too deeply", 1426, "SCO-11 MSG-12"),
+        ("invalid", "the value is not valid for a system variable", 1422, "ARI-11 MSG-11"),
+        ("inadmissible", "a value cannot be assigned", 1446, "ARI-11 MSG-11"),
+        ("read_only", "a variable is write-protected", 1388, "SCO-11 MSG-07"),
+        ("operand", "an operand has the wrong type", 2256, "ARI-07 ARI-10 ARI-11"),
+        ("argument", "an argument has the wrong type", 2274, "ARI-04 MSG-23"),
+        ("no_result", "a function ended without RETURN", None, "CTL-09"),
+    )
+    return MappingProxyType(
+        {
+            slug: FaultKind(code, slug, text, number, tuple(rules.split()))
+            for code, (slug, text, number, rules) in enumerate(rows)
+        }
+    )
+
+
+#: All faults that executors raise, by slug.
+FAULTS: Mapping[str, FaultKind] = _kinds()
+
+
+def fault(slug: str) -> Fault:
+    """A fault from the catalogue, ready to be raised; `KeyError` for an unknown slug."""
+    kind = FAULTS[slug]
+    return Fault(kind.slug, kind.text, number=kind.number, rules=kind.rules)
