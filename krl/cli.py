@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from krl import door
-from krl.commands import bench, construct, corpus, growth, recover
+from krl.commands import bench, construct, corpus, growth, recover, robot
+from krl.commands.check import check
 from krl.commands.format import format_programs
 
 __all__ = ["app", "main"]
@@ -20,10 +21,12 @@ app = typer.Typer(
 )
 app.command("recover")(recover.recover)
 app.add_typer(construct.app, name="construct")
+app.command("check")(check)
 app.command("format")(format_programs)
 app.command("growth")(growth.growth)
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")
+app.add_typer(robot.app, name="robot")
 
 
 def _print_version(wanted: bool) -> None:

@@ -8,20 +8,19 @@ a survey is timed, finding, reading and decoding the files are. MB are 1,000,000
 from __future__ import annotations
 
 import gc
-import multiprocessing
 import platform
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 from grammar import g4
 from grammar.failures import FailureFinder
 from grammar.recognizer import Core, Recognizer
+from recovery.apart import apart
 from recovery.ingest import Found, IngestError, Skipped, decode, digest, discover, read
 from recovery.peak import peak_memory
 from recovery.survey import Survey, survey
@@ -34,9 +33,6 @@ ROUNDS = 3
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
 #: with it beforehand, so that they are the same in every run and on every machine.
 ANTLR_BYTES_PER_S = 60_000
-
-_P = ParamSpec("_P")
-_T = TypeVar("_T")
 
 
 def measure(
@@ -68,11 +64,11 @@ def measure(
         pass
     surveyed, phased = [], []
     for _ in range(rounds):
-        surveyed.append(_apart(_surveyed, roots, grammar.text))
+        surveyed.append(apart(_surveyed, roots, grammar.text))
         if not surveyed[0].bytes:
             raise IngestError("none of the files is KRL")
         on_step()
-        phased.append(_apart(_phased, roots, grammar.text))
+        phased.append(apart(_phased, roots, grammar.text))
         on_step()
     of = surveyed[0]
     cold = min(s.cold for s in surveyed)
@@ -81,7 +77,7 @@ def measure(
     phases["recording"] = max(cold - sum(phases.values()), 0.0)
     total = sum(phases.values())
     recognising = sum(phases[name] for name in ("decoding", "building", "lexing", "recognising"))
-    beside = _apart(_beside_antlr, roots, grammar.text, antlr_seconds)
+    beside = apart(_beside_antlr, roots, grammar.text, antlr_seconds)
     on_step()
     unchanged = _unchanged(roots, grammar, rounds)
     on_step()
@@ -118,13 +114,6 @@ def measure(
 def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
     """How often `measure` calls ``on_step``."""
     return 2 * rounds + 2 + len(sizes)
-
-
-def _apart(function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs) -> _T:
-    """What the function returns in a fresh process, the only one at work meanwhile."""
-    # 'spawn' is the same on every system, and takes over nothing that this process remembers
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(function, *arguments, **named).result()
 
 
 def _contents(roots: Sequence[Path]) -> Iterator[bytes]:
@@ -183,7 +172,7 @@ def _timed_survey(
 def _unchanged(roots: Sequence[Path], grammar: g4.Grammar, rounds: int) -> float:
     """Seconds for a survey whose results are all kept."""
     with tempfile.TemporaryDirectory() as folder:
-        _, *again = (_apart(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1))
+        _, *again = (apart(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1))
     return min(again)
 
 
@@ -321,8 +310,8 @@ def _scaled_to(
 ) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
-        _apart(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
-        return {"mb": size, **_apart(_scaled, Path(folder), grammar.text)}
+        apart(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
+        return {"mb": size, **apart(_scaled, Path(folder), grammar.text)}
 
 
 def _synthesise(

@@ -18,6 +18,7 @@ module          what it finds
                 routines may not do
 `splines`       what spline blocks may not hold, and what belongs into them
 `limits`        numbers of interrupts, limits of triggers, cyclical flags
+`entries`       BRAKE and RESUME outside of interrupts, programs that begin with no complete PTP
 `stops`         what stops the advance run or makes a blend impossible; only on demand
 =============== ====================================================================================
 """

@@ -13,6 +13,7 @@ from grammar import ast
 from grammar.ast import Node
 from grammar.check import (
     declarations,
+    entries,
     flow,
     initials,
     limits,
@@ -59,6 +60,7 @@ CHECKS: tuple[Check, ...] = (
     places.check,
     splines.check,
     limits.check,
+    entries.check,
 )
 
 

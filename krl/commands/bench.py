@@ -89,6 +89,46 @@ def recover(
     return FINE
 
 
+@app.command("check")
+def check(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Files, folders, .zip archives to check; default: the programs in corpus/.",
+        ),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    sizes: Annotated[
+        str,
+        typer.Option(
+            metavar="MB,…",
+            help="Sizes of the synthetic corpora that show how cost grows; '' for none.",
+        ),
+    ] = "1,10",
+) -> int:
+    """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more."""
+    from recovery.check_speed import measure_check, steps
+    from recovery.ingest import IngestError
+
+    wanted = _sizes(sizes)
+    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    try:
+        with progress_bar("measuring", steps(wanted)) as advance:
+            record = measure_check(roots, sizes=wanted, on_step=advance)
+    except IngestError as error:
+        raise Unusable(str(error)) from error
+    record = {"bench": "check", **record}
+    if json_file is not None:
+        _write(record, json_file)
+    _print_check(record)
+    return FINE
+
+
 @app.command("mutation")
 def mutation(
     paths: Annotated[
@@ -184,19 +224,62 @@ def _print_speed(record: Mapping[str, Any]) -> None:
         soft_wrap=True,
     )
     console.print(_figures(record))
-    console.print(
-        _table(
-            ("where the time goes", "seconds", "share"),
-            [
-                (phase["name"], f"{phase['seconds']:.3f}", f"{100 * phase['share']:.1f} %")
-                for phase in record["phases"]
-            ],
-        )
-    )
+    console.print(_shares(record))
     console.print(_beside_antlr(record["antlr"]))
     if record["scaling"]:
         console.print(_scaling(record))
         console.print(_growth(record), soft_wrap=True)
+
+
+def _print_check(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    counts = record["findings"]
+    told = ", ".join(
+        f"{counts[word]:,} {word}s" for word in ("error", "warning", "note") if word in counts
+    )
+    console.print(
+        f"{record['files']:,} files of {record['projects']:,} projects, "
+        f"{record['bytes'] / _MB:.2f} MB; {told or 'no findings'}; Python {record['python']}",
+        soft_wrap=True,
+    )
+    console.print(
+        _table(
+            ("figure", "", "aim"),
+            [
+                ("first check", f"{record['s_per_mb']:.2f} s/MB", "6 s/MB"),
+                ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
+            ],
+        )
+    )
+    console.print(_shares(record))
+    if record["scaling"]:
+        rows = [
+            (
+                f"{entry['bytes'] / _MB:,.1f} MB",
+                f"{entry['files']:,}",
+                f"{entry['seconds']:.1f}",
+                f"{entry['s_per_mb']:.2f} s/MB",
+                "–" if entry["peak_mb"] is None else f"{entry['peak_mb']:,.0f} MB",
+            )
+            for entry in record["scaling"]
+        ]
+        console.print(_table(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows))
+        growth = record["memory_growth_mb"]
+        more = "" if growth is None else f", {growth:+,.0f} MB of memory"
+        console.print(
+            f"The last against the first: {record['linear']:.2f} times the cost of a MB{more}",
+            soft_wrap=True,
+        )
+
+
+def _shares(record: Mapping[str, Any]) -> Table:
+    return _table(
+        ("where the time goes", "seconds", "share"),
+        [
+            (phase["name"], f"{phase['seconds']:.3f}", f"{100 * phase['share']:.1f} %")
+            for phase in record["phases"]
+        ],
+    )
 
 
 def _figures(record: Mapping[str, Any]) -> Table:

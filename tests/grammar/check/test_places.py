@@ -1,0 +1,166 @@
+"""Declarations out of place, submit programs, interrupt routines, spline blocks; by rule."""
+
+from collections.abc import Callable
+
+import pytest
+
+Agrees = Callable[..., None]
+
+
+def routine(*lines: str) -> str:
+    return "\n".join(["DEF NEG()", *lines, "END"])
+
+
+@pytest.mark.parametrize(
+    "instruction",
+    [
+        "$OUT[1] = TRUE",
+        "PULSE($OUT[1], TRUE, 0.5)",
+        "INTERRUPT DECL 21 WHEN $IN[1] DO BRAKE",
+        "HERE:",
+        "HALT",
+        "CONTINUE",
+        "PTP $POS_ACT",
+    ],
+)
+def test_declarations_come_first(agrees: Agrees, instruction: str) -> None:
+    """Behind any instruction no declaration may stand [SCO-09]."""
+    agrees(
+        routine(
+            "EXT WORK()",
+            "DECL INT A",
+            "SIGNAL ON_TABLE $IN[5]",
+            instruction,
+            "DECL INT B ;> KSS2038",
+            "EXT MORE() ;> KSS2038",
+            "A = 1",
+        ),
+    )
+
+
+def test_declarations_stand_in_no_block(agrees: Agrees) -> None:
+    """Neither a loop nor a branch has data of its own [SCO-09]."""
+    agrees(
+        routine(
+            "IF $IN[1] THEN",
+            "  DECL INT A ;> KSS2038",
+            "ENDIF",
+        )
+    )
+
+
+SUBMIT = """DEF NEG()
+  LOOP
+    PTP $POS_ACT ;> KRL501
+    SLIN $POS_ACT ;> KRL501
+    ASYPTP {E1 0}
+    SPLINE ;> KRL501
+      SPL $POS_ACT
+    ENDSPLINE
+    TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[2]=TRUE ;> KSS1409
+    IF WSPACEGIVE(1) THEN ;> KSS2825
+    ENDIF
+    $OUT[1] = $IN[1]
+    INTERRUPT DECL 5 WHEN $IN[2] DO WORK()
+  ENDLOOP
+END
+DEF WORK()
+  WAIT SEC 0.1
+END
+"""
+
+
+def test_submit_programs_move_no_robot(agrees: Agrees) -> None:
+    """Motions, triggers and shared workspaces are the robot program's [SUB-05, SUB-06]."""
+    agrees({"NEG.sub": SUBMIT})
+
+
+def test_robot_programs_do(agrees: Agrees) -> None:
+    """The same statements are right in a program of the robot."""
+    body = SUBMIT.replace(" ;> KRL501", "").replace(" ;> KSS1409", "").replace(" ;> KSS2825", "")
+    agrees({"NEG.src": body})
+
+
+INTERRUPTS = """DEF NEG()
+  {declaration}
+  INTERRUPT ON 5
+  WORK()
+END
+DEF WORK()
+  SPTP $POS_ACT{spline}
+  PTP_SPLINE{spline}
+    SPTP $POS_ACT
+  ENDSPLINE
+  TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[2]=TRUE{trigger}
+  LIN $POS_ACT
+  $ADVANCE = 1{advance}
+  BRAKE{brake}
+  RESUME{resume}
+END
+"""
+MARKS = {"spline": " ;> KRL502", "trigger": " ;> KSS1409", "advance": " ;> KRL504", "brake": ""}
+
+
+def test_interrupt_routines(agrees: Agrees) -> None:
+    """No spline motions, no triggers, no change of $ADVANCE [SPL-11, TRG-09, INT-13]."""
+    declared = "INTERRUPT DECL 5 WHEN $IN[1] DO WORK()"
+    agrees(INTERRUPTS.format(declaration=declared, resume="", **MARKS))
+
+
+def test_global_interrupt_routines_do_not_resume(agrees: Agrees) -> None:
+    """A global interrupt has no level to go back to [INT-11]."""
+    declared = "GLOBAL INTERRUPT DECL 5 WHEN $IN[1] DO WORK()"
+    agrees(INTERRUPTS.format(declaration=declared, resume=" ;> KSS72", **MARKS))
+
+
+def test_other_routines_may(agrees: Agrees) -> None:
+    """What no interrupt calls may move as it likes, but neither brake nor resume."""
+    declared = "INTERRUPT DECL 5 WHEN $IN[1] DO BRAKE"
+    marks = dict.fromkeys(("spline", "trigger", "advance"), "")
+    marks |= {"brake": " ;> KRL505?", "resume": " ;> KRL506?"}
+    agrees(INTERRUPTS.format(declaration=declared, **marks))
+
+
+@pytest.mark.parametrize(
+    ("rule", "block", "line"),
+    [
+        ("SPL-01", "SPLINE", "SPL $POS_ACT"),
+        ("SPL-01", "SPLINE", "SLIN $POS_ACT WITH $VEL.CP = 0.2"),
+        ("SPL-01", "SPLINE", "SCIRC $POS_ACT, $POS_ACT"),
+        ("SPL-01", "SPLINE", "SPTP $POS_ACT ;> KSS2359"),
+        ("SPL-04", "SPLINE", "LIN $POS_ACT ;> KSS2359"),
+        ("SPL-04", "SPLINE", "SLIN $POS_ACT C_SPL ;> KSS2360"),
+        ("SPL-01", "PTP_SPLINE", "SPTP $POS_ACT"),
+        ("SPL-01", "PTP_SPLINE", "SLIN $POS_ACT ;> KSS2380"),
+        ("SPL-04", "PTP_SPLINE", "PTP $POS_ACT ;> KSS2380"),
+        ("SPL-04", "SPLINE", "TRIGGER WHEN DISTANCE=1 DELAY=0 DO $OUT[1]=TRUE ;> KSS2363"),
+        ("SPL-07", "SPLINE", "TRIGGER WHEN PATH=5 ONSTART DELAY=0 DO $OUT[1]=TRUE"),
+        ("SPL-06", "SPLINE", "STOP WHEN PATH=50 ONSTART IF $IN[1]"),
+        ("SPL-10", "SPLINE", "CONST_VEL START = 5.0"),
+    ],
+)
+def test_what_spline_blocks_hold(agrees: Agrees, rule: str, block: str, line: str) -> None:
+    """Each kind of block has its motions, and none is approximated."""
+    assert rule.startswith("SPL")
+    agrees(routine(block, f"  {line}", "ENDSPLINE C_SPL"))
+
+
+def test_constant_velocity_and_times_exclude_each_other(agrees: Agrees) -> None:
+    """The second kind in a block is told, once [SPL-10]."""
+    agrees(
+        routine(
+            "SPLINE",
+            "  CONST_VEL START = 5",
+            "  SPL $POS_ACT",
+            "  TIME_BLOCK START ;> KRL508?",
+            "  CONST_VEL END = -5",
+            "  SPL $POS_ACT",
+            "  TIME_BLOCK END = 2",
+            "ENDSPLINE",
+        )
+    )
+
+
+def test_spl_needs_a_block(agrees: Agrees) -> None:
+    """SLIN, SCIRC and SPTP stand alone as well, SPL does not [SPL-02]."""
+    agrees(routine("SLIN $POS_ACT", "SPTP $POS_ACT", "SPL $POS_ACT ;> KRL507"))

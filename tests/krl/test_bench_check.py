@@ -1,0 +1,34 @@
+"""`krl bench check`: what it takes, prints and writes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+from recovery import check_speed
+
+
+def test_figures_are_printed_and_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Stdout and the record have the cost of a MB, the phases and the growth."""
+    monkeypatch.setattr(check_speed, "apart", lambda function, *arguments: function(*arguments))
+    (tmp_path / "A.src").write_text("DEF A()\nEXIT\nEND\n", encoding="utf-8", newline="\n")
+    target = tmp_path / "out" / "speed.json"
+    given = ["bench", "check", str(tmp_path), "--sizes", "0.01", "--json", str(target)]
+    assert 0 == main(given)
+    said, complained = capsys.readouterr()
+    assert "" == complained
+    assert said.startswith("1 files of 1 projects, 0.00 MB; 1 warnings; Python 3.")
+    for row in ("first check", "nothing changed", "building", "resolving", "peak memory"):
+        assert row in said
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert "check" == record["bench"]
+    assert {"s_per_mb", "unchanged_s_per_mb", "phases", "linear"} <= record.keys()
+
+
+def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A path that is not there is one line on stderr and status 2."""
+    assert 2 == main(["bench", "check", str(tmp_path / "gone"), "--sizes", ""])
+    assert "gone: no such file or folder" in capsys.readouterr().err

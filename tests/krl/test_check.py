@@ -1,0 +1,230 @@
+"""`krl check` from the outside: what it prints, its statuses, its options."""
+
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from krl.cli import main
+
+WRONG = "DEF A()\nDECL INT N\nIF N = 1 THEN\nHALT\nENDIF\nEND\n"
+LOOSE = "DEF B()\nHALT\nEXIT\nEND\n"
+FINE = "DEF C()\nHALT\nEND\n"
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working directory and a cache of their own."""
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
+    monkeypatch.delenv("KRL_TRACEBACK", raising=False)
+    return folder
+
+
+@pytest.fixture
+def programs(elsewhere: Path) -> Path:
+    for name, text in (("A", WRONG), ("B", LOOSE), ("C", FINE)):
+        (elsewhere / f"{name}.src").write_text(text, encoding="utf-8", newline="\n")
+    return elsewhere
+
+
+def check(*arguments: str) -> int:
+    return main(["check", "--jobs", "1", *arguments])
+
+
+def records(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, Any]]:
+    check("--format", "json", *arguments)
+    loaded = json.loads(capsys.readouterr().out)
+    assert isinstance(loaded, list)
+    return loaded
+
+
+@pytest.mark.usefixtures("programs")
+def test_text_has_a_caret_and_a_fix(capsys: pytest.CaptureFixture[str]) -> None:
+    """Findings go to stdout with their line, the summary to stderr."""
+    assert 1 == check("A.src")
+    out, err = capsys.readouterr()
+    assert (
+        """A.src:3:6: error KRL001: a comparison is written ==
+  3 | IF N = 1 THEN
+    |      ^
+    = write ==
+
+"""
+        == out
+    )
+    assert "1 file checked: 1 error\n" == err
+
+
+@pytest.mark.usefixtures("programs")
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (["C.src"], 0),
+        (["C.src", "--stops"], 0),
+        (["B.src"], 1),
+        (["."], 1),
+        (["B.src", "--syntax-only"], 0),
+        (["A.src", "--syntax-only"], 1),
+        (["B.src", "--ignore", "KRL4"], 0),
+        (["B.src", "--select", "KSS,KRL001"], 0),
+        (["B.src", "--select", "KRL4", "--ignore", "KRL402"], 1),
+    ],
+)
+def test_exit_status(arguments: list[str], status: int) -> None:
+    """Errors and warnings are findings; notes, and what was not asked for, are not."""
+    assert status == check(*arguments)
+
+
+@pytest.mark.usefixtures("programs")
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["NONE.src"], "no such file or folder"),
+        (["B.src", "--select", "XYZ"], "no code begins with XYZ"),
+        (["B.src", "--format", "xml"], "is not one of"),
+        (["B.src", "--out", "."], "a folder, not a file"),
+        (["B.src", "--cache", "B.src"], "not a folder"),
+        (["EMPTY.src"], "EMPTY.src: empty file"),
+        (["JUNK.src"], "JUNK.src: binary data"),
+        ([], "Missing argument"),
+    ],
+)
+def test_wrong_usage_is_one_line(
+    capsys: pytest.CaptureFixture[str], programs: Path, arguments: list[str], said: str
+) -> None:
+    """What cannot be done ends with status 2 and a line that says why."""
+    (programs / "EMPTY.src").write_bytes(b"")
+    (programs / "JUNK.src").write_bytes(bytes(range(256)) * 9)
+    assert 2 == check(*arguments)
+    out, err = capsys.readouterr()
+    assert "" == out
+    assert said in err
+    assert 1 == err.count("\n")
+
+
+@pytest.mark.usefixtures("programs")
+def test_json_has_the_fields_of_the_design(capsys: pytest.CaptureFixture[str]) -> None:
+    """A list of records, in order of path and line."""
+    found = records(capsys, ".")
+    assert [("A.src", 3, "KRL001"), ("B.src", 3, "KRL401")] == [
+        (one["path"], one["line"], one["code"]) for one in found
+    ]
+    fields = {"path", "line", "column", "end_column", "severity", "code", "message"}
+    assert all(fields <= one.keys() for one in found)
+
+
+@pytest.mark.usefixtures("programs")
+def test_nothing_found_is_an_empty_list(capsys: pytest.CaptureFixture[str]) -> None:
+    """JSON is complete also where there is nothing to say."""
+    assert [] == records(capsys, "C.src")
+
+
+@pytest.mark.usefixtures("programs")
+def test_sarif(capsys: pytest.CaptureFixture[str]) -> None:
+    """SARIF 2.1.0 with a rule for each code."""
+    check("--format", "sarif", ".")
+    log = json.loads(capsys.readouterr().out)
+    assert "2.1.0" == log["version"]
+    (run,) = log["runs"]
+    assert ["KRL001", "KRL401"] == [rule["id"] for rule in run["tool"]["driver"]["rules"]]
+    assert ["A.src", "B.src"] == [
+        one["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] for one in run["results"]
+    ]
+
+
+@pytest.mark.parametrize("format_", ["text", "json", "sarif"])
+def test_findings_go_to_a_file(
+    capsys: pytest.CaptureFixture[str], programs: Path, format_: str
+) -> None:
+    """The file has what the terminal would have."""
+    check("--format", format_, ".")
+    shown = capsys.readouterr().out
+    assert 1 == check("--format", format_, "--out", "deep/found", ".")
+    assert "" == capsys.readouterr().out
+    assert shown == (programs / "deep" / "found").read_text("utf-8")
+
+
+@pytest.mark.usefixtures("programs")
+def test_stops_are_told_on_demand(capsys: pytest.CaptureFixture[str]) -> None:
+    """With --stops, or when their codes are selected, and only then."""
+    stops = ["KRL601"]
+    assert [] == records(capsys, "C.src")
+    assert stops == [one["code"] for one in records(capsys, "C.src", "--stops")]
+    assert stops == [one["code"] for one in records(capsys, "C.src", "--select", "KRL6")]
+
+
+@pytest.mark.usefixtures("programs")
+def test_unchanged_files_come_from_the_cache(capsys: pytest.CaptureFixture[str]) -> None:
+    """The second check of the same files says so, and prints the same."""
+    check(".")
+    first = capsys.readouterr()
+    check(".")
+    again = capsys.readouterr()
+    assert first.out == again.out
+    assert "3 files checked (3 unchanged): " in again.err
+    check("--no-cache", ".")
+    assert "unchanged" not in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the home is elsewhere there")
+def test_without_a_cache_it_works_all_the_same(
+    programs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A cache that cannot be written to keeps nobody from checking."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(programs / "A.src"))
+    assert 0 == check("C.src")
+
+
+def test_bad_input_ends_in_findings(capsys: pytest.CaptureFixture[str], elsewhere: Path) -> None:
+    """Enormous nesting and enormous lines are told on one line each."""
+    deep = "(" * 100_000 + "1" + ")" * 100_000
+    (elsewhere / "DEEP.src").write_text(f"DEF DEEP()\nN = {deep}\nEND\n", encoding="utf-8")
+    (elsewhere / "LONG.src").write_text(f"DEF LONG()\n{'A' * 2_000_000}\nEND\n", encoding="utf-8")
+    assert [("DEEP.src", 2, "KRL003"), ("LONG.src", 2, "KRL001")] == [
+        (one["path"], one["line"], one["code"]) for one in records(capsys, ".")
+    ]
+
+
+def test_names_that_steer_terminals_are_shown(
+    capsys: pytest.CaptureFixture[str], elsewhere: Path
+) -> None:
+    """Nothing of other people's files reaches the terminal as a command."""
+    text = "DEF A()\n\x1b[31mN = = 1\nEND\n"
+    (elsewhere / "A.src").write_text(text, encoding="utf-8")
+    check("A.src")
+    assert "\x1b" not in "".join(capsys.readouterr())
+
+
+def test_colours_on_a_terminal(programs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where there are colours, text is the same with them taken away."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLUMNS", "200")
+    stream = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", stream)
+    check(str(programs / "A.src"))
+    shown = stream.getvalue()
+    assert "\x1b[1;31merror KRL001:" in shown.replace("\x1b[1;31m: error", "\x1b[1;31merror")
+
+
+@pytest.mark.usefixtures("programs")
+def test_as_a_process() -> None:
+    """The installed command gives the status to the shell."""
+    done = subprocess.run(
+        [sys.executable, "-m", "krl", "check", "B.src", "--no-cache"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+    )
+    assert (1, "") == (done.returncode, done.stderr.partition("1 file checked: 1 warning")[0])
+    assert "KRL401" in done.stdout
