@@ -8,11 +8,12 @@ BIN := $(VENV)/bin
 BASE := $(VENV)/.base
 DEV := $(VENV)/.dev
 
-.PHONY: help setup recover conformance nightly test check grammar bench clean
+.PHONY: help setup recover growth conformance nightly test check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
 	@echo 'make recover      survey the corpus and write the page (ARGS="PATH --json FILE")'
+	@echo 'make growth       replay the ledger over the corpus and write the page'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
@@ -25,6 +26,9 @@ setup: $(DEV)
 recover: $(BASE)
 	@$(BIN)/krl recover $(ARGS)
 
+growth: $(BASE)
+	@$(BIN)/krl growth $(ARGS)
+
 test: $(DEV)
 	@$(BIN)/python -m pytest -n auto $(ARGS)
 
@@ -34,6 +38,7 @@ check: $(DEV)
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-logo
 	@$(BIN)/python -m grammar.generate --check
+	@$(BIN)/krl construct replay --check
 
 grammar: $(DEV)
 	@command -v java >/dev/null || { echo 'make grammar: ANTLR needs Java, and there is no java on the PATH' >&2; exit 2; }
@@ -45,6 +50,7 @@ conformance nightly:
 bench: $(BASE)
 	@$(BIN)/krl bench recover --json reports/out/bench/recover.json $(ARGS)
 	@$(BIN)/krl bench mutation --json reports/out/bench/mutation.json $(ARGS)
+	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
 
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache
