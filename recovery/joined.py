@@ -47,7 +47,7 @@ def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
         other, Insert | Widen | AddAlternative
     ):
         return False
-    if type(one) is type(other) and one.text == other.text and one.rule != other.rule:
+    if one != other and one.text.rstrip("?*+") == other.text.rstrip("?*+"):
         return True
     unused = layout.unused_in(one.text), layout.unused_in(other.text)
     if one.rule == other.rule and isinstance(one, AddAlternative) and type(one) is type(other):
