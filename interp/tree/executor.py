@@ -1,0 +1,247 @@
+"""The tree interpreter as an executor: a stack of routines that run, each a generator.
+
+A call puts a routine on the stack, and so does an interrupt; RESUME takes routines off. Python's
+own stack is only as deep as blocks and expressions nest within one routine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from interp.events import Sink
+from interp.executor import Reader
+from interp.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.program import CheckedProgram, Limits
+from interp.requests import At, Code, Crash, End, Fail, Read, Request, Slice, Value
+from interp.tree.memory import fill_data
+from interp.tree.places import MOST_CELLS
+from interp.tree.run import Call, Frame, Guard, Run, Steps
+from interp.tree.statements import Resumed, Statements
+
+__all__ = ["TreeExecutor"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Interrupted:
+    """What waits for the end of an action.
+
+    That is the open request, or that RESUME has come back, and whether ON_ERROR_PROCEED held.
+    """
+
+    request: Request | None
+    resumed: Resumed | None
+    guard: Guard
+
+
+@dataclass(slots=True, eq=False)
+class _Active:
+    """A routine that runs, or an action, which has what it ``interrupted``."""
+
+    steps: Steps[Any]
+    frame: Frame
+    interrupted: _Interrupted | None = None
+
+
+class TreeExecutor:
+    """Runs a checked program from a routine of its first file on; see `interp.executor.Executor`.
+
+    ``routine`` is the first one where it is not given. Raises `LinkError` where it cannot begin.
+    """
+
+    def __init__(
+        self,
+        program: CheckedProgram,
+        routine: str | None = None,
+        limits: Limits | None = None,
+        sink: Sink | None = None,
+        random: Callable[[], float] | None = None,
+    ) -> None:
+        self._run = Run(program, limits, sink, random)
+        try:
+            fill_data(self._run)
+        except Fault as error:
+            raise LinkError(f"the data lists cannot be filled: {error}") from None
+        start = program.start(routine)
+        if self._run.cells + self._run.size_of(start) > MOST_CELLS:
+            raise LinkError(f"the variables of {start.name} are too large")
+        self._stack = [self._active(Call(start, {}))]
+        self._open: Request | None = None
+        self._is_asked = False
+        self._resumed: Resumed | None = None
+        self._final: Request | None = None
+
+    # ----------------------------------------------------------------------- the port
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is; 0 in the routine it began with."""
+        return self._run.depth
+
+    def advance(self, reply: Value | Fault | None = None) -> Request:
+        """Compute until the world is needed."""
+        if self._final is not None:
+            return self._final
+        if self._open is not None and not self._is_asked:
+            self._is_asked = True
+            return self._open
+        answer: Any = self._resumed or reply
+        self._open, self._is_asked, self._resumed = None, False, None
+        try:
+            request = self._advanced(answer)
+        except RuntimeFailure as error:  # a routine that cannot even begin
+            request = Fail(self._at(), error)
+        except Exception as error:  # a defect of ours, which is told as one
+            request = Crash(self._at(), f"{type(error).__name__}: {error}")
+        if isinstance(request, Fail | Crash):
+            self._final = request
+        elif not isinstance(request, End):
+            self._run.asked()
+            self._open, self._is_asked = request, True
+        return request
+
+    def enter(self, code: Code) -> None:
+        """Push an action, which runs before the program goes on."""
+        handed, run = self._run.handed(code), self._run
+        frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
+        node: Any = handed.node
+        steps = Statements(run, frame).action(node)
+        interrupted = _Interrupted(self._open, self._resumed, run.guard)
+        self._stack.append(_Active(steps, frame, interrupted))
+        self._open, self._is_asked, self._resumed, run.guard = None, False, None, Guard.OFF
+
+    def evaluate(self, code: Code, read: Reader) -> Value:
+        """The value of a condition; raises `interp.faults.Fault`.
+
+        What a condition calls may compute and read; `LinkError` where it does more.
+        """
+        handed, guard = self._run.handed(code), self._run.guard
+        depth, cells = self._run.depth, self._run.cells
+        frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
+        node: Any = handed.node
+        stack = [_Active(Statements(self._run, frame).truth(node), frame)]
+        reply: Any = None
+        try:
+            while stack:
+                try:
+                    asked = _sent(stack[-1].steps, reply)
+                except StopIteration as done:
+                    done_with = stack.pop()
+                    if stack:
+                        self._left(done_with)
+                    reply = done.value
+                    continue
+                reply = self._looked_up(asked, read, stack)
+        finally:
+            self._run.guard, self._run.depth, self._run.cells = guard, depth, cells
+        value: Value = reply
+        return value
+
+    def unwind(self, depth: int) -> None:
+        """Leave all routines deeper than ``depth``, and what was entered there."""
+        while self._run.depth > depth or self._stack[-1].interrupted is not None:
+            active = self._stack.pop()
+            active.steps.close()
+            self._left(active)
+        self._run.guard = Guard.OFF
+        self._open, self._is_asked, self._resumed = None, False, Resumed()
+
+    # ----------------------------------------------------------------------- the stack
+
+    def _advanced(self, reply: Any) -> Request:
+        """Go on with the routine on top until something asks, or nothing is left to run."""
+        while True:
+            active = self._stack[-1]
+            try:
+                asked = _sent(active.steps, reply)
+            except StopIteration as done:
+                if active.interrupted is not None or len(self._stack) == 1:
+                    return self._ended(active)
+                self._left(self._stack.pop())
+                reply = done.value
+                continue
+            except RuntimeFailure as error:
+                if not self._is_for_caller(active, error):
+                    return Fail(self._at(), error)
+                self._left(self._stack.pop())
+                reply = error
+                continue
+            if not isinstance(asked, Call):
+                return asked
+            reply = self._called(asked, self._stack)
+
+    def _called(self, call: Call, stack: list[_Active]) -> Fault | None:
+        """Put a routine on the stack, or give the fault that there is no room for it."""
+        run = self._run
+        is_full = run.cells + run.size_of(call.routine) > MOST_CELLS
+        if is_full or run.depth >= run.limits.depth:
+            return fault("stack")
+        if self._run.sink is not None:
+            self._run.sink.call(self._run.at(stack[-1].frame), call.routine.name)
+        stack.append(self._active(call))
+        self._run.depth += 1
+        return None
+
+    def _active(self, call: Call) -> _Active:
+        routine = call.routine
+        line = routine.unit.line(routine.node)
+        frame = Frame(
+            *(routine.unit, routine.name, routine.scope, call.variables),
+            self._run.program.result_of(routine),
+            line,
+            self._run.size_of(routine),
+        )
+        self._run.cells += frame.cells
+        return _Active(Statements(self._run, frame).routine(routine.node), frame)
+
+    def _is_for_caller(self, active: _Active, error: RuntimeFailure) -> bool:
+        """Whether a routine faults before its first statement began, so that its caller's did."""
+        return (
+            isinstance(error, Fault)
+            and self._run.guard is Guard.NOW
+            and not active.frame.has_begun
+            and active.interrupted is None
+            and len(self._stack) > 1
+        )
+
+    def _left(self, active: _Active) -> None:
+        """A routine or an action is no longer on the stack."""
+        if active.interrupted is None:
+            self._run.depth -= 1
+            self._run.cells -= active.frame.cells
+            active.frame.variables.clear()
+
+    def _ended(self, active: _Active) -> Request:
+        """An action has ended, or the program."""
+        end = End(self._at())
+        if active.interrupted is None:
+            self._final = end
+            return end
+        self._stack.pop()
+        self._run.guard = active.interrupted.guard
+        self._open, self._is_asked = active.interrupted.request, False
+        self._resumed = active.interrupted.resumed
+        return end
+
+    def _at(self) -> At:
+        return self._run.at(self._stack[-1].frame)
+
+    def _looked_up(self, asked: Request | Call, read: Reader, stack: list[_Active]) -> Any:
+        """What a condition is answered."""
+        match asked:
+            case Call():
+                return self._called(asked, stack)
+            case Read():
+                try:
+                    return read(asked.path)
+                except Fault as error:
+                    return error
+            case Slice():
+                return None
+        raise LinkError("a condition can only compute and read")
+
+
+def _sent(steps: Steps[Any], reply: Any) -> Request | Call:
+    """Go on with the reply, or with what is raised where the routine waits."""
+    return steps.throw(reply) if isinstance(reply, Exception) else steps.send(reply)

@@ -1,0 +1,210 @@
+"""Motions, triggers, interrupts and cyclic signals: statements that only ask the world.
+
+What is to be done or looked at later is handed over as a `interp.requests.Code`.
+"""
+
+from __future__ import annotations
+
+from grammar import ast
+from grammar.symbols import SignalSymbol
+from grammar.walk import walk
+from interp.faults import LinkError
+from interp.requests import (
+    BrakeArm,
+    DeclareInterrupt,
+    Move,
+    MoveEmily,
+    MoveSpline,
+    Path,
+    Resume,
+    SetTrigger,
+    SplineItem,
+    SplineRange,
+    SplineStop,
+    SwitchInterrupt,
+    SwitchSignal,
+)
+from interp.tree.expressions import Expressions
+from interp.tree.places import Remote, of_type
+from interp.tree.run import Steps
+from interp.values import Value, copied, text_of
+
+__all__ = ["Motions"]
+
+_CONSTANT = (
+    ast.IntegerLiteral,
+    ast.RealLiteral,
+    ast.BoolLiteral,
+    ast.BitLiteral,
+    ast.StringLiteral,
+    ast.EnumConstant,
+    ast.Unary,
+    ast.Parenthesised,
+    ast.Name,
+)
+
+
+class Motions(Expressions):
+    """The statements that ask the world to do something."""
+
+    # ----------------------------------------------------------------------- motions
+
+    def motion(self, node: ast.Motion) -> Steps[None]:
+        """PTP, LIN, CIRC and all others."""
+        yield (yield from self._move(node))
+
+    def _move(self, node: ast.Motion) -> Steps[Move]:
+        auxiliary: Value | None = None
+        if node.auxiliary is not None:
+            auxiliary = copied((yield from self.value(node.auxiliary)))
+        target = copied((yield from self.value(node.target)))
+        return Move(
+            self.at(),
+            node.kind,
+            target,
+            auxiliary,
+            (yield from self._optional(node.angle)),
+            (yield from self._values(node.values)),
+            node.criteria,
+            None if node.reference is None else node.reference.name.key,
+        )
+
+    def _optional(self, node: ast.Expression | None) -> Steps[float | None]:
+        return None if node is None else (yield from self.real(node))
+
+    def _values(self, nodes: tuple[ast.Assignment, ...]) -> Steps[tuple[tuple[Path, Value], ...]]:
+        """What stands behind WITH [SPL-08]."""
+        found = []
+        for node in nodes:
+            place = yield from self.place(node.target)
+            value = of_type(place.type, (yield from self.value(node.value, place.type)))
+            if not isinstance(place, Remote):
+                raise LinkError("WITH gives a value to what is no system variable")
+            found.append((place.path, value))
+        return tuple(found)
+
+    def emily_motion(self, node: ast.EmilyMotion) -> Steps[None]:
+        """MOVE_EMI."""
+        device = text_of((yield from self.value(node.device)))
+        action = text_of((yield from self.value(node.action)))
+        number = yield from self._optional(node.number)
+        yield MoveEmily(self.at(), device, action, number)
+
+    def spline_block(self, node: ast.SplineBlock) -> Steps[None]:
+        """SPLINE: what stands in it is evaluated first, then planned as one motion [SPL-01]."""
+        values = yield from self._values(node.values)
+        first, items = self.frame.line, []
+        for item in node.items:
+            self.frame.line = self.frame.unit.line(item)
+            items.append((yield from self._item(item)))
+        self.frame.line = first
+        yield MoveSpline(self.at(), node.keyword, values, tuple(items), node.is_approximated)
+
+    def _item(
+        self, node: ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
+    ) -> Steps[SplineItem]:
+        match node:
+            case ast.Motion():
+                return (yield from self._move(node))
+            case ast.Trigger():
+                return (yield from self._set_trigger(node))
+            case ast.ConstantVelocity():
+                place = yield from self.real(node.place)
+                return SplineRange("CONST_VEL", node.edge, place, node.on_start)
+            case ast.TimeBlock():
+                value = yield from self._optional(node.value)
+                return SplineRange("TIME_BLOCK", node.edge, value, on_start=False)
+        place = yield from self.real(node.place)
+        return SplineStop(place, node.on_start, self.run.hand(node.condition, self.frame))
+
+    # ----------------------------------------------------------------------- triggers
+
+    def trigger(self, node: ast.Trigger) -> Steps[None]:
+        """TRIGGER."""
+        yield (yield from self._set_trigger(node))
+
+    def _set_trigger(self, node: ast.Trigger) -> Steps[SetTrigger]:
+        place = yield from self.real(node.place)
+        delay = yield from self.real(node.delay)
+        output = yield from self._output(node.action)
+        priority = None if node.priority is None else (yield from self.integer(node.priority))
+        action = self.run.hand(node.action, self.frame)
+        return SetTrigger(
+            *(self.at(), node.place_kind, place, node.on_start, delay, action, output, priority)
+        )
+
+    def _output(
+        self, action: ast.Assignment | ast.CallStatement
+    ) -> Steps[tuple[Path, Value] | None]:
+        """The assignment of a literal to a system variable with literal indices, if it is one."""
+        if not isinstance(action, ast.Assignment):
+            return None
+        parts = [action.value, *_indices(action.target)]
+        if not all(isinstance(one, _CONSTANT) for part in parts for one in walk(part)):
+            return None
+        place = yield from self.place(action.target)
+        if not isinstance(place, Remote):
+            return None
+        value = yield from self.value(action.value, place.type)
+        return place.path, of_type(place.type, value)
+
+    # ----------------------------------------------------------------------- interrupts
+
+    def interrupt_declaration(self, node: ast.InterruptDeclaration) -> Steps[None]:
+        """INTERRUPT DECL [INT-01]."""
+        number = yield from self.integer(node.number)
+        condition = self.run.hand(node.condition, self.frame)
+        action = self.run.hand(node.action, self.frame)
+        yield DeclareInterrupt(self.at(), number, node.is_global, condition, action)
+
+    def interrupt_switch(self, node: ast.InterruptSwitch) -> Steps[None]:
+        """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
+        number = None if node.number is None else (yield from self.integer(node.number))
+        yield SwitchInterrupt(self.at(), node.action, number)
+
+    def brake(self, node: ast.Brake) -> Steps[None]:
+        """BRAKE [INT-09]."""
+        yield BrakeArm(self.at(), node.mode)
+
+    def resume(self, _node: ast.Resume) -> Steps[None]:
+        """RESUME: the controller answers by unwinding [INT-10]."""
+        yield Resume(self.at())
+
+    # ----------------------------------------------------------------------- cyclic signals
+
+    def signal_on(self, node: ast.SignalOn) -> Steps[None]:
+        """ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
+        source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
+        name = self._signal_name(source)
+        delay = yield from self._optional(node.delay)
+        minimum = yield from self._optional(node.minimum)
+        maximum = yield from self._optional(node.maximum)
+        cycle = self.run.hand(node.assignment, self.frame)
+        yield SwitchSignal(*(self.at(), node.keyword, True, name, cycle, delay, minimum, maximum))
+
+    def signal_off(self, node: ast.SignalOff) -> Steps[None]:
+        """ANIN OFF, ANOUT OFF, DIGIN OFF."""
+        name = self._signal_name(node.variable)
+        yield SwitchSignal(*(self.at(), node.keyword, False, name, None, None, None, None))
+
+    def _signal_name(self, node: ast.Expression) -> str:
+        """The signal, or else the system variable, in an expression, by its name here."""
+        names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
+        for name in names:
+            found = self.frame.unit.found(name)
+            if found is not None and isinstance(found.symbol, SignalSymbol):
+                return name.key
+        for name in names:
+            if name.key.startswith("$"):
+                return name.key
+        raise LinkError("nothing tells which signal is meant")
+
+
+def _indices(node: ast.Expression) -> list[ast.Expression]:
+    """All indices in what is written to."""
+    found: list[ast.Expression] = []
+    while isinstance(node, ast.Subscript | ast.Member):
+        if isinstance(node, ast.Subscript):
+            found += [one for one in node.indices if one is not None]
+        node = node.base
+    return found

@@ -1,0 +1,44 @@
+"""Variables by a text that names them, as VARSTATE and VARTYPE are given it [TYP-18]."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from grammar.types import Type
+from interp.faults import Fault, LinkError
+from interp.tree.places import Local, Place, element, member
+from interp.values import Value
+
+__all__ = ["find_text"]
+
+_WRITTEN = re.compile(
+    r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
+    re.IGNORECASE | re.ASCII,
+)
+_STEP = re.compile(r"(\.?)(\w+)|\[([\s\d,]*)\]", re.ASCII)
+
+
+def find_text(text: str, find: Callable[[str], Place | None]) -> tuple[Type, Value | None] | None:
+    """The type and value of a variable of the program or a part of one, ``None`` without one.
+
+    An array may have empty brackets. ``find`` gives the place of a variable by its name in upper
+    case; variables of the world are not looked up.
+    """
+    match = _WRITTEN.fullmatch(text)
+    if match is None:
+        return None
+    place: Place | None = None
+    try:
+        for _, name, indices in _STEP.findall(match[1].upper()):
+            if place is None:
+                place = find(name)
+            elif indices:
+                place = element(place, [int(one) for one in indices.split(",")])
+            else:
+                place = member(place, name)
+            if not isinstance(place, Local):
+                return None
+    except (Fault, LinkError):  # there is no such part
+        return None
+    return (place.type, place.get()) if isinstance(place, Local) else None

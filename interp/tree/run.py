@@ -1,0 +1,162 @@
+"""What all routines of a running program share, and the frame of each of them.
+
+Executing a routine is a generator: it yields a request and is sent the reply, and it yields a
+`Call` and is sent the result. So calls do not nest in Python, however deep they are in KRL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, TypeVar
+
+from grammar import ast
+from grammar.scopes import Scope
+from grammar.symbols import Space, Symbol
+from grammar.types import Type
+from interp.builtins import Randomness
+from interp.events import Sink
+from interp.faults import BudgetExhausted, LinkError
+from interp.program import CheckedProgram, Limits, Routine, Unit
+from interp.requests import At, Code, Request, Slice
+from interp.tree.places import Local, Place, cells
+
+__all__ = ["Call", "Frame", "Guard", "Handed", "Run", "Steps", "at_once"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call:
+    """A routine is to be called with its parameters; what is sent back is its result."""
+
+    routine: Routine
+    variables: dict[Symbol, Place]
+
+
+_T = TypeVar("_T")
+#: What execution is: asks and calls on the way, and has a result.
+Steps = Generator[Request | Call, Any, _T]
+
+
+@dataclass(slots=True, eq=False)
+class Frame:
+    """A routine that runs, or an action or condition in the frame it was made in.
+
+    ``variables`` are parameters and local data; they are forgotten when the routine ends, so that
+    an action that outlives it finds nothing. ``line`` is that of the statement that began last.
+    """
+
+    unit: Unit
+    name: str
+    scope: Scope
+    variables: dict[Symbol, Place]
+    result: Type | None
+    line: int
+    cells: int = 0
+    has_begun: bool = False
+
+    def for_code(self, line: int) -> Frame:
+        """A frame for a piece of this routine that is run apart."""
+        return Frame(self.unit, self.name, self.scope, self.variables, None, line)
+
+
+@dataclass(frozen=True, slots=True)
+class Handed:
+    """What a `Code` stands for."""
+
+    node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
+    frame: Frame
+
+
+class Guard(Enum):
+    """Whether ON_ERROR_PROCEED holds: for the statement that begins next, or for the one now."""
+
+    OFF = 0
+    NEXT = 1
+    NOW = 2
+
+
+class Run:
+    """The state of a program apart from its frames.
+
+    ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold.
+    """
+
+    def __init__(
+        self,
+        program: CheckedProgram,
+        limits: Limits | None = None,
+        sink: Sink | None = None,
+        random: Callable[[], float] | None = None,
+    ) -> None:
+        self.program = program
+        self.limits = limits or Limits()
+        self.sink = sink
+        self.random = random or Randomness()
+        self.data: dict[Symbol, Local] = {}
+        self.depth = 0
+        self.cells = 0
+        self.guard = Guard.OFF
+        self._begun = 0
+        self._since = 0
+        self._sizes: dict[Routine, int] = {}
+        self._codes: list[Handed] = []
+        self._numbers: dict[tuple[ast.Node, Frame], int] = {}
+
+    def at(self, frame: Frame) -> At:
+        """Where the program is."""
+        return At(frame.unit.module.path, frame.line, self.depth)
+
+    def begin(self, frame: Frame, line: int) -> Steps[None]:
+        """A statement begins: it is counted, told, and time may pass before it."""
+        frame.line, frame.has_begun = line, True
+        self.guard = Guard.NOW if self.guard is Guard.NEXT else Guard.OFF
+        if self._begun >= self.limits.statements:
+            raise BudgetExhausted("the program does not end")
+        if self._since >= self.limits.per_slice:
+            yield Slice(self.at(frame))
+        self._begun += 1
+        self._since += 1
+        if self.sink is not None:
+            self.sink.line(self.at(frame))
+
+    def asked(self) -> None:
+        """A request was made: a new slice begins."""
+        self._since = 0
+
+    def size_of(self, routine: Routine) -> int:
+        """How many cells the parameters and local data of a routine have."""
+        size = self._sizes.get(routine)
+        if size is None:
+            size = 0
+            for space, symbol in routine.table.table.symbols():
+                found = routine.scope.own(space, symbol.key)
+                if space is Space.VALUE and found is not None:
+                    size += cells(self.program.type_of(found))
+            self._sizes[routine] = size
+        return size
+
+    def hand(
+        self,
+        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
+        frame: Frame,
+    ) -> Code:
+        """A piece of program to be run later, in this frame; always the same for the same."""
+        number = self._numbers.setdefault((node, frame), len(self._codes))
+        if number == len(self._codes):
+            self._codes.append(Handed(node, frame))
+        return Code(number)
+
+    def handed(self, code: Code) -> Handed:
+        """What a `Code` stands for."""
+        return self._codes[code.number]
+
+
+def at_once(steps: Steps[_T]) -> _T:
+    """The result of what needs no world; raises `LinkError` where it does."""
+    try:
+        next(steps)
+    except StopIteration as done:
+        result: _T = done.value
+        return result
+    raise LinkError("an initial value needs a running program")

@@ -1,0 +1,284 @@
+"""Statements: control flow by exceptions, as in the paper, and all that is no motion.
+
+GOTO, EXIT and RETURN are raised where they stand and caught where they lead. RESUME is raised by
+the executor in the statement that the program comes back to, which then ends. A fault ends the
+statement that began last where ON_ERROR_PROCEED holds, and the program where it does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from grammar import ast
+from grammar.types import INT, Array
+from interp import requests
+from interp.faults import Fault, LinkError, fault
+from interp.operators import apply
+from interp.requests import Poll, Wait, Write
+from interp.tree.motions import Motions
+from interp.tree.places import fresh, of_type
+from interp.tree.run import Guard, Steps, at_once
+from interp.values import Value, known
+
+__all__ = ["Resumed", "Statements"]
+
+
+@dataclass(slots=True, eq=False)
+class _Goto(Exception):  # none of these is an error
+    """GOTO on its way to the block that has the label [CTL-07]."""
+
+    label: str
+
+
+class _Exit(Exception):
+    """EXIT on its way to the innermost loop [CTL-02]."""
+
+
+@dataclass(slots=True, eq=False)
+class _Return(Exception):
+    """RETURN on its way out of the routine [CTL-09]."""
+
+    value: Value | None
+
+
+class Resumed(Exception):
+    """The program comes back here by RESUME, and goes on behind the statement [INT-10]."""
+
+
+class Statements(Motions):
+    """Executes the statements of one frame."""
+
+    def routine(self, node: ast.Routine) -> Steps[Value | None]:
+        """Execute a routine to its end; gives its result."""
+        self._declare(node)
+        value: Value | None = None
+        try:
+            yield from self._block(node.body)
+            if node.result is not None:
+                raise fault("no_result")
+        except _Return as returned:
+            value = returned.value
+        except _Goto as jump:
+            raise LinkError(f"the label {jump.label} is not there to go to") from None
+        if self.run.sink is not None:
+            self.run.sink.leave(self.at(), self.frame.name)
+        return value
+
+    def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> Steps[None]:
+        """Execute what an interrupt, a trigger or a cyclic signal does."""
+        yield from self._statement(node)
+
+    def _declare(self, node: ast.Routine) -> None:
+        """Make the local data, which has no value at first."""
+        for statement in node.body:
+            if isinstance(statement, ast.VariableDeclaration):
+                for declarator in statement.declarators:
+                    self._declare_one(declarator)
+
+    def _declare_one(self, declarator: ast.Declarator) -> None:
+        found = self.frame.unit.found(declarator.name)
+        if found is None or found.symbol in self.frame.variables:  # a parameter
+            return
+        place = fresh(self.run.program.type_of(found), declarator.name.key)
+        self.frame.variables[found.symbol] = place
+        if declarator.value is not None:
+            place.set(at_once(self.value(declarator.value, place.type)))
+
+    # ----------------------------------------------------------------------- blocks
+
+    def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
+        place = 0
+        while place < len(body):
+            try:
+                yield from self._statement(body[place])
+                place += 1
+            except _Goto as jump:
+                place = _place_of(jump.label, body)
+                if place < 0:
+                    raise
+
+    def _statement(self, node: ast.Statement) -> Steps[None]:
+        rule = _RULES.get(type(node))
+        if rule is None:  # a declaration or a label
+            return
+        try:
+            try:
+                yield from self._begin(node)
+                yield from rule(self, node)
+            except Fault as error:
+                if self.run.guard is not Guard.NOW:
+                    raise
+                self.run.guard = Guard.OFF
+                yield Write(self.at(), ("$ERR", "NUMBER"), error.number or 1)
+        except Resumed:
+            return
+
+    def _begin(self, node: ast.Node) -> Steps[None]:
+        return self.run.begin(self.frame, self.frame.unit.line(node))
+
+    def _branch(self, way: int) -> None:
+        if self.run.sink is not None:
+            self.run.sink.branch(self.at(), way)
+
+    def _is_true(self, condition: ast.Expression) -> Steps[bool]:
+        """A condition that the way depends on."""
+        found = yield from self.truth(condition)
+        self._branch(int(found))
+        return found
+
+    # ----------------------------------------------------------------------- control flow
+
+    def _if(self, node: ast.If) -> Steps[None]:
+        if (yield from self._is_true(node.condition)):
+            yield from self._block(node.body)
+        elif node.otherwise is not None:
+            yield from self._block(node.otherwise)
+
+    def _switch(self, node: ast.Switch) -> Steps[None]:
+        selector = yield from self.value(node.selector)
+        wanted = getattr(selector, "type", INT)
+        for number, branch in enumerate(node.branches, start=1):
+            for label in branch.values:
+                value = yield from self.value(label, wanted)
+                if apply("==", selector, value):
+                    self._branch(number)
+                    yield from self._block(branch.body)
+                    return
+        self._branch(0)
+        yield from self._block(node.default or ())
+
+    def _for(self, node: ast.For) -> Steps[None]:
+        step = 1 if node.step is None else (yield from self.integer(node.step))
+        counter = self.variable(node.counter)
+        yield from self.store(counter, (yield from self.integer(node.first)))
+        last = yield from self.integer(node.last)
+        try:
+            while True:
+                value = known((yield from self.read(counter)))
+                if apply(">" if step > 0 else "<", value, last):
+                    return
+                yield from self._block(node.body)
+                yield from self._begin(node)
+                value = known((yield from self.read(counter)))
+                yield from self.store(counter, apply("+", value, step))
+        except _Exit:
+            return
+
+    def _while(self, node: ast.While) -> Steps[None]:
+        try:
+            while (yield from self._is_true(node.condition)):
+                yield from self._block(node.body)
+                yield from self._begin(node)
+        except _Exit:
+            return
+
+    def _repeat(self, node: ast.Repeat) -> Steps[None]:
+        is_done = False
+        try:
+            while not is_done:
+                yield from self._block(node.body)
+                yield from self._begin(node.condition)
+                is_done = yield from self._is_true(node.condition)
+        except _Exit:
+            return
+
+    def _loop(self, node: ast.Loop) -> Steps[None]:
+        try:
+            while True:
+                yield from self._block(node.body)
+                yield from self._begin(node)
+        except _Exit:
+            return
+
+    def _exit(self, _node: ast.Exit) -> Steps[None]:
+        raise _Exit
+        yield
+
+    def _goto(self, node: ast.Goto) -> Steps[None]:
+        raise _Goto(node.label.key)
+        yield
+
+    def _return(self, node: ast.Return) -> Steps[None]:
+        type_ = self.frame.result
+        if node.value is None or type_ is None:
+            raise _Return(None)
+        value = yield from self.value(node.value, type_)
+        if isinstance(type_, Array) and isinstance(value, str):
+            made = fresh(type_, "")
+            made.set(value)
+            raise _Return(made.get())
+        raise _Return(of_type(type_, value))
+
+    # ----------------------------------------------------------------------- plain statements
+
+    def _assignment(self, node: ast.Assignment) -> Steps[None]:
+        place = yield from self.place(node.target)
+        yield from self.store(place, (yield from self.value(node.value, place.type)))
+
+    def _call(self, node: ast.CallStatement) -> Steps[None]:
+        yield from self.call(node.call)
+
+    def _halt(self, _node: ast.Halt) -> Steps[None]:
+        yield requests.Halt(self.at())
+
+    def _continue(self, _node: ast.Continue) -> Steps[None]:
+        yield requests.Continue(self.at())
+
+    def _proceed(self, _node: ast.OnErrorProceed) -> Steps[None]:
+        self.run.guard = Guard.NEXT
+        return
+        yield
+
+    def _confirm(self, node: ast.Confirm) -> Steps[None]:
+        yield requests.Confirm(self.at(), (yield from self.integer(node.number)))
+
+    def _wait_for(self, node: ast.WaitFor) -> Steps[None]:
+        """Asked before each look at the condition, so that time passes between two [CTL-12]."""
+        yield Poll(self.at(), is_first=True)
+        while not (yield from self.truth(node.condition)):
+            yield Poll(self.at(), is_first=False)
+
+    def _wait_seconds(self, node: ast.WaitSeconds) -> Steps[None]:
+        yield Wait(self.at(), (yield from self.real(node.duration)))
+
+
+def _place_of(label: str, body: tuple[ast.Statement, ...]) -> int:
+    """Where a label stands in a block, or -1."""
+    for place, statement in enumerate(body):
+        if isinstance(statement, ast.Label) and statement.name.key == label:
+            return place
+    return -1
+
+
+_Rule = Callable[[Statements, Any], Steps[None]]
+_RULES: Mapping[type[Any], _Rule] = {
+    ast.Assignment: Statements._assignment,
+    ast.CallStatement: Statements._call,
+    ast.If: Statements._if,
+    ast.For: Statements._for,
+    ast.While: Statements._while,
+    ast.Repeat: Statements._repeat,
+    ast.Loop: Statements._loop,
+    ast.Switch: Statements._switch,
+    ast.Exit: Statements._exit,
+    ast.Goto: Statements._goto,
+    ast.Return: Statements._return,
+    ast.Halt: Statements._halt,
+    ast.Continue: Statements._continue,
+    ast.OnErrorProceed: Statements._proceed,
+    ast.Confirm: Statements._confirm,
+    ast.WaitFor: Statements._wait_for,
+    ast.WaitSeconds: Statements._wait_seconds,
+    ast.SignalOn: Statements.signal_on,
+    ast.SignalOff: Statements.signal_off,
+    ast.Motion: Statements.motion,
+    ast.EmilyMotion: Statements.emily_motion,
+    ast.SplineBlock: Statements.spline_block,
+    ast.Brake: Statements.brake,
+    ast.Resume: Statements.resume,
+    ast.InterruptDeclaration: Statements.interrupt_declaration,
+    ast.InterruptSwitch: Statements.interrupt_switch,
+    ast.Trigger: Statements.trigger,
+}

@@ -1,0 +1,256 @@
+"""The port: requests at any depth, what is entered, evaluated and unwound."""
+
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+import pytest
+
+from interp import requests
+from interp.events import Recorder
+from interp.faults import Fault, fault
+from interp.requests import (
+    Code,
+    DeclareInterrupt,
+    End,
+    Fail,
+    Halt,
+    Move,
+    MoveSpline,
+    Path,
+    Poll,
+    Read,
+    Resume,
+    SetTrigger,
+    SplineRange,
+    SplineStop,
+    SwitchSignal,
+    Wait,
+    Write,
+)
+from interp.tree import TreeExecutor
+
+Run = Callable[..., Any]
+Make = Callable[..., TreeExecutor]
+
+INTERRUPT = (
+    "DEF main()\nINT I\nI=1\nINTERRUPT DECL 3 WHEN $IN[1]==TRUE DO Stop(I)\n"
+    "Work()\nI=I\nEND\n"
+    "DEF Work()\nHALT\nHALT\nEND\n"
+    "DEF Stop(A)\nINT A\nA=A+1\nWAIT SEC 0\nRESUME\nA=99\nEND\n"
+)
+
+
+def test_request_within_an_expression(make: Make) -> None:
+    """A function within an expression may ask; its caller goes on with the reply."""
+    recorder = Recorder()
+    executor = make(
+        "DEF main()\nINT I\nI=1+F()*2\nEND\nDEFFCT INT F()\nRETURN $OV_PRO\nENDFCT\n",
+        None,
+        recorder,
+    )
+    asked = executor.advance()
+    assert Read(requests.At("main.src", 6, 1), ("$OV_PRO",)) == asked
+    assert 1 == executor.depth
+    assert isinstance(executor.advance(20), End)
+    assert [41] == [one.value for one in recorder.events if one.kind == "assign"]
+
+
+def test_wait_for_polls(make: Make) -> None:
+    """WAIT FOR asks before each look at its condition [CTL-12]."""
+    executor = make("DEF main()\nWAIT FOR $IN[1]\nWAIT SEC 1\nEND\n")
+    polls = [executor.advance(), executor.advance(), executor.advance(False), executor.advance()]
+    assert [Poll, Read, Poll, Read] == [type(one) for one in polls]
+    assert [True, False] == [one.is_first for one in polls if isinstance(one, Poll)]
+    asked = executor.advance(True)
+    assert isinstance(asked, Wait)
+    assert (1.0, 3) == (asked.seconds, asked.at.line)
+
+
+def interrupted(
+    make: Make, recorder: Recorder | None = None
+) -> tuple[TreeExecutor, DeclareInterrupt, Halt]:
+    """A program that halts in a routine, with its interrupt declared."""
+    executor = make(INTERRUPT, None, recorder)
+    declared = executor.advance()
+    assert isinstance(declared, DeclareInterrupt)
+    halted = executor.advance()
+    assert isinstance(halted, Halt)
+    return executor, declared, halted
+
+
+def test_condition_is_evaluated(make: Make) -> None:
+    """A condition is looked at without a request; what it cannot read is a fault."""
+    executor, declared, _ = interrupted(make)
+    assert executor.evaluate(declared.condition, lambda _path: True) is True
+    assert executor.evaluate(declared.condition, lambda _path: False) is False
+
+    def unreadable(_path: Path) -> NoReturn:
+        raise Fault("x", "y")
+
+    with pytest.raises(Fault):
+        executor.evaluate(declared.condition, unreadable)
+
+
+def test_enter_asks_again(make: Make) -> None:
+    """After an action the request is asked again that was open before."""
+    executor, declared, halted = interrupted(make)
+    executor.enter(declared.action)
+    assert isinstance(executor.advance(), Wait)
+    assert 2 == executor.depth
+    assert isinstance(executor.advance(), Resume)
+    assert isinstance(executor.advance(), End)  # nobody unwinds: it ends as any routine does
+    assert halted == executor.advance()
+    again = executor.advance()
+    assert (Halt, 10) == (type(again), again.at.line)
+    assert isinstance(executor.advance(), End)
+
+
+def test_unwind(make: Make) -> None:
+    """RESUME leaves the action and all routines below its declaration [INT-10]."""
+    recorder = Recorder()
+    executor, declared, _ = interrupted(make, recorder)
+    executor.enter(declared.action)
+    assert [Wait, Resume] == [type(executor.advance()), type(executor.advance())]
+    executor.unwind(0)
+    assert 0 == executor.depth
+    assert isinstance(executor.advance(), End)
+    assigned = [(one.path, one.value) for one in recorder.events if one.kind == "assign"]
+    assert [(("I",), 1), (("A",), 2), (("I",), 2)] == assigned
+
+
+def test_enter_after_unwind(make: Make) -> None:
+    """An action may be entered before the program goes on behind RESUME."""
+    executor, declared, _ = interrupted(make)
+    executor.enter(declared.action)
+    assert [Wait, Resume] == [type(executor.advance()), type(executor.advance())]
+    executor.unwind(0)
+    executor.enter(declared.action)
+    assert [Wait, Resume, End] == [type(executor.advance()) for _ in range(3)]
+    ended = executor.advance()
+    assert (End, 6) == (type(ended), ended.at.line)
+
+
+def test_action_may_be_interrupted(make: Make) -> None:
+    """Actions are entered above actions, each with its own open request."""
+    executor, declared, halted = interrupted(make)
+    executor.enter(declared.action)
+    waiting = executor.advance()
+    executor.enter(declared.action)
+    assert isinstance(executor.advance(), Wait)
+    assert isinstance(executor.advance(), Resume)
+    assert isinstance(executor.advance(), End)
+    assert waiting == executor.advance()
+    assert isinstance(executor.advance(), Resume)
+    assert isinstance(executor.advance(), End)
+    assert halted == executor.advance()
+
+
+def test_action_without_its_routine(make: Make) -> None:
+    """An action that uses a variable of a routine that has ended faults."""
+    executor = make(
+        "DEF main()\nSub()\nHALT\nEND\n"
+        "DEF Sub()\nINT K\nK=1\nGLOBAL INTERRUPT DECL 4 WHEN $IN[1] DO Use(K)\nEND\n"
+        "DEF Use(A:IN)\nINT A\nEND\n"
+    )
+    declared = executor.advance()
+    assert isinstance(declared, DeclareInterrupt)
+    assert isinstance(executor.advance(), Halt)
+    executor.enter(declared.action)
+    failed = executor.advance()
+    assert isinstance(failed, Fail)
+    assert fault("uninitialised") == failed.fault
+
+
+def test_motion(go: Run) -> None:
+    """A motion has its target, its values and words as written, evaluated."""
+    ran = go(
+        "DEF main()\nPOS P\nP={X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP P C_PTP\nP.X=9\n"
+        "LIN_REL {X 5} #TOOL\nCIRC P,P,CA 90\nSLIN P WITH $VEL.CP=1+1 C_SPL\nEND\n"
+    )
+    ptp, rel, circ, slin = ran.asked(Move)
+    assert ("PTP", 1.0, ("C_PTP",)) == (ptp.kind, ptp.target.get("X"), ptp.criteria)
+    assert ("LIN_REL", 5.0, "TOOL") == (rel.kind, rel.target.get("X"), rel.reference)
+    assert (9.0, 90.0) == (circ.auxiliary.get("X"), circ.angle)
+    assert ((("$VEL", "CP"), 2.0),) == slin.values
+
+
+def test_spline(go: Run) -> None:
+    """A spline block is one request with all that stands in it."""
+    ran = go(
+        "DEF main()\nPOS P\nP={X 1,Y 2,Z 3,A 0,B 0,C 0}\nSPLINE WITH $VEL.CP=0.5\nSPL P\n"
+        "CONST_VEL START=5 ONSTART\nTRIGGER WHEN PATH=2 DELAY=0 DO $OUT[1]=TRUE\nSLIN P\n"
+        "STOP WHEN PATH=1 IF $IN[2]\nSPL P\nCONST_VEL END=-1\nENDSPLINE C_SPL\nEND\n"
+    )
+    (block,) = ran.asked(MoveSpline)
+    assert [Move, SplineRange, SetTrigger, Move, SplineStop, Move, SplineRange] == [
+        type(item) for item in block.items
+    ]
+    assert (4, 5, True) == (block.at.line, block.items[0].at.line, block.is_approximated)
+    assert (("$OUT", 1), True) == block.items[2].output
+
+
+def test_trigger(make: Make) -> None:
+    """What a trigger does is entered when it fires, with the values of that moment."""
+    executor = make(
+        "DEF main()\nTRIGGER WHEN DISTANCE=1 DELAY=-20 DO COUNT=COUNT+1\n"
+        "TRIGGER WHEN PATH=-10 DELAY=0 DO Sub() PRIO=-1\nHALT\nEND\nDEF Sub()\nEND\n",
+        main_dat="DEFDAT main\nINT COUNT=1\nENDDAT\n",
+    )
+    first, second = executor.advance(), executor.advance()
+    assert isinstance(first, SetTrigger)
+    assert isinstance(second, SetTrigger)
+    assert ("DISTANCE", 1.0, -20.0, None, None) == (
+        *(first.place_kind, first.place, first.delay),
+        *(first.output, first.priority),
+    )
+    assert ("PATH", -10.0, -1) == (second.place_kind, second.place, second.priority)
+    halted = executor.advance()
+    for trigger in (first, second):
+        executor.enter(trigger.action)
+        assert isinstance(executor.advance(), End)
+        assert halted == executor.advance()
+
+
+def test_cyclic_signal(make: Make) -> None:
+    """What ANIN ON computes is entered again and again [IOT-05]."""
+    executor = make(
+        "DEF main()\nANIN ON PRESSURE=2.0*SENSOR+1.0\nANIN OFF SENSOR\nEND\n",
+        main_dat="DEFDAT main\nREAL PRESSURE\nSIGNAL SENSOR $ANIN[1]\nENDDAT\n",
+    )
+    on = executor.advance()
+    assert isinstance(on, SwitchSignal)
+    assert ("ANIN", True, "SENSOR") == (on.keyword, on.is_on, on.name)
+    assert isinstance(on.cycle, Code)
+    executor.enter(on.cycle)
+    assert Read(requests.At("main.src", 2, 0), ("$ANIN", 1)) == executor.advance()
+    assert isinstance(executor.advance(0.5), End)
+    assert on == executor.advance()
+    off = executor.advance()
+    assert isinstance(off, SwitchSignal)
+    assert (False, "SENSOR") == (off.is_on, off.name)
+
+
+def test_values_are_not_shared(make: Make) -> None:
+    """What was handed over does not change with the program's variables."""
+    executor = make("DEF main()\nFRAME F\nF={X 1}\n$TOOL=F\nF.X=2\nHALT\nEND\n")
+    written = executor.advance()
+    assert isinstance(written, Write)
+    executor.advance()
+    assert 1.0 == written.value.get("X")
+
+
+def test_unwind_while_a_fault_is_noted(make: Make) -> None:
+    """RESUME comes back behind the statement itself, not behind the loop around it."""
+    recorder = Recorder()
+    executor = make(
+        "DEF main()\nINT I,A[2]\nFOR I=3 TO 4\nON_ERROR_PROCEED\nA[I]=1\nA[I-2]=I\nENDFOR\nEND\n",
+        None,
+        recorder,
+    )
+    assert isinstance(executor.advance(), Write)
+    executor.unwind(0)
+    assert isinstance(executor.advance(), Write)
+    assert isinstance(executor.advance(), End)
+    assert [3, 4] == [
+        one.value for one in recorder.events if one.kind == "assign" and one.path[0] == "A"
+    ]
