@@ -14,6 +14,8 @@ from grammar.recognizer import Configuration, Recognizer, State
 
 __all__ = ["is_ambiguous"]
 
+_MOST_NODES = 200_000
+
 _Node = tuple[int, Configuration, bool]  # tokens read, where we are, whether a token was just read
 
 
@@ -49,6 +51,8 @@ def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> 
                 before[shifted].add(node)
                 reached.add(shifted)
         layer = reached
+        if len(before) > _MOST_NODES:
+            return True  # nothing with one reading needs so many ways
     alive = set(layer)
     todo = list(layer)
     while todo:

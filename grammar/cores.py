@@ -19,8 +19,10 @@ program, and `grammar.derivation`, which remembers how it is one.
 
 from __future__ import annotations
 
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable
+from itertools import islice
 
 __all__ = ["Automaton", "Configuration", "Core", "Stack", "Tail"]
 
@@ -118,6 +120,9 @@ class Automaton(ABC):
 
     #: How a core keeps its configurations: as a set, or as a tuple where their order has a meaning.
     _kernel: Callable[[Iterable[Configuration]], Collection[Configuration]] = frozenset
+    #: How many ways to read a token are followed. More than that is a grammar with so many readings
+    #: that nobody wants it; a token that would need them is not read. No limit by default.
+    most_ways = sys.maxsize - 1
 
     def __init__(self, line_kind: int, passing: Collection[int] = frozenset()) -> None:
         self.line_kind = line_kind
@@ -145,9 +150,10 @@ class Automaton(ABC):
             return known, tail
         pushed = core.pushes.get(kind)
         if pushed is None:
-            targets = self._kernel(self._targets(core, kind))
-            if not targets:
+            ways = list(islice(self._targets(core, kind), self.most_ways + 1))
+            if not ways or len(ways) > self.most_ways:
                 return None
+            targets = self._kernel(ways)
             following = self._core(targets)
             frames: tuple[int, ...] = ()
             if kind == self.line_kind or any(s.depth > _DEEP for _, s in targets):

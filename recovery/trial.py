@@ -21,6 +21,8 @@ __all__ = ["Outcome", "Trial", "edited"]
 
 
 _MOST_REMEMBERED = 160
+# An edit can give a line exponentially many readings; what needs more than these is no good edit.
+_MOST_WAYS = 2_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +54,11 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
                 network = replace(network, lexer=lexer)
     except (GrammarError, KeyError):
         return None
-    return None if is_left_recursive(network) else Recognizer(grammar, network)
+    if is_left_recursive(network):
+        return None
+    found = Recognizer(grammar, network)
+    found.most_ways = _MOST_WAYS
+    return found
 
 
 def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:

@@ -366,3 +366,19 @@ def test_deep_blocks_fail_where_they_should() -> None:
         _, index = recognizer.run(recognizer.start, kinds)
         ahead = recognizer.kinds("\n".join([*broken[:place], ""]))
         assert index == len(ahead) - 1
+
+
+def test_ways_to_read_can_be_limited() -> None:
+    """Where the ways to read double with each token, a limit ends it; without, all are followed."""
+    grammar = read(
+        "grammar T;\ns : x EOF ;\nx : A y B | A z C | B ;\ny : x ;\nz : x ;\n"
+        "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\n"
+    )
+    text = "a" * 10 + "b" + "bc" * 5
+    assert Recognizer(grammar).accepts(text)
+    limited = Recognizer(grammar)
+    limited.most_ways = 100
+    _, failed = limited.run(limited.start, limited.kinds(text))
+    assert failed is not None
+    assert 3 < failed < 10
+    assert limited.accepts("aabbc")
