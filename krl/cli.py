@@ -10,6 +10,7 @@ from krl import door
 from krl.commands import bench, construct, corpus, growth, recover, robot
 from krl.commands.check import check
 from krl.commands.format import format_programs
+from krl.commands.machine import assemble_file, disassemble_image
 
 __all__ = ["app", "main"]
 
@@ -26,6 +27,8 @@ app.command("format")(format_programs)
 app.command("growth")(growth.growth)
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")
+app.command("asm")(assemble_file)
+app.command("disasm")(disassemble_image)
 app.add_typer(robot.app, name="robot")
 
 

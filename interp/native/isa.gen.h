@@ -1,0 +1,261 @@
+/* Made from interp/bytecode/instructions.tsv by python -m interp.bytecode.isa --write. */
+#ifndef KRL_ISA_GEN_H
+#define KRL_ISA_GEN_H
+
+#define KRL_IMAGE_MAGIC "KRLI"
+#define KRL_IMAGE_FORMAT 1
+#define KRL_MAX_CELLS 1048576
+
+/* Kinds of operands, as bits of a byte each: the first operand lowest. */
+enum krl_operand {
+    KRL_OPERAND_INT = 1, /* a number with sign */
+    KRL_OPERAND_REAL = 2, /* the bits of a single */
+    KRL_OPERAND_BOOL = 3, /* 0 or 1 */
+    KRL_OPERAND_CHAR = 4, /* a code, 0 to 255 */
+    KRL_OPERAND_COUNT = 5, /* a number without sign */
+    KRL_OPERAND_LINE = 6, /* a line of the source file, from 1 on */
+    KRL_OPERAND_TARGET = 7, /* an instruction of the same code object: its first word, counted from 0 */
+    KRL_OPERAND_LOCAL = 8, /* a cell of the frame */
+    KRL_OPERAND_DATA = 9, /* a cell of the data lists */
+    KRL_OPERAND_TYPE = 10, /* a type of the program */
+    KRL_OPERAND_TEXT = 11, /* a text of the program */
+    KRL_OPERAND_CODE = 12, /* a code object */
+    KRL_OPERAND_ASK = 13, /* an entry of the table of requests */
+    KRL_OPERAND_BUILTIN = 14, /* an entry of the table of predefined functions */
+    KRL_OPERAND_FAULT = 15, /* a fault of the catalogue, by its code */
+};
+
+/* X(name, number of operands, kinds of operands), in the order of the opcodes. */
+#define KRL_OPCODES(X) \
+    X(LINE, 2, 0x00000706) \
+    X(AT, 2, 0x00000706) \
+    X(JUMP, 1, 0x00000007) \
+    X(JUMP_IF, 1, 0x00000007) \
+    X(JUMP_UNLESS, 1, 0x00000007) \
+    X(CASE, 2, 0x00000701) \
+    X(CALL, 1, 0x0000000c) \
+    X(RETURN, 0, 0x00000000) \
+    X(RETURN_VALUE, 0, 0x00000000) \
+    X(ASK, 1, 0x0000000d) \
+    X(BUILTIN, 1, 0x0000000e) \
+    X(PROCEED, 0, 0x00000000) \
+    X(FAIL, 1, 0x0000000f) \
+    X(UNLINKED, 1, 0x0000000b) \
+    X(PUSH_INT, 1, 0x00000001) \
+    X(PUSH_REAL, 1, 0x00000002) \
+    X(PUSH_BOOL, 1, 0x00000003) \
+    X(PUSH_CHAR, 1, 0x00000004) \
+    X(PUSH_ENUM, 2, 0x0000050a) \
+    X(PUSH_NOTHING, 0, 0x00000000) \
+    X(PUSH_NO_VIEW, 2, 0x0000050a) \
+    X(DROP, 0, 0x00000000) \
+    X(LOAD_LOCAL, 1, 0x00000008) \
+    X(LOAD_DATA, 1, 0x00000009) \
+    X(STORE_LOCAL, 1, 0x00000008) \
+    X(STORE_DATA, 1, 0x00000009) \
+    X(REF_LOCAL, 2, 0x00000a08) \
+    X(REF_DATA, 2, 0x00000a09) \
+    X(LOAD_REF, 1, 0x00000008) \
+    X(LOAD, 0, 0x00000000) \
+    X(STORE, 0, 0x00000000) \
+    X(MEMBER, 2, 0x00000a05) \
+    X(INDEX, 1, 0x0000000a) \
+    X(INDEX_LOCAL, 2, 0x00000a08) \
+    X(INDEX_DATA, 2, 0x00000a09) \
+    X(INDEX_VIEW, 1, 0x00000008) \
+    X(ELEMENT_LOCAL, 2, 0x00000a08) \
+    X(ELEMENT_DATA, 2, 0x00000a09) \
+    X(VIEW, 1, 0x0000000a) \
+    X(LOAD_VIEW, 1, 0x00000008) \
+    X(ROW, 2, 0x0000050a) \
+    X(ROW_VIEW, 2, 0x00000508) \
+    X(COPY, 1, 0x0000000a) \
+    X(CLEAR, 1, 0x0000000a) \
+    X(FILL_POSE, 2, 0x00000a0a) \
+    X(FILL_ARRAY, 2, 0x0000050a) \
+    X(SET_TEXT, 1, 0x0000000b) \
+    X(ADD_INT, 0, 0x00000000) \
+    X(SUB_INT, 0, 0x00000000) \
+    X(MUL_INT, 0, 0x00000000) \
+    X(DIV_INT, 0, 0x00000000) \
+    X(NEG_INT, 0, 0x00000000) \
+    X(ADD_REAL, 0, 0x00000000) \
+    X(SUB_REAL, 0, 0x00000000) \
+    X(MUL_REAL, 0, 0x00000000) \
+    X(DIV_REAL, 0, 0x00000000) \
+    X(NEG_REAL, 0, 0x00000000) \
+    X(EQ_INT, 0, 0x00000000) \
+    X(NE_INT, 0, 0x00000000) \
+    X(LT_INT, 0, 0x00000000) \
+    X(GT_INT, 0, 0x00000000) \
+    X(LE_INT, 0, 0x00000000) \
+    X(GE_INT, 0, 0x00000000) \
+    X(EQ_REAL, 0, 0x00000000) \
+    X(NE_REAL, 0, 0x00000000) \
+    X(LT_REAL, 0, 0x00000000) \
+    X(GT_REAL, 0, 0x00000000) \
+    X(LE_REAL, 0, 0x00000000) \
+    X(GE_REAL, 0, 0x00000000) \
+    X(EQ_BOOL, 0, 0x00000000) \
+    X(NE_BOOL, 0, 0x00000000) \
+    X(EQ_ENUM, 0, 0x00000000) \
+    X(NE_ENUM, 0, 0x00000000) \
+    X(NOT_BOOL, 0, 0x00000000) \
+    X(AND_BOOL, 0, 0x00000000) \
+    X(OR_BOOL, 0, 0x00000000) \
+    X(EXOR_BOOL, 0, 0x00000000) \
+    X(NOT_BITS, 0, 0x00000000) \
+    X(AND_BITS, 0, 0x00000000) \
+    X(OR_BITS, 0, 0x00000000) \
+    X(EXOR_BITS, 0, 0x00000000) \
+    X(COMPOSE, 2, 0x00000a0a) \
+    X(INT_TO_REAL, 0, 0x00000000) \
+    X(REAL_TO_INT, 0, 0x00000000) \
+    X(CHAR_TO_INT, 0, 0x00000000) \
+    X(INT_TO_CHAR, 0, 0x00000000) \
+    X(ADD_CONSTANT, 1, 0x00000001) \
+    X(UNLESS_EQ_INT, 1, 0x00000007) \
+    X(UNLESS_NE_INT, 1, 0x00000007) \
+    X(UNLESS_LT_INT, 1, 0x00000007) \
+    X(UNLESS_GT_INT, 1, 0x00000007) \
+    X(UNLESS_LE_INT, 1, 0x00000007) \
+    X(UNLESS_GE_INT, 1, 0x00000007) \
+    X(UNLESS_LT_REAL, 1, 0x00000007) \
+    X(UNLESS_GT_REAL, 1, 0x00000007) \
+    X(UNLESS_LE_REAL, 1, 0x00000007) \
+    X(UNLESS_GE_REAL, 1, 0x00000007) \
+    X(FOR_LOCAL, 4, 0x07010808) \
+    X(FOR_DATA, 4, 0x07010809) \
+    X(TELL_LOCAL, 2, 0x00000a08) \
+    X(TELL_DATA, 2, 0x00000a09) \
+    X(TELL_REF, 3, 0x00050a08) \
+    X(TELL, 2, 0x0000050a) \
+    X(TELL_BRANCH, 1, 0x00000001) \
+
+enum krl_opcode {
+    KRL_LINE = 0, /* -- */
+    KRL_AT = 1, /* -- */
+    KRL_JUMP = 2, /* -- */
+    KRL_JUMP_IF = 3, /* BOOL -- */
+    KRL_JUMP_UNLESS = 4, /* BOOL -- */
+    KRL_CASE = 5, /* t -- t */
+    KRL_CALL = 6, /* arguments -- result */
+    KRL_RETURN = 7, /* -- */
+    KRL_RETURN_VALUE = 8, /* t -- */
+    KRL_ASK = 9, /* inputs -- result */
+    KRL_BUILTIN = 10, /* inputs -- result */
+    KRL_PROCEED = 11, /* -- */
+    KRL_FAIL = 12, /* -- */
+    KRL_UNLINKED = 13, /* -- */
+    KRL_PUSH_INT = 14, /* -- INT */
+    KRL_PUSH_REAL = 15, /* -- REAL */
+    KRL_PUSH_BOOL = 16, /* -- BOOL */
+    KRL_PUSH_CHAR = 17, /* -- CHAR */
+    KRL_PUSH_ENUM = 18, /* -- ENUM */
+    KRL_PUSH_NOTHING = 19, /* -- nothing */
+    KRL_PUSH_NO_VIEW = 20, /* -- [E] */
+    KRL_DROP = 21, /* t -- */
+    KRL_LOAD_LOCAL = 22, /* -- t */
+    KRL_LOAD_DATA = 23, /* -- t */
+    KRL_STORE_LOCAL = 24, /* t -- */
+    KRL_STORE_DATA = 25, /* t -- */
+    KRL_REF_LOCAL = 26, /* -- @T */
+    KRL_REF_DATA = 27, /* -- @T */
+    KRL_LOAD_REF = 28, /* -- @T */
+    KRL_LOAD = 29, /* @t -- t */
+    KRL_STORE = 30, /* @t t -- */
+    KRL_MEMBER = 31, /* @S -- @T */
+    KRL_INDEX = 32, /* @A INT… -- @E */
+    KRL_INDEX_LOCAL = 33, /* INT… -- @E */
+    KRL_INDEX_DATA = 34, /* INT… -- @E */
+    KRL_INDEX_VIEW = 35, /* INT… -- @E */
+    KRL_ELEMENT_LOCAL = 36, /* INT… -- t */
+    KRL_ELEMENT_DATA = 37, /* INT… -- t */
+    KRL_VIEW = 38, /* @A -- [E] */
+    KRL_LOAD_VIEW = 39, /* -- [E] */
+    KRL_ROW = 40, /* @A INT… -- [E] */
+    KRL_ROW_VIEW = 41, /* INT… -- [E] */
+    KRL_COPY = 42, /* @T @T -- */
+    KRL_CLEAR = 43, /* @T -- */
+    KRL_FILL_POSE = 44, /* @T @S -- */
+    KRL_FILL_ARRAY = 45, /* [E] [E] -- */
+    KRL_SET_TEXT = 46, /* [CHAR] -- */
+    KRL_ADD_INT = 47, /* INT INT -- INT */
+    KRL_SUB_INT = 48, /* INT INT -- INT */
+    KRL_MUL_INT = 49, /* INT INT -- INT */
+    KRL_DIV_INT = 50, /* INT INT -- INT */
+    KRL_NEG_INT = 51, /* INT -- INT */
+    KRL_ADD_REAL = 52, /* REAL REAL -- REAL */
+    KRL_SUB_REAL = 53, /* REAL REAL -- REAL */
+    KRL_MUL_REAL = 54, /* REAL REAL -- REAL */
+    KRL_DIV_REAL = 55, /* REAL REAL -- REAL */
+    KRL_NEG_REAL = 56, /* REAL -- REAL */
+    KRL_EQ_INT = 57, /* INT INT -- BOOL */
+    KRL_NE_INT = 58, /* INT INT -- BOOL */
+    KRL_LT_INT = 59, /* INT INT -- BOOL */
+    KRL_GT_INT = 60, /* INT INT -- BOOL */
+    KRL_LE_INT = 61, /* INT INT -- BOOL */
+    KRL_GE_INT = 62, /* INT INT -- BOOL */
+    KRL_EQ_REAL = 63, /* REAL REAL -- BOOL */
+    KRL_NE_REAL = 64, /* REAL REAL -- BOOL */
+    KRL_LT_REAL = 65, /* REAL REAL -- BOOL */
+    KRL_GT_REAL = 66, /* REAL REAL -- BOOL */
+    KRL_LE_REAL = 67, /* REAL REAL -- BOOL */
+    KRL_GE_REAL = 68, /* REAL REAL -- BOOL */
+    KRL_EQ_BOOL = 69, /* BOOL BOOL -- BOOL */
+    KRL_NE_BOOL = 70, /* BOOL BOOL -- BOOL */
+    KRL_EQ_ENUM = 71, /* ENUM ENUM -- BOOL */
+    KRL_NE_ENUM = 72, /* ENUM ENUM -- BOOL */
+    KRL_NOT_BOOL = 73, /* BOOL -- BOOL */
+    KRL_AND_BOOL = 74, /* BOOL BOOL -- BOOL */
+    KRL_OR_BOOL = 75, /* BOOL BOOL -- BOOL */
+    KRL_EXOR_BOOL = 76, /* BOOL BOOL -- BOOL */
+    KRL_NOT_BITS = 77, /* INT -- INT */
+    KRL_AND_BITS = 78, /* INT INT -- INT */
+    KRL_OR_BITS = 79, /* INT INT -- INT */
+    KRL_EXOR_BITS = 80, /* INT INT -- INT */
+    KRL_COMPOSE = 81, /* @R @L @R -- */
+    KRL_INT_TO_REAL = 82, /* INT -- REAL */
+    KRL_REAL_TO_INT = 83, /* REAL -- INT */
+    KRL_CHAR_TO_INT = 84, /* CHAR -- INT */
+    KRL_INT_TO_CHAR = 85, /* INT -- CHAR */
+    KRL_ADD_CONSTANT = 86, /* INT -- INT */
+    KRL_UNLESS_EQ_INT = 87, /* INT INT -- */
+    KRL_UNLESS_NE_INT = 88, /* INT INT -- */
+    KRL_UNLESS_LT_INT = 89, /* INT INT -- */
+    KRL_UNLESS_GT_INT = 90, /* INT INT -- */
+    KRL_UNLESS_LE_INT = 91, /* INT INT -- */
+    KRL_UNLESS_GE_INT = 92, /* INT INT -- */
+    KRL_UNLESS_LT_REAL = 93, /* REAL REAL -- */
+    KRL_UNLESS_GT_REAL = 94, /* REAL REAL -- */
+    KRL_UNLESS_LE_REAL = 95, /* REAL REAL -- */
+    KRL_UNLESS_GE_REAL = 96, /* REAL REAL -- */
+    KRL_FOR_LOCAL = 97, /* -- */
+    KRL_FOR_DATA = 98, /* -- */
+    KRL_TELL_LOCAL = 99, /* -- */
+    KRL_TELL_DATA = 100, /* -- */
+    KRL_TELL_REF = 101, /* -- */
+    KRL_TELL = 102, /* -- */
+    KRL_TELL_BRANCH = 103, /* -- */
+    KRL_OPCODE_COUNT = 104
+};
+
+/* The catalogue of faults. */
+enum krl_fault {
+    KRL_FAULT_DIVISION_BY_ZERO = 0,
+    KRL_FAULT_OVERFLOW = 1,
+    KRL_FAULT_DOMAIN = 2,
+    KRL_FAULT_INDEX = 3,
+    KRL_FAULT_UNINITIALISED = 4,
+    KRL_FAULT_STACK = 5,
+    KRL_FAULT_NESTING = 6,
+    KRL_FAULT_INVALID = 7,
+    KRL_FAULT_INADMISSIBLE = 8,
+    KRL_FAULT_READ_ONLY = 9,
+    KRL_FAULT_OPERAND = 10,
+    KRL_FAULT_ARGUMENT = 11,
+    KRL_FAULT_NO_RESULT = 12,
+    KRL_FAULT_COUNT = 13
+};
+
+#endif

@@ -1,0 +1,148 @@
+"""No image, however damaged, does more than be refused or run to a clear end."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from contextlib import suppress
+from typing import Any
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from grammar.predefined import System
+from interp.bytecode.assembler import assemble
+from interp.bytecode.disassembler import disassemble
+from interp.bytecode.image import ImageError, read_image, write_image
+from interp.bytecode.isa import instructions
+from interp.bytecode.program import CodeKind, Program
+from interp.bytecode.verify import VerificationError, Verified, verify
+from interp.bytecode.vm import Machine
+from interp.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.program import Limits
+from interp.requests import (
+    Crash,
+    DeclareInterrupt,
+    End,
+    Fail,
+    Invoke,
+    Path,
+    Read,
+    SetTrigger,
+)
+from interp.values import Value, zero
+
+_WORD = struct.Struct("<I")
+_LIMITS = Limits(statements=300, per_slice=40, depth=8)
+_POSE = zero(System.load().types["POS"])
+
+
+def _sealed(words: list[int]) -> bytes:
+    body = b"".join(_WORD.pack(word & 0xFFFFFFFF) for word in words[4:])
+    return struct.pack("<4sIII", b"KRLI", 1, 16 + len(body), zlib.crc32(body)) + body
+
+
+def _mutations(size: int) -> st.SearchStrategy[list[tuple[int, int]]]:
+    """Places of words behind the header, and what they become."""
+    small = st.integers(-2, 40)
+    word = small | st.integers(0, len(instructions())) | st.integers(0, 2**32 - 1)
+    return st.lists(st.tuples(st.integers(5, size - 1), word), min_size=1, max_size=4)
+
+
+def _run(verified: Verified, routine: str, replies: Any) -> None:
+    """Run to the end; whatever is handed over is entered and evaluated on the way."""
+
+    def read(_path: Path) -> Value:
+        reply = next(replies)
+        if isinstance(reply, Fault):
+            raise reply
+        return reply  # type: ignore[no-any-return]
+
+    machine = Machine(verified, routine, _LIMITS)
+    request = machine.advance()
+    for _ in range(600):
+        assert not isinstance(request, Crash), request
+        if machine._final is not None:
+            break
+        reply = None
+        if isinstance(request, Read):
+            reply = next(replies)
+        elif isinstance(request, Invoke):
+            reply = (next(replies), request.arguments)
+        elif isinstance(request, DeclareInterrupt):
+            with suppress(RuntimeFailure):
+                machine.evaluate(request.condition, read)
+            machine.enter(request.action)
+        elif isinstance(request, SetTrigger):
+            machine.enter(request.action)
+        elif not isinstance(request, End | Fail) and machine.depth > 3:
+            machine.unwind(1)
+        request = machine.advance(reply)
+
+
+def _replies() -> Any:
+    """Values of all kinds, over and over."""
+    while True:
+        yield from (True, 1, 2.5, _POSE, "a", None, 7, False, 3, fault("invalid"), _POSE)
+
+
+def _checked(data: bytes) -> Program | None:
+    try:
+        program = read_image(data)
+        verified = verify(program)
+    except (ImageError, VerificationError) as error:
+        told = str(error)
+    else:
+        told = ""
+    if told:
+        assert told.isprintable()
+        return None
+    for code in program.codes:
+        if code.kind is CodeKind.ROUTINE:
+            with suppress(LinkError):
+                _run(verified, code.name, _replies())
+    return program
+
+
+def test_programs_run_to_an_end(everything: str) -> None:
+    """What the mutations begin with runs itself."""
+    assert _checked(write_image(assemble(everything))) is not None
+
+
+@settings(
+    max_examples=400,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(data=st.data())
+def test_mutated_images_do_no_harm(everything: str, data: st.DataObject) -> None:
+    """A few words changed and the checksum made right: refused, or run to an end."""
+    image = write_image(assemble(everything))
+    words = [one[0] for one in _WORD.iter_unpack(image)]
+    for place, word in data.draw(_mutations(len(words))):
+        words[place] = word
+    program = _checked(_sealed(words))
+    if program is not None:
+        assert program == assemble(disassemble(program))
+
+
+@settings(
+    max_examples=300,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(data=st.data())
+def test_mutated_instructions_do_no_harm(everything: str, data: st.DataObject) -> None:
+    """The same among the instructions, where most of what is changed is still an image."""
+    image = write_image(assemble(everything))
+    words = [one[0] for one in _WORD.iter_unpack(image)]
+    first = len(words) - 420
+    for place, word in data.draw(_mutations(420).map(_only(first))):
+        words[place] = word
+    program = _checked(_sealed(words))
+    if program is not None:
+        assert program == assemble(disassemble(program))
+
+
+def _only(first: int) -> Any:
+    return lambda changes: [(first + place - 5, word) for place, word in changes]
