@@ -46,7 +46,7 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
         data=data,
         view=growth_view(record),
     )
-    return write_page(page, folder)
+    return write_page(page, folder / "index.html")
 
 
 def _step(step: Record) -> Json:

@@ -15,15 +15,14 @@ from reports.spelling import counted
 __all__ = ["render", "write_page"]
 
 
-def write_page(page: str, folder: Path) -> Path:
-    """Write ``folder``/index.html whole or not at all, and return its path.
+def write_page(page: str, target: Path) -> Path:
+    """Write the file ``target`` whole or not at all, and return its path.
 
-    It is written beside its place and then moved there. Raises OSError when the folder cannot be
+    It is written beside its place and then moved there. Raises OSError when its folder cannot be
     made or written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    target = folder / "index.html"
-    draft = folder / f".index-{secrets.token_hex(8)}.tmp"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    draft = target.with_name(f".{target.name}-{secrets.token_hex(8)}.tmp")
     try:
         draft.write_text(page, encoding="utf-8", newline="\n")
         draft.replace(target)

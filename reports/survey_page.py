@@ -26,7 +26,7 @@ def write_survey_page(record: Mapping[str, Any], folder: Path) -> Path:
 
     Raises OSError when the folder cannot be made or written.
     """
-    return write_page(render_survey_page(record), folder)
+    return write_page(render_survey_page(record), folder / "index.html")
 
 
 def render_survey_page(record: Mapping[str, Any]) -> str:

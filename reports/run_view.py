@@ -1,0 +1,88 @@
+"""What the page of a run says in words: its head and its headline figures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from reports.embed import printable
+from reports.fields import Record, count, nested, number, records, text
+from reports.spelling import Figure, clip, counted, moment
+
+__all__ = ["RunView", "run_view"]
+
+_ENDS = {
+    "end": "ran to its end",
+    "halt": "halted",
+    "fault": "stopped by a fault",
+    "budget": "used up its budget",
+    "time": "cut at its time",
+    "crash": "the executor crashed",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RunView:
+    """What the template shows; all texts are fit to be printed."""
+
+    name: str
+    program: str
+    how: str
+    made: str
+    ending: str
+    is_fine: bool
+    figures: tuple[Figure, ...]
+    has_path: bool
+    has_measured: bool
+
+
+def run_view(record: Mapping[str, Any]) -> RunView:
+    """The view of a run's record, as `reports.run_page.write_run_page` takes it."""
+    outcome, path = nested(record, "outcome"), nested(record, "path")
+    kind = text(outcome, "kind")
+    how = [text(record, name) for name in ("executor", "robot", "profile", "machine")]
+    program = printable(clip(text(record, "main"), 300))
+    return RunView(
+        name=program.replace("\\", "/").rpartition("/")[2],
+        program=program,
+        how=" · ".join(printable(clip(one, 100)) for one in how if one),
+        made=printable(moment(text(record, "generated"))),
+        ending=_ending(kind, outcome),
+        is_fine=kind == "end",
+        figures=tuple(_figures(record, outcome)),
+        has_path=bool(path.get("t")),
+        has_measured=bool(path.get("tool_measured")),
+    )
+
+
+def _ending(kind: str, outcome: Record) -> str:
+    said = [_ENDS.get(kind, kind or "no outcome"), text(outcome, "text"), text(outcome, "at")]
+    return printable(clip(": ".join(part for part in said if part), 400))
+
+
+def _figures(record: Mapping[str, Any], outcome: Record) -> list[Figure]:
+    events = records(record, "events")
+
+    def found(*kinds: str) -> int:
+        return sum(text(event, "kind") in kinds for event in events)
+
+    deviation = nested(record, "deviation")
+    figures = [
+        Figure("of virtual time", f"{count(outcome, 'time') / 1e6:.3f} s"),
+        Figure("motions", f"{found('motion_start'):,}", f"{found('blend_apex'):,} blended"),
+        Figure("outputs switched", f"{found('out', 'anout'):,}", counted(found("in"), "input")),
+        Figure(
+            "triggers and interrupts",
+            f"{found('trigger', 'interrupt_enter'):,}",
+            counted(found("brake"), "brake"),
+        ),
+        Figure("messages and faults", f"{found('message', 'fault'):,}"),
+    ]
+    if deviation:
+        figures.append(
+            Figure(
+                "off the set-points at most",
+                f"{number(deviation, 'most'):.3f} mm",
+                f"{number(deviation, 'mean'):.3f} mm in the mean",
+            )
+        )
+    return figures
