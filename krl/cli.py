@@ -10,6 +10,7 @@ from krl import door
 from krl.commands import bench, construct, corpus, growth, recover, robot
 from krl.commands.check import check
 from krl.commands.format import format_programs
+from krl.commands.lsp import lsp
 from krl.commands.machine import assemble_file, disassemble_image
 
 __all__ = ["app", "main"]
@@ -30,6 +31,7 @@ app.add_typer(bench.app, name="bench")
 app.command("asm")(assemble_file)
 app.command("disasm")(disassemble_image)
 app.add_typer(robot.app, name="robot")
+app.command("lsp")(lsp)
 
 
 def _print_version(wanted: bool) -> None:

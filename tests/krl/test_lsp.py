@@ -1,0 +1,167 @@
+"""`krl lsp`, driven by a real client over pipes."""
+
+import asyncio
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+lsp = pytest.importorskip("lsprotocol.types")
+pytest.importorskip("pygls")
+
+from pygls.lsp.client import LanguageClient  # noqa: E402 - only where it is installed
+
+from grammar.layout import layouter  # noqa: E402 - behind the one above
+
+PROGRAM = """DEF Cell()
+  ; »ä𝄞« before the name
+  HALT
+  Fetch(nParts)
+$OUT[7]=TRUE
+  CONTINUE
+  nPart = 2
+END
+
+DEF Fetch(n:IN)
+  INT n
+END
+"""
+DATA = "DEFDAT Cell\n  DECL INT nParts=8 ; how many are on the pallet\nENDDAT\n"
+
+
+class _Editor(LanguageClient):
+    """A client that keeps the findings it is sent."""
+
+    def __init__(self) -> None:
+        super().__init__("test", "1")
+        self.found: dict[str, list[Any]] = {}
+        self.news = asyncio.Event()
+
+        def hear(given: Any) -> None:
+            self.found[given.uri.rpartition("/")[2]] = given.diagnostics
+            self.news.set()
+
+        self.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(hear)
+
+    async def told(self, name: str, wanted: Callable[[list[Any]], bool]) -> list[Any]:
+        """The findings of a file, once they are as wanted."""
+        while not (name in self.found and wanted(self.found[name])):
+            self.news.clear()
+            await asyncio.wait_for(self.news.wait(), 60)
+        return self.found[name]
+
+
+@dataclass
+class _Heard:
+    """What the server said in one session."""
+
+    before: list[tuple[int, int, str]] = field(default_factory=list)
+    after: list[Any] = field(default_factory=list)
+    hover: dict[str, str] = field(default_factory=dict)
+    places: dict[str, tuple[str, int, int]] = field(default_factory=dict)
+    symbols: list[tuple[str, list[str]]] = field(default_factory=list)
+    set_out: str = ""
+
+
+async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
+    """Open Cell.src, ask, type a declaration."""
+    uri = (folder / "Cell.src").as_uri()
+    await editor.start_io(sys.executable, "-m", "krl", "lsp")
+    await editor.initialize_async(
+        lsp.InitializeParams(
+            capabilities=lsp.ClientCapabilities(),
+            workspace_folders=[lsp.WorkspaceFolder(uri=folder.as_uri(), name="cell")],
+            root_uri=folder.as_uri(),
+        )
+    )
+    editor.initialized(lsp.InitializedParams())
+    item = lsp.TextDocumentItem(uri=uri, language_id="krl", version=1, text=PROGRAM)
+    editor.text_document_did_open(lsp.DidOpenTextDocumentParams(text_document=item))
+    heard.before = [
+        (one.range.start.line, one.range.start.character, one.code)
+        for one in await editor.told("Cell.src", bool)
+    ]
+    for word in ("CONTINUE", "$OUT", "nParts"):
+        hover = await editor.text_document_hover_async(lsp.HoverParams(**_at(uri, word)))
+        heard.hover[word] = "" if hover is None else hover.contents.value
+    for word in ("nParts", "Fetch"):
+        found = await editor.text_document_definition_async(lsp.DefinitionParams(**_at(uri, word)))
+        start = found.range.start
+        heard.places[word] = found.uri.rpartition("/")[2], start.line, start.character
+    document = lsp.TextDocumentIdentifier(uri=uri)
+    listed = await editor.text_document_document_symbol_async(
+        lsp.DocumentSymbolParams(text_document=document)
+    )
+    heard.symbols = [(one.name, [inner.name for inner in one.children]) for one in listed]
+    edits = await editor.text_document_formatting_async(
+        lsp.DocumentFormattingParams(
+            text_document=document, options=lsp.FormattingOptions(tab_size=2, insert_spaces=True)
+        )
+    )
+    heard.set_out = edits[0].new_text
+    editor.text_document_did_change(
+        lsp.DidChangeTextDocumentParams(
+            text_document=lsp.VersionedTextDocumentIdentifier(uri=uri, version=2),
+            content_changes=[
+                lsp.TextDocumentContentChangeWholeDocument(
+                    text=PROGRAM.replace("DEF Cell()\n", "DEF Cell()\n  DECL INT nPart\n")
+                )
+            ],
+        )
+    )
+    heard.after = list(await editor.told("Cell.src", lambda found: not found))
+    await editor.shutdown_async(None)
+    editor.exit(None)
+    await editor.stop()
+
+
+@pytest.fixture(scope="module")
+def heard(tmp_path_factory: pytest.TempPathFactory) -> _Heard:
+    """One session with a real server; starting one takes seconds."""
+    folder = tmp_path_factory.mktemp("cell")
+    (folder / "Cell.dat").write_text(DATA, encoding="utf-8")
+    (folder / "Cell.src").write_text(PROGRAM, encoding="utf-8")
+    said = _Heard()
+    asyncio.run(_session(_Editor(), folder, said))
+    return said
+
+
+def _at(uri: str, word: str) -> dict[str, Any]:
+    line = next(n for n, text in enumerate(PROGRAM.splitlines()) if word in text)
+    column = PROGRAM.splitlines()[line].index(word) + 1
+    position = lsp.Position(line=line, character=column)
+    return {"text_document": lsp.TextDocumentIdentifier(uri=uri), "position": position}
+
+
+def test_findings_come_while_one_types(heard: _Heard) -> None:
+    """A name that is declared nowhere is told; declaring it in the text takes the finding away."""
+    assert [(6, 2)] == [place[:2] for place in heard.before]
+    assert [] == heard.after
+
+
+def test_hover_tells_rule_and_source(heard: _Heard) -> None:
+    """A keyword and a system variable are told with their rules, a name with its declaration."""
+    assert "ADV-08" in heard.hover["CONTINUE"]
+    assert "stops the advance run when written [ADV-05" in heard.hover["$OUT"]
+    assert "INT nParts" in heard.hover["nParts"]
+    assert "how many are on the pallet" in heard.hover["nParts"]
+    assert "Cell.dat:2" in heard.hover["nParts"]
+
+
+def test_definitions_are_found_across_files(heard: _Heard) -> None:
+    """A variable leads to its data list, a call to the routine."""
+    assert {"nParts": ("Cell.dat", 1, 11), "Fetch": ("Cell.src", 9, 4)} == heard.places
+
+
+def test_symbols_are_listed(heard: _Heard) -> None:
+    """Routines are listed with their data."""
+    assert [("Cell", []), ("Fetch", ["n"])] == heard.symbols
+
+
+def test_formatting_is_that_of_krl_format(heard: _Heard) -> None:
+    """A file is set out as `krl format` sets it out."""
+    assert layouter().layout(PROGRAM) == heard.set_out
+    assert PROGRAM != heard.set_out
