@@ -38,10 +38,19 @@ def expected_errors() -> Iterator[None]:
     from recovery.construct import LedgerError
     from recovery.ingest import IngestError
     from recovery.negatives import NegativeError
+    from recovery.workers import WorkersError
 
+    expected = (
+        GrammarError,
+        GenerationError,
+        LedgerError,
+        IngestError,
+        NegativeError,
+        WorkersError,
+    )
     try:
         yield
-    except (GrammarError, GenerationError, LedgerError, IngestError, NegativeError) as error:
+    except expected as error:
         raise Unusable(str(error)) from error
 
 

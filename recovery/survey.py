@@ -7,12 +7,10 @@ A file with the same content as an earlier one is not read again but counted wit
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache
@@ -25,6 +23,7 @@ from recovery.ingest import Found, Skipped, decode, digest, discover, read
 from recovery.memory import Kept, Memory, key_of
 from recovery.outcome import Failed, failures_of, source_lines
 from recovery.progress import Progress, unheard
+from recovery.workers import in_order
 
 __all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
 
@@ -78,26 +77,30 @@ def survey(
     grammar: g4.Grammar,
     *,
     jobs: int | None = None,
+    scheduler: str | None = None,
     cache: Path | None = None,
     on_found: Progress = unheard,
     on_done: Progress = unheard,
 ) -> Survey:
     """Read everything below ``roots`` under ``grammar``.
 
-    ``jobs`` is the number of processes, by default one a core, or one for a small corpus.
+    ``jobs`` is the number of processes, by default one a core, or one for a small corpus;
+    ``scheduler`` the address of a Dask cluster that reads instead (`recovery.workers`).
     ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
     ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
     more have been dealt with.
 
-    Raises `recovery.ingest.IngestError` where there is nothing to survey.
+    Raises `recovery.ingest.IngestError` where there is nothing to survey, and
+    `recovery.workers.WorkersError` where there is nobody to read.
     """
     began = time.perf_counter()
     candidates = list(discover(roots))
     on_found(len(candidates))
     with _memory(cache, grammar) as memory:
         gathered = _Gathered(memory)
-        tasks = _tasks(candidates, gathered)
-        for done in _run(tasks, grammar.text, jobs or _processes(candidates)):
+        tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
+        count = jobs or _processes(candidates)
+        for done in in_order(_perform, tasks, jobs=count, scheduler=scheduler):
             gathered.add(done)
             on_done(len(done))
     on_done(len(candidates) - gathered.read_now)
@@ -147,24 +150,6 @@ def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
             failures = failures_of(finder, source.text, forms)
             results.append((failures, tuple(forms)))
     return results
-
-
-def _run(tasks: Iterable[tuple[bytes, ...]], grammar_text: str, jobs: int) -> Iterator[list[Kept]]:
-    """Results in the order of the tasks."""
-    if jobs == 1:
-        for task in tasks:
-            yield _perform(grammar_text, task)
-        return
-    # 'spawn' behaves the same on every system and never copies a process with threads in it
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        waiting: deque[Future[list[Kept]]] = deque()
-        for task in tasks:
-            waiting.append(pool.submit(_perform, grammar_text, task))
-            if len(waiting) > 2 * jobs:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
 
 
 # ------------------------------------------------------------------------------ in the parent

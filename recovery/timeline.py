@@ -9,11 +9,9 @@ takes a run over a block, so the cost grows with the corpus and memory does not.
 from __future__ import annotations
 
 import math
-import multiprocessing
 import os
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +24,7 @@ from recovery.ingest import Found, Skipped, Source, decode, digest, discover, re
 from recovery.memory import Memory, key_of
 from recovery.progress import Progress, unheard
 from recovery.widening import fixed_texts_added, occurs
+from recovery.workers import in_order
 
 __all__ = ["Content", "Timeline", "contents_of", "read_through"]
 
@@ -123,7 +122,12 @@ def read_through(
         on_found(sum(len(block.members) * len(block.missing) for block in blocks))
         jobs = jobs or _processes(blocks)
         runs = [(block, run) for block in blocks for run in block.runs(jobs)]
-        for (block, run), results in zip(runs, _in_order(runs, grammars, jobs), strict=True):
+        tasks = (
+            (tuple((n, grammars[n]) for n in run), tuple(m.content for m in block.members))
+            for block, run in runs
+        )
+        read = in_order(_perform, tasks, jobs=jobs)
+        for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
             if memory is not None and run[-1] == block.missing[-1]:
@@ -242,30 +246,6 @@ def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_B
 
 #: Failing lines of a content with the bits of the grammars; why it is no KRL; why it was not read.
 _Result = dict[int, int] | str | Skipped
-
-
-def _in_order(
-    runs: Sequence[tuple[_Block, tuple[int, ...]]], grammars: Sequence[Grammar], jobs: int
-) -> Iterator[list[_Result]]:
-    """Results in the order of the runs."""
-    tasks = (
-        (tuple((n, grammars[n]) for n in run), tuple(m.content for m in block.members))
-        for block, run in runs
-    )
-    if jobs == 1:
-        for task in tasks:
-            yield _perform(*task)
-        return
-    # 'spawn' behaves the same on every system and never copies a process with threads in it
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        waiting: deque[Future[list[_Result]]] = deque()
-        for task in tasks:
-            waiting.append(pool.submit(_perform, *task))
-            if len(waiting) > 2 * jobs:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
 
 
 def _perform(run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]) -> list[_Result]:

@@ -50,7 +50,8 @@ def recover(
         typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler (not built yet).")
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers read the files."),
     ] = None,
     negatives: Annotated[
         Path | None,
@@ -77,8 +78,6 @@ def recover(
     from recovery.negatives import load
     from reports import write_survey_page
 
-    if scheduler is not None:
-        raise Unusable("--scheduler is not built yet; local processes do the work (--jobs)")
     roots = paths or [_DEFAULT_CORPUS]
     if not paths and not _DEFAULT_CORPUS.is_dir():
         raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
@@ -88,7 +87,7 @@ def recover(
         chosen = read_file(grammar or GRAMMAR)
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
         given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
-        surveyor = _Surveyor(roots, load(given) if given else (), out / "cache", jobs)
+        surveyor = _Surveyor(roots, load(given) if given else (), out / "cache", jobs, scheduler)
         # where nothing has grown yet, the start is what is in force
         if grammar is None and start and restrictive.sha256 != chosen.sha256:
             ledger = Ledger.read(GRAMMAR.with_name("constructs"))
@@ -111,12 +110,18 @@ class _Surveyor:
     """Surveys the same files under one grammar and another, telling how far it is."""
 
     def __init__(
-        self, roots: Sequence[Path], negatives: "Sequence[Negative]", cache: Path, jobs: int | None
+        self,
+        roots: Sequence[Path],
+        negatives: "Sequence[Negative]",
+        cache: Path,
+        jobs: int | None,
+        scheduler: str | None,
     ) -> None:
         self.roots = roots
         self.negatives = negatives
         self.cache = cache
         self.jobs = jobs
+        self.scheduler = scheduler
 
     def record(self, grammar: "Grammar", name: str) -> dict[str, Any]:
         """The record of the survey under a grammar."""
@@ -148,6 +153,7 @@ class _Surveyor:
                 self.roots,
                 grammar,
                 jobs=self.jobs,
+                scheduler=self.scheduler,
                 cache=self.cache,
                 on_found=bar.expect,
                 on_done=bar,
