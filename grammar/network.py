@@ -33,20 +33,72 @@ class RuleAutomaton:
     places: tuple[frozenset[tuple[int, ...]], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Reach:
+#: A position, and the positions to return to from it, the outermost first.
+_Way = tuple[int, tuple[int, ...]]
+
+
+class Reach(dict[int, Sequence[_Way]]):
     """What can be done from a position before its rule ends, calls followed.
 
-    ``moves`` maps each token kind that may come to the ways it can be read: the position after it,
-    and the positions to return to, the outermost first. ``sites`` are the positions reached without
-    reading, in the same form. ``ends`` says whether the rule may end without reading, and ``rules``
-    names the rules that have a part in all this.
+    As a dictionary: token kind to the ways it can be read, as the position after it and the
+    positions to return to; worked out when a kind is first asked for, for most never are. ``ends``
+    says whether the rule may end without reading, and ``rules`` names the rules that have a part in
+    all this.
     """
 
-    moves: Mapping[int, Sequence[tuple[int, tuple[int, ...]]]]
-    sites: Sequence[tuple[int, tuple[int, ...]]]
-    ends: bool
-    rules: frozenset[str]
+    __slots__ = ("_first", "_network", "_sites", "_steps", "ends", "rules")
+
+    def __init__(
+        self, network: Network, steps: Sequence[int], rules: frozenset[str], *, ends: bool
+    ) -> None:
+        """``steps`` are the positions of the same rule reached without reading."""
+        super().__init__()
+        self._network = network
+        self._steps = steps
+        self._first: frozenset[int] | None = None
+        self._sites: Sequence[_Way] | None = None
+        self.ends = ends
+        self.rules = rules
+
+    def __missing__(self, kind: int) -> Sequence[_Way]:
+        network = self._network
+        found: list[_Way] = []
+        for here in self._steps:
+            target = network.shifts[here].get(kind)
+            if target is not None:
+                found.append((target, ()))
+            for entry, back in network.calls[here]:
+                for position, returns in network.reach(entry)[kind]:
+                    found.append((position, (back, *returns)))
+        self[kind] = found
+        return found
+
+    @property
+    def first(self) -> frozenset[int]:
+        """The token kinds that may come."""
+        if self._first is None:
+            network = self._network
+            shifts = (network.shifts[here] for here in self._steps)
+            called = (network.reach(e).first for h in self._steps for e, _ in network.calls[h])
+            self._first = frozenset[int]().union(*shifts, *called)
+        return self._first
+
+    @property
+    def sites(self) -> Sequence[_Way]:
+        """The positions reached without reading, and the positions to return to."""
+        if self._sites is None:
+            network = self._network
+            found: list[_Way] = []
+            for here in self._steps:
+                found.append((here, ()))
+                for entry, back in network.calls[here]:
+                    for position, returns in network.reach(entry).sites:
+                        found.append((position, (back, *returns)))
+            self._sites = found
+        return self._sites
+
+    __hash__ = object.__hash__  # type: ignore[assignment]
+    __eq__ = object.__eq__
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,28 +128,20 @@ class Network:
     def reach(self, position: int) -> Reach:
         """What can be done from a position. A grammar with left recursion has no answer."""
         found = self.known.get(position)
-        return found or self._reach(position)
+        return self._reach(position) if found is None else found
 
     def _reach(self, position: int) -> Reach:
-        moves: dict[int, list[tuple[int, tuple[int, ...]]]] = defaultdict(list)
-        sites: list[tuple[int, tuple[int, ...]]] = []
         rules = {self.rule[position]}
         ends = False
-        todo = [position]
-        for here in todo:  # grows while it is walked
-            sites.append((here, ()))
+        steps = [position]
+        for here in steps:  # grows while it is walked
             ends = ends or self.final[here]
-            for kind, target in self.shifts[here].items():
-                moves[kind].append((target, ()))
             for entry, back in self.calls[here]:
                 called = self.reach(entry)
                 rules |= called.rules
-                sites += [(site, (back, *returns)) for site, returns in called.sites]
-                for kind, ways in called.moves.items():
-                    moves[kind] += [(target, (back, *returns)) for target, returns in ways]
-                if called.ends and back not in todo:
-                    todo.append(back)
-        found = self.known[position] = Reach(dict(moves), sites, ends, frozenset(rules))
+                if called.ends and back not in steps:
+                    steps.append(back)
+        found = self.known[position] = Reach(self, steps, frozenset(rules), ends=ends)
         return found
 
 

@@ -89,7 +89,7 @@ class Recognizer(Automaton):
     def expected(self, state: State) -> frozenset[int]:
         """Every token kind that some program has next."""
         core = self._settled(state.core, state.tail)[0]
-        return frozenset(kind for reach, _ in self._ways[core] for kind in reach.moves)
+        return frozenset[int]().union(*(reach.first for reach, _ in self._ways[core]))
 
     def frames(self, state: State) -> Frames:
         """The state as data: see `Frames`."""
@@ -149,7 +149,7 @@ class Recognizer(Automaton):
     def _targets(self, core: Core, kind: int) -> Iterator[Configuration]:
         """The configurations after one more token."""
         for reach, stack in self._ways[core]:
-            for target, returns in reach.moves.get(kind, ()):
+            for target, returns in reach[kind]:
                 yield target, stack.pushed(returns)
 
     def _sites(self, core: Core) -> Iterator[Configuration]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
+from interp.events import Sink
 from interp.faults import Fault
 from interp.requests import Code, Path, Request, Value
 
@@ -35,8 +36,9 @@ class Executor(Protocol):
     def enter(self, code: Code) -> None:
         """Push a routine or action, which runs before the program goes on.
 
-        Allowed between two requests only. Its end is told by `interp.requests.End`, after which
-        the request that was open before is asked again by the next ``advance(None)``.
+        Allowed between two requests only, and behind the End of the program as well, as long as
+        the arm is on its way. Its end is told by `interp.requests.End`, after which the request
+        that was open before is asked again by the next ``advance(None)``.
         """
         ...
 
@@ -51,6 +53,14 @@ class Executor(Protocol):
         """Leave all routines deeper than ``depth``; the program goes on behind the call there.
 
         [INT-10]
+        """
+        ...
+
+    def companion(self, routine: str, sink: Sink | None = None) -> Executor:
+        """Another executor over the same data lists, as the submit interpreter is [SUB-01].
+
+        It begins with the routine of that name in any file, which has no parameters. Its codes are
+        its own. The two take turns: neither is called while the other computes. Raises `LinkError`.
         """
         ...
 

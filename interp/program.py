@@ -9,8 +9,9 @@ called [SCO-10].
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 from grammar import ast
 from grammar.build import read_module
@@ -24,7 +25,7 @@ from grammar.symbols import ImportSymbol, Kind, RoutineTable, Symbol
 from grammar.types import Type
 from interp.faults import LinkError
 
-__all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load"]
+__all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
 
 #: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
 #: an interpreter may use Python's own stack for them.
@@ -107,11 +108,13 @@ class CheckedProgram:
     def start(self, name: str | None = None) -> Routine:
         """The routine of a name in the first file, by default its first one.
 
-        Raises `LinkError` where there is none, or where it needs arguments.
+        One that the first file has not may be the first of another file. Raises `LinkError` where
+        there is none, or where it needs arguments.
         """
+        others = (self.routines_of(one)[:1] for one in self.units.values() if one is not self.main)
         found = [
             one
-            for one in self.routines_of(self.main)
+            for one in (*self.routines_of(self.main), *chain.from_iterable(others))
             if name is None or one.node.name.key == name.upper()
         ]
         if not found:
@@ -173,6 +176,30 @@ def load(
         if any(module.path == main for module in project.modules):
             return _checked(project, by_path, main, strict=strict)
     raise LinkError(f"{main} is not among the files")
+
+
+def load_all(
+    sources: Iterable[Source], system: System | None = None
+) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
+    """Link and check files of any number of projects; gives a program for each file with routines.
+
+    It is checked as without ``strict`` in `load`, each project once. A file that cannot be read is
+    left out of its project and told with the reason, after the programs.
+    """
+    by_path = {source.path: source for source in sources}
+    files, unread = [], []
+    for path, source in by_path.items():
+        try:
+            files.append(File(path, _read(source)))
+        except LinkError as error:
+            unread.append((path, str(error)))
+    programs: list[CheckedProgram] = []
+    for project in link(files, system).projects:
+        whole = _checked(project, by_path, project.modules[0].path, strict=False)
+        programs += [
+            replace(whole, main=unit) for unit in whole.units.values() if whole.routines_of(unit)
+        ]
+    return tuple(programs), tuple(unread)
 
 
 def _checked(

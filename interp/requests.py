@@ -33,11 +33,13 @@ __all__ = [
     "Read",
     "Request",
     "Resume",
+    "SetCyclicFlag",
     "SetTrigger",
     "Slice",
     "SplineItem",
     "SplineRange",
     "SplineStop",
+    "StopAdvance",
     "SwitchInterrupt",
     "SwitchSignal",
     "Value",
@@ -100,12 +102,31 @@ class Write(Asking):
 class Invoke(Asking):
     """A predefined routine that acts on the world (PULSE, CWRITE, SET_KRLMSG …), by its name.
 
-    An argument left out is ``None``. Reply: the result (``None`` for procedures) and the values of
-    all arguments after the call, or a fault.
+    An argument left out is ``None``. ``paths`` has one entry for each argument: the system variable
+    that it is, where it is passed :OUT and is one, so that PULSE knows its output; else ``None``.
+    Reply: the result (``None`` for procedures) and the values of all arguments after the call, or a
+    fault.
     """
 
     name: str
     arguments: tuple[Value | None, ...]
+    paths: tuple[Path | None, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SetCyclicFlag(Asking):
+    """``$CYCFLAG[number] = condition``: what is assigned is the condition, not its value [IOT-11].
+
+    Reply: ``None`` or a fault.
+    """
+
+    number: int
+    condition: Code
+
+
+@dataclass(frozen=True, slots=True)
+class StopAdvance(Asking):
+    """An imported variable is accessed, which stops the advance run [ADV-05]."""
 
 
 # ------------------------------------------------------------------------------------------ waiting
@@ -305,6 +326,8 @@ Request = (
     Read
     | Write
     | Invoke
+    | SetCyclicFlag
+    | StopAdvance
     | Wait
     | Poll
     | Halt

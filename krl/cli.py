@@ -9,7 +9,9 @@ import typer
 from krl import door
 from krl.commands import bench, construct, corpus, growth, recover, robot
 from krl.commands.check import check
+from krl.commands.conform import conform
 from krl.commands.format import format_programs
+from krl.commands.fuzz import fuzz
 from krl.commands.lsp import lsp
 from krl.commands.machine import assemble_file, disassemble_image
 
@@ -25,6 +27,8 @@ app.command("recover")(recover.recover)
 app.add_typer(construct.app, name="construct")
 app.command("check")(check)
 app.command("format")(format_programs)
+app.command("conform")(conform)
+app.command("fuzz")(fuzz)
 app.command("growth")(growth.growth)
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")

@@ -16,7 +16,7 @@ from grammar.recognizer import Recognizer
 from recovery.construct import ACCEPTED, Construct, LedgerError
 from recovery.construct_file import text_of
 from recovery.evaluation import Evaluation, evaluate, losses
-from recovery.ledger import Ledger, broken_examples, grown, in_force
+from recovery.ledger import UNFINISHED, Ledger, broken_examples, grown, in_force
 from recovery.progress import Progress, unheard
 from recovery.regeneration import Generator, parser_of
 from recovery.standing import Corpora, Standing
@@ -170,4 +170,4 @@ def write(acceptance: Acceptance, home: Home, generator: Generator = generate) -
         changes[home.ledger / f"{construct.id}.toml"] = content
     changes[home.grammar] = acceptance.grammar.text.encode()
     changes |= {home.generated / name: content for name, content in parser.items()}
-    return write_together(changes)
+    return write_together(changes, journal=home.ledger / UNFINISHED)

@@ -101,11 +101,11 @@ class BlockFinder:
 
     @cached_property
     def _used(self) -> frozenset[str]:
-        """Tokens that the rules of the grammar have a use for."""
+        """Tokens that the rules of the grammar have a use for; to be listed is none."""
         return frozenset(
             e.name
             for rule in self.recognizer.grammar.rules
-            if not rule.is_lexer
+            if not rule.is_lexer and rule.name not in self.layout.word_lists
             for a in rule.alternatives
             for e in walk(a)
             if isinstance(e, Reference) and e.is_token

@@ -96,8 +96,8 @@ def find_causes(
     """Group ``lines`` by cause.
 
     ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
-    heaviest first. ``on_done`` is told of each group dealt with. ``whole`` has files in which the
-    lines fail first.
+    heaviest first. ``on_done`` is told of each group dealt with. ``whole`` has the files in which
+    the lines fail.
     """
     search = Search(recognizer, lines, weights, judge, whole)
     causes: list[Cause] = []
@@ -110,6 +110,7 @@ def find_causes(
             cause = search.best_for(left)
             if cause is None:
                 break
+            cause = search.with_entailed(cause)
             causes.append(cause)
             search.open.difference_update(cause.lines)
             left = [n for n in left if n in search.open]
@@ -135,7 +136,7 @@ class Search:
         self.lines = lines
         self.weights = weights
         self.judge = judge
-        self.whole = whole or WholeFiles(recognizer, {})
+        self.whole = whole or WholeFiles(recognizer)
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.thorough = True
@@ -158,6 +159,17 @@ class Search:
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
+
+    def with_entailed(self, cause: Cause) -> Cause:
+        """The cause with the lines that fail only because of its own."""
+        best = cause.proposals[0]
+        wider = self.trial.wider(best.edits)
+        others = self.open.difference(cause.lines)
+        if wider is None or not others:
+            return cause
+        mended = best.mended.intersection(cause.lines)
+        more = self.whole.entailed(wider, mended, others)
+        return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))

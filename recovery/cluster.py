@@ -15,11 +15,9 @@ from recovery.causes import Cause, Judge, Proposal, find_causes, no_judge
 from recovery.progress import Progress, unheard
 from recovery.shapes import Shape, Shaper
 from recovery.survey import Failed, Survey, SurveyedFile
-from recovery.whole import WholeFiles
+from recovery.whole import FailingFile, WholeFiles
 
 __all__ = ["Cluster", "Clusters", "Member", "cluster"]
-
-_FILES_A_LINE = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +98,7 @@ def cluster(
             groups.by_shape,
             judge,
             on_done,
-            WholeFiles(groups.recognizer, groups.starting(text_of)),
+            WholeFiles(groups.recognizer, groups.failing(found, text_of)),
         )
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)
@@ -119,7 +117,6 @@ class _Lines:
             for index, failed in enumerate(file.failures)
             if not failed.follows
         ]
-        self._firsts = [(file, index) for file, index, _ in direct if index == 0]
         self.shaper = Shaper(
             self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
         )
@@ -149,20 +146,18 @@ class _Lines:
             by_shape.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
         )
 
-    def starting(
-        self, text_of: Callable[[SurveyedFile], str]
-    ) -> dict[int, list[Callable[[], str]]]:
-        """For each line the smallest files that fail there first, to be read when needed."""
-        files: dict[int, list[SurveyedFile]] = defaultdict(list)
-        for file, index in self._firsts:
-            files[self.line_of[file.digest, index]].append(file)
-        return {
-            line: [
-                partial(text_of, file)
-                for file in sorted(starting, key=lambda f: (f.size, f.digest))[:_FILES_A_LINE]
-            ]
-            for line, starting in files.items()
-        }
+    def failing(
+        self, found: Survey, text_of: Callable[[SurveyedFile], str]
+    ) -> Iterator[FailingFile]:
+        """The files with failing lines, to be read when needed."""
+        for file in found.files:
+            lines = tuple(
+                (failed.line, self.line_of[file.digest, index])
+                for index, failed in enumerate(file.failures)
+                if not failed.follows
+            )
+            if lines:
+                yield FailingFile(file.digest, file.size, partial(text_of, file), lines)
 
     def _context(
         self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]

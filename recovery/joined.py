@@ -74,7 +74,8 @@ def one_choice(
         for i, word in enumerate(words):
             if allowed(edit, i):
                 frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
-                families[*frame, edit.text[-1]][word] = candidate
+                suffix = edit.text[-1] if isinstance(edit, Insert) else ""
+                families[*frame, suffix][word] = candidate
     return [
         _chosen(family[3], family[4], members)
         for family, members in families.items()

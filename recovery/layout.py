@@ -310,7 +310,7 @@ class Layout:
         return is_rule or self._class_of(symbols[0]) != symbols[0]
 
     @cached_property
-    def _word_lists(self) -> tuple[str, ...]:
+    def word_lists(self) -> tuple[str, ...]:
         """Rules that list reserved words, many of all there are."""
         lexer = self.recognizer.lexer
         all_words = sum(lexer.is_keyword(kind) for kind in lexer.kind_of.values())
@@ -327,7 +327,7 @@ class Layout:
         edits: list[Edit] = []
         for word in sorted(set(keywords)):
             edits.append(AddToken(word))
-            edits += [AddAlternative(rule, word) for rule in self._word_lists]
+            edits += [AddAlternative(rule, word) for rule in self.word_lists]
         return tuple(edits)
 
     def _lead(self, rule: str, alternative: Alternative) -> str:

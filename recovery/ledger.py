@@ -16,8 +16,10 @@ from grammar.recognizer import Recognizer
 from grammar.wellformed import problem
 from recovery.construct import Construct, LedgerError
 from recovery.construct_file import read
+from recovery.together import finish
 
 __all__ = [
+    "UNFINISHED",
     "Ledger",
     "broken_examples",
     "findings",
@@ -27,6 +29,9 @@ __all__ = [
     "preliminary_of",
     "replay",
 ]
+
+#: In the folder of the ledger: what an acceptance was about to write when it was killed.
+UNFINISHED = ".unfinished.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +45,12 @@ class Ledger:
     def read(cls, folder: Path) -> Ledger:
         """Read the folder; one that is not there is a ledger without constructs.
 
+        What an acceptance that was killed had laid ready is put in place first.
+
         Raises `LedgerError` for the first file that is not as it must be, for a number given twice
         and for a gap.
         """
+        finish(folder / UNFINISHED)
         files = sorted(folder.glob("*.toml")) if folder.is_dir() else []
         constructs = []
         for number, file in enumerate(files, 1):

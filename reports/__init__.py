@@ -1,7 +1,8 @@
 """The window: records become pages that people read. Imports none of the other packages."""
 
+from reports.conform_page import write_conformance_page
 from reports.growth_page import write_growth_page
 from reports.run_page import write_run_page
 from reports.survey_page import write_survey_page
 
-__all__ = ["write_growth_page", "write_run_page", "write_survey_page"]
+__all__ = ["write_conformance_page", "write_growth_page", "write_run_page", "write_survey_page"]

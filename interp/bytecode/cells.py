@@ -23,6 +23,7 @@ from grammar.types import (
     REAL,
     Array,
     Enumeration,
+    Member,
     Scalar,
     Structure,
     Type,
@@ -51,6 +52,7 @@ __all__ = [
     "real_of",
     "row_of",
     "shared_cells",
+    "shown",
     "size",
     "value_at",
     "value_of",
@@ -221,10 +223,27 @@ def _family(type_: Type) -> bool | None:
 # ------------------------------------------------------------------------------------ values
 
 
+@lru_cache(_REMEMBERED)
+def shown(type_: Type) -> Type:
+    """The type as values have it: ``@2`` behind a name tells types apart in programs only."""
+    match type_:
+        case Array():
+            return Array(shown(type_.element), type_.sizes)
+        case Enumeration() if "@" in type_.name:
+            return Enumeration(type_.name.partition("@")[0], type_.constants)
+        case Structure():
+            members = tuple(Member(one.name, shown(one.type)) for one in type_.members)
+            if "@" in type_.name or members != type_.members:
+                return Structure(type_.name.partition("@")[0], members)
+    return type_
+
+
 def value_of(raw: Raw, type_: Plain) -> Value:
     """What a cell of a type holds, as a value."""
     if isinstance(type_, Enumeration):
-        return EnumValue(type_, int(raw))
+        kind = shown(type_)
+        assert isinstance(kind, Enumeration), "shown as it is"
+        return EnumValue(kind, int(raw))
     return chr(int(raw)) if type_ == CHAR else raw
 
 
@@ -246,11 +265,12 @@ def value_at(cells: Sequence[Raw | None], address: int, type_: Type) -> Value | 
                 value_at(cells, address + offset, member.type)
                 for member, offset in zip(type_.members, _places(type_), strict=True)
             ]
-            return StructureValue(type_, members)
+            return StructureValue(shown(type_), members)  # type: ignore[arg-type]  # a structure
         case Array(element=element):
             width = size(element)
             places = range(address, address + size(type_), width)
-            return ArrayValue(type_, [value_at(cells, place, element) for place in places])
+            found = [value_at(cells, place, element) for place in places]
+            return ArrayValue(shown(type_), found)  # type: ignore[arg-type]  # an array
     raw = cells[address]
     assert isinstance(type_, Plain), "what has a size is made of scalars"
     return None if raw is None else value_of(raw, type_)
@@ -263,7 +283,7 @@ def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
     """
     if value is None:
         return [None] * size(type_)
-    return _flattened(converted(value, type_), type_)
+    return _flattened(converted(value, shown(type_)), type_)
 
 
 def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:

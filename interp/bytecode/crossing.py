@@ -17,6 +17,7 @@ from grammar.assignability import assignable
 from grammar.types import BOOL, CHAR, INT, REAL, UNKNOWN, Array, Enumeration, Text, Type, is_same
 from interp import requests
 from interp.builtins import BUILTINS
+from interp.bytecode.cells import value_of
 from interp.bytecode.program import (
     Argument,
     Builtin,
@@ -33,7 +34,6 @@ from interp.bytecode.program import (
     inputs_of,
 )
 from interp.requests import At, Code, Value
-from interp.values import EnumValue
 
 __all__ = ["ASKED", "Makers", "Part", "misfit", "unlike"]
 
@@ -252,7 +252,7 @@ class Makers:
             case Choice(type_, place):
                 enumeration = self._program.types[type_]
                 assert isinstance(enumeration, Enumeration), "verified"
-                choice = EnumValue(enumeration, place)
+                choice = value_of(place, enumeration)
                 return lambda _inputs, _at: choice
             case Input():
                 number = next(numbers)

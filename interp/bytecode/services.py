@@ -10,6 +10,7 @@ from grammar.types import REAL
 from interp import requests
 from interp.builtins import FUNCTIONS, Surroundings, call
 from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cells import shown
 from interp.bytecode.counting import Counter, Guard, Pause
 from interp.bytecode.crossing import Makers
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
@@ -210,7 +211,7 @@ class Services:
                 self._tell_changed(change)
             else:
                 made = self._makers.path(path, change.first)(values, _NOWHERE)
-                kept = converted(value, entry.type_of(block, change))
+                kept = converted(value, shown(entry.type_of(block, change)))
                 yield Write(self.at(), made, kept)
 
     def _stored(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from pathlib import PurePosixPath
+from typing import Any
 
 from grammar.types import Array, Type
-from interp.bytecode.cells import array_at, offset_of, path_to, value_at
+from interp.bytecode.cells import array_at, offset_of, path_to, shown, value_at
 from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
 from interp.bytecode.state import State
 from interp.requests import Path
@@ -73,22 +74,24 @@ class Names:
         for slot in self.slots(state.code):
             if slot.offset == offset:
                 whole, start = self.referred(slot)
+                if start is None:
+                    return None
                 return self._part(slot.variable.name, whole, start, state.last, type_, dimensions)
         return None
 
-    def referred(self, slot: Slot) -> tuple[Type, int]:
-        """The type of what a parameter is or leads to, and its address."""
+    def referred(self, slot: Slot) -> tuple[Type, int | None]:
+        """The type of what a parameter is or leads to, and its address, if it leads anywhere."""
         state, program = self._state, self._program
         first = state.fp + slot.offset
         variable = slot.variable
         type_ = program.types[variable.type]
         if isinstance(variable, Local) or variable.mode is Mode.IN:
             return type_, first
-        start = int(state.cells[first] or 0)
+        start = state.cells[first]
         if variable.mode is Mode.VIEW:
-            sizes = [int(raw or 0) for raw in state.cells[first + 1 : first + slot.cells]]
+            sizes: list[Any] = state.cells[first + 1 : first + slot.cells]
             type_ = Array(type_, tuple(sizes))
-        return type_, start
+        return type_, None if start is None else int(start)
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:
         """A variable, or a part of one, by what a program calls it here; ``None`` where it is not.
@@ -102,12 +105,14 @@ class Names:
             int(step) if step.isdigit() else step for step in _STEP.findall(match[1].upper())
         ]
         place = self._variable(str(root))
-        part = offset_of(place[0], steps) if place else None
-        if place is None or part is None:
+        if place is None or place[1] is None:
+            return None if place is None else (place[0], None)
+        part = offset_of(place[0], steps)
+        if part is None:
             return None
-        return part[1], value_at(self._state.cells, place[1] + part[0], part[1])
+        return shown(part[1]), value_at(self._state.cells, place[1] + part[0], part[1])
 
-    def _variable(self, name: str) -> tuple[Type, int] | None:
+    def _variable(self, name: str) -> tuple[Type, int | None] | None:
         for slot in self.slots(self._state.code):
             if slot.variable.name.upper() == name:
                 return self.referred(slot)

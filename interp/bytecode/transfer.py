@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from grammar.types import Array, Type
-from interp.bytecode.cells import Plain, Raw, cells_of, raw_of, size, value_at, value_of
+from interp.bytecode.cells import Plain, Raw, cells_of, raw_of, shown, size, value_at, value_of
 from interp.bytecode.program import (
     Argument,
     Changed,
@@ -91,7 +91,9 @@ class Entry:
             self._write(block[-1], self._result, result)
             return
         assert isinstance(self._result, Plain), "what has no target has one cell"
-        self._state.stack.append(raw_of(converted(known(result), self._result), self._result))
+        self._state.stack.append(
+            raw_of(converted(known(result), shown(self._result)), self._result)
+        )
 
     def store(self, block: Block, change: Change, value: Value) -> None:
         """Give a changed argument its new value; raises `interp.faults.Fault`."""

@@ -27,14 +27,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.types import BOOL, INT_MAX, INT_MIN, SCALARS, Array, Enumeration, Structure, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain, is_word_of, kind_at, path_to, real_of, size
 from interp.bytecode.crossing import misfit, unlike
 from interp.bytecode.flow import ENDS, Flow, Stack, VerificationError, targets
-from interp.bytecode.isa import MAX_CELLS, shape
+from interp.bytecode.isa import MAX_CELLS, OPERAND_KINDS, shape
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,
@@ -55,7 +55,7 @@ from interp.bytecode.program import (
 from interp.faults import FAULTS, LinkError
 from interp.values import single
 
-__all__ = ["VerificationError", "Verified", "stacks_needed", "verify"]
+__all__ = ["VerificationError", "Verified", "measured", "stacks_needed", "verify"]
 
 _MOST_DIMENSIONS = 3
 #: Types, and parts of requests, lie at most so deep in one another.
@@ -83,6 +83,13 @@ def verify(program: Program) -> Verified:
         stacks = _checked_body(program, code)
         depths.append(tuple(-1 if one is None else sum(h.cells for h in one) for one in stacks))
     return Verified(program, tuple(depths))
+
+
+def measured(program: Program) -> Program:
+    """The program with the sizes of stacks that it needs, as far as it keeps the other rules."""
+    pairs = zip(program.codes, stacks_needed(program), strict=True)
+    codes = (replace(code, stack=needed) for code, needed in pairs)
+    return replace(program, codes=tuple(codes))
 
 
 def stacks_needed(program: Program) -> list[int]:
@@ -130,8 +137,7 @@ class _Tables:
             if reason is not None:
                 raise VerificationError(f"function {builtin.name}: {reason}")
         for code in self._program.codes:
-            for place, instruction in enumerate(code.instructions):
-                self._operands(code, place, instruction)
+            self._operands(code)
 
     def _types(self) -> None:
         types = self._program.types
@@ -287,21 +293,24 @@ class _Tables:
             return wanted.mode is Mode.REF and path is not None
         return False
 
-    def _operands(self, code: Code, place: int, instruction: Instruction) -> None:
-        kinds = shape(instruction.op.name).operands
-        if len(kinds) != len(instruction.operands):
-            raise VerificationError(f"{code.name}, instruction {place}: operands are missing")
-        for kind, operand in zip(kinds, instruction.operands, strict=True):
-            low, high = self._range(code, kind)
-            if not low <= operand <= high or (
-                kind == "real" and not math.isfinite(real_of(operand))
-            ):
-                raise VerificationError(
-                    f"{code.name}, instruction {place} ({instruction.op.name}): "
-                    f"{operand} is no {kind}"
-                )
+    def _operands(self, code: Code) -> None:
+        ranges = self._ranges(code)
+        for place, instruction in enumerate(code.instructions):
+            kinds = shape(instruction.op.name).operands
+            if len(kinds) != len(instruction.operands):
+                raise VerificationError(f"{code.name}, instruction {place}: operands are missing")
+            for kind, operand in zip(kinds, instruction.operands, strict=True):
+                low, high = ranges[kind]
+                if not low <= operand <= high or (
+                    kind == "real" and not math.isfinite(real_of(operand))
+                ):
+                    raise VerificationError(
+                        f"{code.name}, instruction {place} ({instruction.op.name}): "
+                        f"{operand} is no {kind}"
+                    )
 
-    def _range(self, code: Code, kind: str) -> tuple[int, int]:
+    def _ranges(self, code: Code) -> dict[str, tuple[int, int]]:
+        """The least and the largest operand of each kind."""
         program = self._program
         lengths = {
             "target": len(code.instructions),
@@ -316,10 +325,13 @@ class _Tables:
             "bool": 2,
             "char": 256,
         }
-        if kind in lengths:
-            return 0, lengths[kind] - 1
-        lowest = {"count": 0, "line": 1}.get(kind, INT_MIN)
-        return lowest, INT_MAX
+        lowest = {"count": 0, "line": 1}
+        return {
+            kind: (0, lengths[kind] - 1)
+            if kind in lengths
+            else (lowest.get(kind, INT_MIN), INT_MAX)
+            for kind in OPERAND_KINDS
+        }
 
 
 def _parts(type_: Type) -> Iterator[Type]:

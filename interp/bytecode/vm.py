@@ -88,6 +88,10 @@ class Machine:
         """How many calls deep the program is; 0 in the routine it began with."""
         return self._services.depth
 
+    def data(self) -> list[Raw | None]:
+        """What the cells of the data lists hold now."""
+        return self._state.cells[: self._program.addresses[-1]]
+
     def advance(self, reply: Value | Fault | None = None) -> Request:
         """Compute until the world is needed; see `interp.executor.Executor`."""
         if self._final is not None:

@@ -36,6 +36,8 @@ _NO_LIMITS = [(math.inf, -math.inf)] * ROBOT_AXES
 
 _STRAIGHT = 1e-12
 """Sine of A5 below which axes 4 and 6 turn about the same line."""
+_UNDETERMINED = 2e-9
+"""Sine of A5 below which A4 is free to stay where it is: 1e-7 degrees."""
 _MARGIN = 1e-7
 """mm that rounding may take away: of reach, and of the distance from axis 1."""
 _FAR = 1e9
@@ -110,6 +112,57 @@ class Arm:
         degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
         ways: Array = (degrees + 0.0).reshape(*shape, BRANCHES, ROBOT_AXES)
         return ways
+
+    def inverse_near(self, poses: Array, references: Array) -> Array:
+        """For each pose the way that a reference stands in: axes ``(n, 6)``, NaN where none is.
+
+        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes beside the solution: they name
+        the shoulder, the elbow and the turn of each axis. The wrist is turned over or not, as lies
+        nearer; where it is straight, A4 is that of the reference.
+        """
+        inner = self._to_inner @ poses @ self._to_wrist
+        theta = np.radians(references) * self._directions
+        main = self._main_axes_near(inner[:, :3, 3], theta) + self._zeros[:3]
+        upper = _about_z(main[:, 0]) @ _about_y(main[:, 1] + main[:, 2])
+        wrist = np.swapaxes(upper, -1, -2) @ inner[:, :3, :3] @ self._reverse
+        sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
+        a4 = np.arctan2(wrist[:, 1, 2], wrist[:, 0, 2])
+        a5 = np.arctan2(sine, wrist[:, 2, 2])
+        own = np.radians(references[:, 3:]) * self._senses[3:] + self._zeros[3:]
+        there = np.abs(np.sin((a4 - own[:, 0]) / 2.0)) + np.abs(a5 - own[:, 1])
+        over = np.abs(np.cos((a4 - own[:, 0]) / 2.0)) + np.abs(a5 + own[:, 1])
+        a4 = np.where(over < there, a4 + math.pi, a4)
+        a5 = np.where(over < there, -a5, a5)
+        a4 = np.where(sine < _UNDETERMINED, own[:, 0], a4)
+        s4, c4 = np.sin(a4), np.cos(a4)
+        a6 = np.arctan2(
+            c4 * wrist[:, 1, 0] - s4 * wrist[:, 0, 0], c4 * wrist[:, 1, 1] - s4 * wrist[:, 0, 1]
+        )
+        angles = np.concatenate((main, np.stack((a4, a5, a6), axis=-1)), axis=-1)
+        found = np.degrees((angles - self._zeros) * self._senses)
+        near: Array = found + 360.0 * np.round((references - found) / 360.0)
+        return near
+
+    def _main_axes_near(self, places: Array, theta: Array) -> Array:
+        """Main axes in radians ``(n, 3)`` for wrist centres, with shoulder and elbow of others."""
+        forward, aside, up = self._forearm
+        upper, lower = self.machine.length_b, math.hypot(forward, up)
+        x, y, height = places.T
+        beyond = x**2 + y**2 - aside**2
+        beyond = np.where((beyond < 0.0) & (beyond > -_MARGIN), 0.0, beyond)
+        with np.errstate(invalid="ignore"):
+            ahead = np.copysign(np.sqrt(beyond), self._ahead(theta))
+            a1 = np.arctan2(y, x) - np.arctan2(aside, ahead)
+            out = ahead - self.machine.length_a
+            distance = np.hypot(out, height)
+            within = np.clip(distance, abs(upper - lower), upper + lower)
+            within = np.where(np.abs(within - distance) < _MARGIN, within, math.nan)
+            cosine = (within**2 - upper**2 - lower**2) / (2.0 * upper * lower)
+            bend = math.atan2(up, forward)
+            bent = bend - theta[:, 2]
+            elbow = np.copysign(np.arccos(np.clip(cosine, -1.0, 1.0)), np.sin(bent))
+        a2 = np.arctan2(lower * np.sin(elbow), upper + lower * np.cos(elbow))
+        return np.stack((a1, a2 - np.arctan2(height, out), bend - elbow), axis=-1)
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
         """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05].

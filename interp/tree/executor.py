@@ -14,7 +14,7 @@ from interp.events import Sink
 from interp.executor import Reader
 from interp.faults import Fault, LinkError, RuntimeFailure, fault
 from interp.program import CheckedProgram, Limits
-from interp.requests import At, Code, Crash, End, Fail, Read, Request, Slice, Value
+from interp.requests import At, Code, Crash, End, Fail, Read, Request, Slice, StopAdvance, Value
 from interp.tree.memory import fill_data
 from interp.tree.places import MOST_CELLS
 from interp.tree.run import Call, Frame, Guard, Run, Steps
@@ -27,12 +27,14 @@ __all__ = ["TreeExecutor"]
 class _Interrupted:
     """What waits for the end of an action.
 
-    That is the open request, or that RESUME has come back, and whether ON_ERROR_PROCEED held.
+    That is the open request, or that RESUME has come back, whether ON_ERROR_PROCEED held, and the
+    end of the program where it has ended: the arm may still be on its way.
     """
 
     request: Request | None
     resumed: Resumed | None
     guard: Guard
+    final: Request | None
 
 
 @dataclass(slots=True, eq=False)
@@ -47,7 +49,8 @@ class _Active:
 class TreeExecutor:
     """Runs a checked program from a routine of its first file on; see `interp.executor.Executor`.
 
-    ``routine`` is the first one where it is not given. Raises `LinkError` where it cannot begin.
+    ``routine`` is the first one where it is not given. ``beside`` is an executor of the same program
+    whose data lists it shares. Raises `LinkError` where it cannot begin.
     """
 
     def __init__(
@@ -57,12 +60,18 @@ class TreeExecutor:
         limits: Limits | None = None,
         sink: Sink | None = None,
         random: Callable[[], float] | None = None,
+        *,
+        beside: TreeExecutor | None = None,
     ) -> None:
         self._run = Run(program, limits, sink, random)
-        try:
-            fill_data(self._run)
-        except Fault as error:
-            raise LinkError(f"the data lists cannot be filled: {error}") from None
+        if beside is not None:
+            self._run.data, self._run.cells = beside._run.data, beside._data_cells
+        else:
+            try:
+                fill_data(self._run)
+            except Fault as error:
+                raise LinkError(f"the data lists cannot be filled: {error}") from None
+        self._data_cells: int = self._run.cells
         start = program.start(routine)
         if self._run.cells + self._run.size_of(start) > MOST_CELLS:
             raise LinkError(f"the variables of {start.name} are too large")
@@ -107,9 +116,10 @@ class TreeExecutor:
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
         steps = Statements(run, frame).action(node)
-        interrupted = _Interrupted(self._open, self._resumed, run.guard)
+        interrupted = _Interrupted(self._open, self._resumed, run.guard, self._final)
         self._stack.append(_Active(steps, frame, interrupted))
         self._open, self._is_asked, self._resumed, run.guard = None, False, None, Guard.OFF
+        self._final = None
 
     def evaluate(self, code: Code, read: Reader) -> Value:
         """The value of a condition; raises `interp.faults.Fault`.
@@ -137,6 +147,11 @@ class TreeExecutor:
             self._run.guard, self._run.depth, self._run.cells = guard, depth, cells
         value: Value = reply
         return value
+
+    def companion(self, routine: str, sink: Sink | None = None) -> TreeExecutor:
+        """Another executor over the same data lists."""
+        run = self._run
+        return TreeExecutor(run.program, routine, run.limits, sink, run.random, beside=self)
 
     def unwind(self, depth: int) -> None:
         """Leave all routines deeper than ``depth``, and what was entered there."""
@@ -222,6 +237,7 @@ class TreeExecutor:
         self._run.guard = active.interrupted.guard
         self._open, self._is_asked = active.interrupted.request, False
         self._resumed = active.interrupted.resumed
+        self._final = active.interrupted.final
         return end
 
     def _at(self) -> At:
@@ -237,7 +253,7 @@ class TreeExecutor:
                     return read(asked.path)
                 except Fault as error:
                     return error
-            case Slice():
+            case Slice() | StopAdvance():
                 return None
         raise LinkError("a condition can only compute and read")
 

@@ -17,7 +17,7 @@ from grammar.types import BOOL, INT, REAL, UNKNOWN, Aggregate, Enumeration, Stru
 from interp.builtins import BUILTINS, WORLD, Surroundings, call
 from interp.faults import LinkError, fault
 from interp.operators import apply, apply_unary
-from interp.requests import At, Invoke, Read, Write
+from interp.requests import At, Invoke, Read, StopAdvance, Write
 from interp.tree.names import find_text
 from interp.tree.places import Local, Place, Remote, element, fresh, member, of_type, sized
 from interp.tree.run import Call, Frame, Run, Steps
@@ -134,6 +134,9 @@ class Expressions:
         """Where an expression has its value; one that is no variable has a place of its own."""
         match node:
             case ast.Variable():
+                found = self.frame.unit.found(node.name)
+                if found is not None and found.symbol.kind is Kind.IMPORT:
+                    yield StopAdvance(self.at())
                 return self.variable(node.name)
             case ast.Parenthesised():
                 return (yield from self.place(node.inner))
@@ -297,7 +300,8 @@ class Expressions:
             result, after = reply.result, reply.arguments
         else:
             values = [copied(value) for value in values]
-            result, after = yield Invoke(self.at(), name, tuple(values))
+            paths = [place.path if isinstance(place, Remote) else None for place in places]
+            result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
         for place, before, value in zip(places, values, after, strict=True):
             if place is not None and value is not None and value is not before:
                 yield from self.store(place, value)

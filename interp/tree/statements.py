@@ -18,7 +18,7 @@ from interp.faults import Fault, LinkError, fault
 from interp.operators import apply
 from interp.requests import Poll, Wait, Write
 from interp.tree.motions import Motions
-from interp.tree.places import fresh, of_type
+from interp.tree.places import Remote, fresh, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values import Value, known
 
@@ -215,6 +215,10 @@ class Statements(Motions):
 
     def _assignment(self, node: ast.Assignment) -> Steps[None]:
         place = yield from self.place(node.target)
+        if isinstance(place, Remote) and place.path[0] == "$CYCFLAG" and len(place.path) == 2:
+            condition = self.run.hand(node.value, self.frame)
+            yield requests.SetCyclicFlag(self.at(), int(place.path[1]), condition)
+            return
         yield from self.store(place, (yield from self.value(node.value, place.type)))
 
     def _call(self, node: ast.CallStatement) -> Steps[None]:

@@ -166,9 +166,8 @@ def check_reach(network: Network, position: int) -> None:
     sites, moves, ends = surroundings(network, position)
     reach = network.reach(position)
     assert sites == set(reach.sites)
-    assert moves == {
-        (network.lexer.names[k], way) for k, ways in reach.moves.items() for way in ways
-    }
+    assert moves == {(network.lexer.names[k], way) for k in reach.first for way in reach[k]}
+    assert not any(reach[k] for k in range(len(network.lexer.names)) if k not in reach.first)
     assert ends == reach.ends
     assert reach.rules >= {network.rule[p] for p, _ in sites}
 

@@ -1,10 +1,12 @@
 """Several files written together: all of them, or none."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from recovery.together import write_together
+from recovery.together import finish, write_together
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -64,3 +66,36 @@ def test_where_nothing_can_be_laid_ready_nothing_is_touched(tmp_path: Path) -> N
     with pytest.raises(OSError, match=r"a\.txt"):
         write_together({tmp_path / "a.txt": b"2", tmp_path / "a.txt" / "b.txt": b"3"})
     assert {"a.txt": b"1"} == content(tmp_path)
+
+
+KILLED = """
+import os, sys
+from pathlib import Path
+from recovery.together import write_together
+left = int(sys.argv[2])
+exchange = Path.replace
+def dying(self, target):
+    global left
+    if left == 0:
+        os._exit(9)
+    left -= 1
+    return exchange(self, target)
+Path.replace = dying
+folder = Path(sys.argv[1])
+write_together({folder / "a": b"2", folder / "b": b"2", folder / "gone": None},
+               journal=folder / ".journal")
+"""
+
+
+@pytest.mark.parametrize("exchanges", range(5))
+def test_a_killed_process_has_changed_all_or_nothing(tmp_path: Path, exchanges: int) -> None:
+    """Killed at any exchange: what `finish` then leaves is all old or all new."""
+    for name in ("a", "b", "gone"):
+        (tmp_path / name).write_bytes(b"1")
+    command = [sys.executable, "-c", KILLED, str(tmp_path), str(exchanges)]
+    done = subprocess.run(command, check=False)
+    assert (9 if exchanges < 3 else 0) == done.returncode
+    finish(tmp_path / ".journal")
+    after = {p.name: p.read_bytes() for p in tmp_path.iterdir() if not p.name.endswith(".part")}
+    old, new = {"a": b"1", "b": b"1", "gone": b"1"}, {"a": b"2", "b": b"2"}
+    assert (old if exchanges == 0 else new) == after

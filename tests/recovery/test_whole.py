@@ -5,16 +5,20 @@ from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from recovery.trial import edited
-from recovery.whole import WholeFiles
+from recovery.whole import FailingFile, WholeFiles
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
 TEXT = "DEF A()\nWAIT 1\nWAIT 2\nEND\n"
 
 
+def file(text: str, *failing: tuple[int, int]) -> FailingFile:
+    return FailingFile(text, len(text), lambda: text, failing)
+
+
 def share(alternative: str) -> float:
     wider = edited(RECOGNIZER, [AddAlternative("simpleStatement", alternative)])
     assert wider is not None
-    return WholeFiles(RECOGNIZER, {0: [lambda: TEXT]}).share(wider, [0])
+    return WholeFiles(RECOGNIZER, [file(TEXT, (2, 0))]).share(wider, [0])
 
 
 def test_a_file_read_to_its_end_counts_whole() -> None:
@@ -26,6 +30,6 @@ def test_a_file_read_to_its_end_counts_whole() -> None:
 
 def test_without_files_nothing_speaks_against_an_edit() -> None:
     """Lines of which no file is at hand, and files that parse, do not count."""
-    assert WholeFiles(RECOGNIZER, {}).share(RECOGNIZER, [0]) == 1.0
-    parsing = WholeFiles(RECOGNIZER, {0: [lambda: "DEF A()\nEND\n"]})
+    assert WholeFiles(RECOGNIZER).share(RECOGNIZER, [0]) == 1.0
+    parsing = WholeFiles(RECOGNIZER, [file("DEF A()\nEND\n", (1, 0))])
     assert parsing.share(RECOGNIZER, [0]) == 1.0

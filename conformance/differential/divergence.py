@@ -1,0 +1,71 @@
+"""Where two executors part: the first fact that differs, and what a reader needs to see it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from conformance.differential.runs import EXECUTORS, Prepared, trace_of
+from conformance.differential.traces import Fact, shown
+from grammar.source import Source
+from interp.program import load
+
+__all__ = ["Difference", "Files", "difference", "examine", "prepared"]
+
+#: Texts by path; the first file is the one to begin with.
+Files = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The first fact that an executor does not share with the reference.
+
+    ``place`` counts facts from 0; a side is ``None`` where its run has ended before.
+    """
+
+    executor: str
+    place: int
+    expected: Fact | None
+    actual: Fact | None
+    is_disturbed: bool
+
+    @property
+    def expected_text(self) -> str:
+        """What the reference did, with its line."""
+        return shown(self.expected)
+
+    @property
+    def actual_text(self) -> str:
+        """What the other did, with its line."""
+        return shown(self.actual)
+
+
+def prepared(files: Files) -> Prepared:
+    """A program ready for executors; raises `interp.faults.LinkError`."""
+    return Prepared(load([Source(text, path) for path, text in files], files[0][0]))
+
+
+def difference(executor: str, expected: Sequence[Fact], actual: Sequence[Fact]) -> Difference | None:
+    """The first difference, ``None`` where there is none."""
+    if expected == actual:
+        return None
+    least = min(len(expected), len(actual))
+    place = next((n for n in range(least) if expected[n] != actual[n]), least)
+    is_disturbed = any(one[0] in ("entered", "evaluated") for one in expected[:place])
+    return Difference(
+        executor,
+        place,
+        expected[place] if place < len(expected) else None,
+        actual[place] if place < len(actual) else None,
+        is_disturbed,
+    )
+
+
+def examine(program: Prepared, seed: str, executors: Sequence[str]) -> list[Difference]:
+    """Run a program on executors; where each of them parts from the first one, if it does."""
+    expected = trace_of(program, EXECUTORS[executors[0]], seed)
+    found = (
+        difference(name, expected, trace_of(program, EXECUTORS[name], seed))
+        for name in executors[1:]
+    )
+    return [one for one in found if one is not None]

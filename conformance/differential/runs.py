@@ -1,0 +1,214 @@
+"""A program run on an executor in a world that interferes; and the executors there are.
+
+The world enters the actions of interrupts, triggers and cyclic signals between two requests, looks
+at conditions, and answers RESUME by unwinding. What it does follows from its seed and from the
+requests alone, so that executors that ask the same are treated the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+from conformance.differential.traces import Fact, Trace
+from conformance.differential.worlds import RandomWorld
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.program import Program
+from interp.bytecode.verify import Verified, verify
+from interp.bytecode.vm import Machine
+from interp.events import Sink
+from interp.executor import Executor
+from interp.faults import LinkError, RuntimeFailure
+from interp.program import CheckedProgram, Limits
+from interp.requests import (
+    Code,
+    Crash,
+    DeclareInterrupt,
+    End,
+    Fail,
+    MoveSpline,
+    Request,
+    Resume,
+    SetCyclicFlag,
+    SetTrigger,
+    SplineStop,
+    SwitchInterrupt,
+    SwitchSignal,
+)
+from interp.tree import TreeExecutor
+
+__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "trace_of"]
+
+#: More statements than any generated program executes, and a slice short enough to come up.
+LIMITS: Final = Limits(statements=20_000, per_slice=60)
+_MOST_REQUESTS: Final = 4_000
+_MOST_ENTERED: Final = 6
+#: One request of so many is a chance for something to be entered.
+_CHANCES: Final = 6
+
+
+class Prepared:
+    """A program for executors, compiled only where one of them needs it, and once."""
+
+    def __init__(self, program: CheckedProgram) -> None:
+        self.program = program
+
+    @property
+    def start(self) -> str:
+        """The routine to begin with."""
+        return self.program.start().name
+
+    @cached_property
+    def compiled(self) -> Program:
+        """As bytecode; raises `LinkError`."""
+        return compile_program(self.program).program
+
+    @cached_property
+    def verified(self) -> Verified:
+        """As bytecode that was verified."""
+        return verify(self.compiled)
+
+
+#: Makes an executor of a program.
+Factory = Callable[[Prepared, Limits, Sink], Executor]
+
+
+def _tree(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
+    return TreeExecutor(prepared.program, limits=limits, sink=sink)
+
+
+def _machine(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
+    return Machine(prepared.verified, prepared.start, limits, sink)
+
+
+#: The executors by name; the first one is the reference.
+EXECUTORS: Mapping[str, Factory] = {"tree": _tree, "vm": _machine}
+
+
+def available() -> tuple[str, ...]:
+    """The executors that can run here."""
+    return tuple(EXECUTORS)
+
+
+@dataclass(slots=True)
+class _Known:
+    """What the world may enter or look at, as far as it was told."""
+
+    interrupts: dict[int, DeclareInterrupt] = field(default_factory=dict)
+    switched: dict[int, bool] = field(default_factory=dict)
+    actions: list[Code] = field(default_factory=list)
+    conditions: list[Code] = field(default_factory=list)
+
+    def note(self, request: Request) -> None:
+        """Learn from a request."""
+        match request:
+            case DeclareInterrupt():
+                self.interrupts[request.number] = request
+            case SwitchInterrupt():
+                for number in self.interrupts if request.number is None else [request.number]:
+                    self.switched[number] = request.action in ("ON", "ENABLE")
+            case SetTrigger():
+                self.actions.append(request.action)
+            case SwitchSignal(cycle=Code() as cycle):
+                self.actions.append(cycle)
+            case SetCyclicFlag():
+                self.conditions.append(request.condition)
+            case MoveSpline():
+                for item in request.items:
+                    if isinstance(item, SetTrigger):
+                        self.actions.append(item.action)
+                    elif isinstance(item, SplineStop):
+                        self.conditions.append(item.condition)
+
+
+class _Driver:
+    """Runs one executor in one world."""
+
+    def __init__(self, executor: Executor, world: RandomWorld, trace: Trace) -> None:
+        self.executor = executor
+        self.world = world
+        self.trace = trace
+        self.known = _Known()
+        #: For each action that runs: the depth it was entered at, and the one RESUME goes back to.
+        self.inside: list[tuple[int, int]] = []
+        self.entered = 0
+
+    def run(self) -> None:
+        """Run to the end, or until there were too many requests."""
+        reply: Any = None
+        for _ in range(_MOST_REQUESTS):
+            request = self.executor.advance(reply)
+            self.trace.request(request)
+            reply = None
+            if isinstance(request, Fail | Crash):
+                return
+            if isinstance(request, End):
+                if not self.inside:
+                    return
+                self.inside.pop()
+            elif isinstance(request, Resume) and self.inside:
+                self._unwind()
+            elif not self._interferes(request):
+                self.known.note(request)
+                reply = self.world.reply(request)
+
+    def _unwind(self) -> None:
+        depth = self.inside[-1][1]
+        self.inside = [one for one in self.inside if one[0] < depth]
+        self.trace.unwound(depth)
+        self.executor.unwind(depth)
+
+    def _interferes(self, request: Request) -> bool:
+        """Whether an action was entered, before the request is answered."""
+        world, known = self.world, self.known
+        if world.below(_CHANCES):
+            return False
+        if known.conditions and not world.below(4):
+            self._evaluate(known.conditions[world.below(len(known.conditions))])
+        if self.entered >= _MOST_ENTERED or len(self.inside) >= 2:
+            return False
+        on = [one for number, one in known.interrupts.items() if known.switched.get(number)]
+        place = world.below(len(on) + len(known.actions) + 1)
+        depth = request.at.depth
+        if place < len(on):
+            declared = on[place]
+            is_true = self._evaluate(declared.condition)
+            if is_true or not world.below(3):
+                self._enter(declared.action, depth, min(declared.at.depth, depth))
+                return True
+        elif place < len(on) + len(known.actions):
+            self._enter(known.actions[place - len(on)], depth, depth)
+            return True
+        return False
+
+    def _enter(self, code: Code, depth: int, back: int) -> None:
+        self.entered += 1
+        self.inside.append((depth, back))
+        self.trace.entered()
+        self.executor.enter(code)
+
+    def _evaluate(self, code: Code) -> bool:
+        outcome: object
+        try:
+            outcome = self.executor.evaluate(code, self.world.read)
+        except RuntimeFailure as error:
+            outcome = error
+        self.trace.evaluated(outcome)
+        return outcome is True
+
+
+def trace_of(
+    prepared: Prepared, factory: Factory, seed: str, limits: Limits = LIMITS
+) -> list[Fact]:
+    """All facts of a run; an executor that raises what it should not is told as a fact too."""
+    trace = Trace()
+    try:
+        executor = factory(prepared, limits, trace)
+        _Driver(executor, RandomWorld(seed), trace).run()
+    except LinkError as error:
+        trace.raised(error)
+    except Exception as error:  # a defect, which is a finding here
+        trace.raised(error)
+    return trace.facts

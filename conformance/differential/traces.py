@@ -1,0 +1,135 @@
+"""What a run is compared by: its requests and its events in one sequence, as plain values.
+
+A fact is a tuple: a word, the place, and what there is to say. Values of different types never are
+equal, nor are 0.0 and -0.0. A piece of program that was handed out is a word: its number is the
+executor's own affair.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import cache
+from typing import Any
+
+from interp.requests import At, Code, Path, Request, Value
+from interp.values import ArrayValue, EnumValue, StructureValue
+
+__all__ = ["Fact", "Trace", "place_of", "plain", "shown"]
+
+Fact = tuple[Any, ...]
+
+
+class Trace:
+    """A sink that keeps facts."""
+
+    __slots__ = ("facts",)
+
+    def __init__(self) -> None:
+        self.facts: list[Fact] = []
+
+    # ----------------------------------------------------------------------- events
+
+    def line(self, at: At) -> None:
+        """A statement begins."""
+        self.facts.append(("line", at))
+
+    def assign(self, at: At, path: Path, value: Value | None) -> None:
+        """A variable was assigned."""
+        self.facts.append(("assign", at, path, plain(value)))
+
+    def call(self, at: At, name: str) -> None:
+        """A routine is called."""
+        self.facts.append(("call", at, name))
+
+    def leave(self, at: At, name: str) -> None:
+        """A routine has ended."""
+        self.facts.append(("return", at, name))
+
+    def branch(self, at: At, way: int) -> None:
+        """A way was taken."""
+        self.facts.append(("branch", at, way))
+
+    # ----------------------------------------------------------------------- requests, and more
+
+    def request(self, request: Request) -> None:
+        """The executor has asked."""
+        self.facts.append(self._fact(request))
+
+    def evaluated(self, outcome: object) -> None:
+        """A condition was looked at; ``outcome`` is a value or what was raised."""
+        self.facts.append(("evaluated", None, self._plain(outcome)))
+
+    def entered(self) -> None:
+        """An action was entered."""
+        self.facts.append(("entered", None))
+
+    def unwound(self, depth: int) -> None:
+        """Routines were left by RESUME."""
+        self.facts.append(("unwound", None, depth))
+
+    def raised(self, error: Exception) -> None:
+        """The executor did not come to be, or raised what it never should."""
+        self.facts.append(("raised", None, *self._plain(error)))
+
+    def _fact(self, asked: Any) -> Fact:
+        values = (self._plain(getattr(asked, name)) for name in _fields(type(asked)))
+        return (type(asked).__name__, *values)
+
+    def _plain(self, value: Any) -> Any:
+        match value:
+            case At() | None | str():
+                return value
+            case Code():
+                return "CODE"
+            case Exception():
+                return (type(value).__name__, str(value))
+            case tuple():
+                return tuple(self._plain(one) for one in value)
+            case _ if type(value).__module__ == "interp.requests":
+                return self._fact(value)
+        return plain(value)
+
+
+@cache
+def _fields(type_: Any) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(type_))
+
+
+def plain(value: Value | None) -> Any:
+    """A value as constants and tuples of them."""
+    match value:
+        case bool() | float():
+            return (type(value).__name__, repr(value))
+        case EnumValue():
+            return (value.type.name.upper(), value.index)
+        case StructureValue():
+            return (value.type.name.upper(), tuple(plain(one) for one in value.members))
+        case ArrayValue():
+            return ("ARRAY", value.sizes, tuple(plain(one) for one in value))
+    return value
+
+
+def place_of(fact: Fact) -> At | None:
+    """Where a fact is told from; ``None`` where it is from nowhere."""
+    return fact[1] if len(fact) > 1 and isinstance(fact[1], At) else None
+
+
+def shown(fact: Fact | None) -> str:
+    """A fact as a line of text."""
+    if fact is None:
+        return "nothing more"
+    at = place_of(fact)
+    where = "" if at is None else f"{at.file}:{at.line} (depth {at.depth}) "
+    rest = " ".join(_text(one) for one in fact[2:])
+    return f"{where}{fact[0]} {rest}".rstrip()
+
+
+def _text(value: Any) -> str:
+    match value:
+        case (("float" | "bool"), str() as text):
+            return text
+        case tuple():
+            return f"({' '.join(_text(one) for one in value)})"
+        case At():
+            return f"{value.file}:{value.line}"
+    return "-" if value is None else repr(value) if isinstance(value, str) else str(value)

@@ -1,0 +1,45 @@
+"""Results as JUnit XML, one test case for each case, executor and robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from junitparser import Failure, JUnitXml, Skipped, TestCase, TestSuite
+
+from conformance.runner import CaseResult, Result
+
+__all__ = ["write_junit"]
+
+
+def write_junit(results: Sequence[CaseResult], target: Path) -> None:
+    """Write the file whole or not at all. Failures are failures, all else but a pass is skipped."""
+    report = JUnitXml("conformance")
+    suites: dict[str, TestSuite] = {}
+    for one in results:
+        suite = suites.setdefault(one.case.suite, TestSuite(one.case.suite))
+        for result in one.results:
+            suite.add_testcase(_test(one, result))
+    for suite in suites.values():
+        report.add_testsuite(suite)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    scratch = target.with_name(target.name + ".part")
+    report.write(str(scratch), pretty=True)
+    scratch.replace(target)
+
+
+def _test(one: CaseResult, result: Result) -> TestCase:
+    stem = one.case.name.rpartition("/")[2]
+    setup = f"{result.executor}-{result.robot}" if one.case.phase == "run" else result.executor
+    test = TestCase(f"{stem}[{setup}]", f"conformance.{one.case.suite}", result.seconds)
+    if result.verdict == "fail":
+        failure = Failure(result.reason, "fail")
+        failure.text = "\n".join(
+            f"{check.file}:{check.line}: {check.text}: {check.state} ({check.actual})"
+            for check in result.checks
+            if check.state != "met"
+        )
+        test.result = [failure]
+    elif result.verdict != "pass":
+        test.result = [Skipped(result.reason, result.verdict)]
+    return test

@@ -1,0 +1,158 @@
+"""What is wrong with cases beyond what makes them unreadable, and which rules no case shows.
+
+A case states one fact: it has a title nobody else has, the shortest program that shows it, and
+names that carry over to a controller.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from conformance.case import CASES, ENDINGS, Case, CaseError, find_cases
+from conformance.expectations import KINDS
+from conformance.registry import Rule, registry
+from conformance.verdicts import KnownFailures
+from grammar.build import read_module
+
+__all__ = ["PROFILES", "SUITES", "Coverage", "coverage", "lint"]
+
+#: The suites, in the order in which they are shown.
+SUITES: Final = (
+    "syntax",
+    "types",
+    "control",
+    "data",
+    "advance",
+    "blending",
+    "motion",
+    "posture",
+    "spline",
+    "trigger",
+    "interrupt",
+    "io",
+    "submit",
+    "message",
+    "program",
+)
+PROFILES: Final = ("kss8", "kss5")
+_ROBOTS: Final = ("none", "kinematic", "mujoco")
+_STEM: Final = re.compile(r"[a-z][a-z0-9_]{0,23}")
+_LONGEST: Final = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """Which cases there are for each rule, and the rules that lack one."""
+
+    cases: Mapping[str, tuple[str, ...]]
+
+    @property
+    def uncovered(self) -> list[Rule]:
+        """Rules that may fail a case and have none, though cases could show them."""
+        return [
+            rule
+            for rule in registry().values()
+            if rule.may_fail and not rule.unshown and not self.cases[rule.id]
+        ]
+
+    def count(self, *, hard: bool) -> tuple[int, int]:
+        """Of how many rules there is a case, and how many there are; hard ones only, or all."""
+        counted = [rule for rule in registry().values() if rule.may_fail or not hard]
+        return sum(bool(self.cases[rule.id]) for rule in counted), len(counted)
+
+
+def coverage(cases: Iterable[Case]) -> Coverage:
+    """The cases of each rule, whether they state it or only touch it."""
+    found: dict[str, list[str]] = {rule: [] for rule in registry()}
+    for case in cases:
+        for rule in case.rules:
+            found[rule].append(case.name)
+    return Coverage({rule: tuple(names) for rule, names in found.items()})
+
+
+def lint(root: Path = CASES) -> list[str]:
+    """What is wrong with the cases of a folder, a line each; empty where nothing is."""
+    unreadable: list[CaseError] = []
+    cases = find_cases(root, unreadable.append)
+    found = [str(error) for error in unreadable]
+    for case in cases:
+        found += [f"{case.name}: {fault}" for fault in _faults(case)]
+    found += _repeated(cases)
+    found += _strays(cases, root)
+    if root == CASES:
+        found += [f"{rule.id}: no case shows it" for rule in coverage(cases).uncovered]
+        names = [case.name for case in cases]
+        lost = KnownFailures.load().of_no_case(names)
+        found += [f"known_failures.toml: there is no case {name}" for name in lost]
+    return found
+
+
+def _faults(case: Case) -> Iterator[str]:
+    if not case.title or case.title.endswith(".") or len(case.title) > _LONGEST:
+        yield "the title is one sentence without a full stop"
+    if len(set(case.rules)) != len(case.rules):
+        yield "a rule stands twice"
+    if case.profile not in PROFILES:
+        yield f"the profile is one of {', '.join(PROFILES)}"
+    if case.robot not in _ROBOTS:
+        yield f"the robot is one of {', '.join(_ROBOTS)}"
+    if case.suite not in SUITES:
+        yield f"there is no suite {case.suite!r}"
+    if not _STEM.fullmatch(case.path.stem):
+        yield "the file name is no KRL name in lower case"
+    if case.io and case.phase != "run":
+        yield "a script of inputs needs a program that runs"
+    yield from _of_text(case)
+    yield from _of_expectations(case)
+
+
+def _of_text(case: Case) -> Iterator[str]:
+    for source in case.sources:
+        text = source.text
+        if not text.isascii() or "\r" in text or not text.endswith("\n") or "\t" in text:
+            yield f"{source.path}: not ASCII with LF line ends and without tabs"
+        if any(len(line) > _LONGEST for line in text.splitlines()):
+            yield f"{source.path}: a line is longer than {_LONGEST} characters"
+        if case.phase != "parse" and isinstance(read_module(text, source.path), list):
+            yield f"{source.path}: it is not grammatical, so its phase is parse"
+
+
+def _of_expectations(case: Case) -> Iterator[str]:
+    said = set()
+    for one in case.expectations:
+        if case.phase not in KINDS[one.kind].phases:
+            yield f"line {one.line}: {one.kind} cannot be seen in phase {case.phase}"
+        if one.line == 0:
+            yield f"{one.text!r} stands beside no line"
+        if (one.file, one.line, one.text) in said:
+            yield f"line {one.line}: {one.text!r} stands twice"
+        said.add((one.file, one.line, one.text))
+    marks = {one.arguments[0] for one in case.expectations if one.kind == "mark"}
+    for one in case.expectations:
+        for anchor in filter(None, (one.when and one.when.first, one.when and one.when.last)):
+            if anchor.event == "mark" and anchor.of not in marks:
+                yield f"line {one.line}: nothing is marked {anchor.of}"
+    is_accepted = any(one.kind == "accepted" for one in case.expectations)
+    if is_accepted and case.is_negative:
+        yield "it is accepted and refused"
+
+
+def _repeated(cases: Sequence[Case]) -> Iterator[str]:
+    titles = Counter(case.title for case in cases)
+    for case in cases:
+        if titles[case.title] > 1:
+            yield f"{case.name}: another case has the same title"
+
+
+def _strays(cases: Sequence[Case], root: Path) -> Iterator[str]:
+    """Files that belong to no case."""
+    used = {case.path for case in cases}
+    used |= {case.path.with_name(source.path) for case in cases for source in case.sources}
+    for path in sorted(root.rglob("*")):
+        if path.suffix.lower() in ENDINGS and path.is_file() and path not in used:
+            yield f"{path.relative_to(root).as_posix()}: it belongs to no case"

@@ -1,0 +1,121 @@
+"""What was seen of a case: findings, or a trace and a path. What expectations are judged against.
+
+It comes from our executors (`conformance.observing`) or from a recording made on a controller
+(`conformance.recording`), and is judged the same. Values are as in the trace, that is as JSON has
+them (`interp.rendering`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["Event", "Finding", "Observation", "PathRecord"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a front end says of a line: ``code`` is KSS and a number, KRL and a number, or syntax."""
+
+    file: str
+    line: int
+    severity: str
+    code: str
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event of the trace.
+
+    ``time`` is in µs of the virtual clock, ``None`` where nobody measured it. ``fields`` are what
+    this kind of event has besides, as in docs/trace.md.
+    """
+
+    time: int | None
+    task: str
+    kind: str
+    file: str
+    line: int
+    fields: Mapping[str, Any] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """It as JSON, as in a trace."""
+        at = f"{self.file}:{self.line}" if self.file else ""
+        return {"t": self.time, "task": self.task, "kind": self.kind, "at": at, **self.fields}
+
+    @staticmethod
+    def of(record: Mapping[str, Any]) -> Event:
+        """The event of a line of a trace; raises `ValueError` where it is none."""
+        try:
+            rest = dict(record)
+            time, task = rest.pop("t", None), rest.pop("task", "robot")
+            kind, at = rest.pop("kind"), rest.pop("at", None) or ""
+            file, _, line = str(at).rpartition(":")
+            return Event(
+                None if time is None else round(time), str(task), str(kind), file, int(line or 0), rest
+            )
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"no event of a trace: {record!r}") from error
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PathRecord:
+    """Where the arm was, at rising times.
+
+    ``times`` in µs, shape (n,); ``axes`` in degrees, shape (n, 6); ``poses`` X, Y, Z, A, B, C of
+    the tool in the base in mm and degrees, shape (n, 6). ``measured`` are axes of a simulated or
+    real arm, ``measured_poses`` its poses, both of the same shapes, or ``None``.
+    """
+
+    times: npt.NDArray[np.int64]
+    axes: npt.NDArray[np.float64]
+    poses: npt.NDArray[np.float64]
+    measured: npt.NDArray[np.float64] | None = None
+    measured_poses: npt.NDArray[np.float64] | None = None
+
+    def between(self, start: int, end: int) -> PathRecord:
+        """The part from one time to another, both included."""
+        kept = (self.times >= start) & (self.times <= end)
+        return PathRecord(
+            self.times[kept],
+            self.axes[kept],
+            self.poses[kept],
+            None if self.measured is None else self.measured[kept],
+            None if self.measured_poses is None else self.measured_poses[kept],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """All that was seen of a case.
+
+    ``findings`` where it was read or checked only. ``ending`` tells how a run ended: ``end``,
+    ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
+    ``cycle`` is the interpolation cycle in µs. ``is_exact`` tells whether times are known to the µs.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    events: tuple[Event, ...] = ()
+    ending: str = ""
+    note: str = ""
+    path: PathRecord | None = None
+    cycle: int = 12_000
+    is_exact: bool = True
+    robot: str = "none"
+
+    def of_kind(self, *kinds: str) -> Iterable[Event]:
+        """The events of some kinds, in their order."""
+        return (event for event in self.events if event.kind in kinds)
+
+    def on_line(self, file: str, line: int, *kinds: str) -> list[Event]:
+        """The events of some kinds that a line caused."""
+        return [
+            event
+            for event in self.events
+            if event.kind in kinds and event.line == line and event.file == file
+        ]

@@ -1,0 +1,197 @@
+"""The record of a run of the judge: what ``krl conform --json`` writes and the page shows.
+
+CASES.md describes its fields. Others read it, so fields are added but not changed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any, Final
+
+from conformance.case import Case
+from conformance.lint import SUITES, coverage
+from conformance.observation import Observation, PathRecord
+from conformance.registry import registry
+from conformance.runner import CaseResult, Result
+from conformance.verdicts import VERDICTS
+
+__all__ = ["record_of"]
+
+#: Events that are about the cell and not about each statement: these are kept for every case.
+_STATEMENTS: Final = frozenset({"line", "assign", "branch", "call", "return"})
+#: So many events and points of a path are kept at most.
+_MOST_EVENTS: Final = 400
+_MOST_POINTS: Final = 300
+
+
+def record_of(
+    results: Sequence[CaseResult],
+    executors: Sequence[str],
+    robots: Sequence[str],
+    *,
+    version: str,
+    seconds: float,
+) -> dict[str, Any]:
+    """The record of a run, as `json.dumps` takes it."""
+    cases = [one.case for one in results]
+    covered = coverage(cases)
+    counts = [covered.count(hard=hard) for hard in (False, True)]
+    return {
+        "version": version,
+        "generated": datetime.now(UTC).isoformat(timespec="seconds"),
+        "seconds": round(seconds, 3),
+        "executors": list(executors),
+        "robots": list(robots),
+        "cases_total": len(cases),
+        "negative": sum(case.is_negative for case in cases),
+        "runs": sum(len(one.results) for one in results),
+        "verdicts": _verdicts(result for one in results for result in one.results),
+        "case_verdicts": {
+            verdict: sum(one.verdict == verdict for one in results) for verdict in VERDICTS
+        },
+        "suites": [_suite(suite, results) for suite in _suites(cases)],
+        "coverage": {
+            "rules": counts[0][1],
+            "covered": counts[0][0],
+            "hard": counts[1][1],
+            "hard_covered": counts[1][0],
+            "uncovered": [rule.id for rule in covered.uncovered],
+        },
+        "rules": _rules(results),
+        "cases": [_case(one) for one in results],
+    }
+
+
+def _verdicts(results: Any) -> dict[str, int]:
+    counted = Counter(result.verdict for result in results)
+    return {verdict: counted[verdict] for verdict in VERDICTS}
+
+
+def _suites(cases: Sequence[Case]) -> list[str]:
+    there = {case.suite for case in cases}
+    return [suite for suite in SUITES if suite in there] + sorted(there.difference(SUITES))
+
+
+def _suite(suite: str, results: Sequence[CaseResult]) -> dict[str, Any]:
+    its = [one for one in results if one.case.suite == suite]
+    cells: dict[tuple[str, str], list[Result]] = {}
+    for one in its:
+        for result in one.results:
+            cells.setdefault((result.executor, result.robot), []).append(result)
+    return {
+        "name": suite,
+        "cases": len(its),
+        "negative": sum(one.case.is_negative for one in its),
+        "cells": [
+            {"executor": executor, "robot": robot, "verdicts": _verdicts(found)}
+            for (executor, robot), found in cells.items()
+        ],
+    }
+
+
+def _rules(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
+    by_rule: dict[str, list[CaseResult]] = {rule: [] for rule in registry()}
+    for one in results:
+        for rule in one.case.rules:
+            by_rule[rule].append(one)
+    return [
+        {
+            "id": rule.id,
+            "tier": rule.tier,
+            "may_fail": rule.may_fail,
+            "profile": rule.profile,
+            "statement": rule.statement,
+            "source": rule.source,
+            "unshown": rule.unshown,
+            "cases": [one.case.name for one in by_rule[rule.id]],
+            "verdicts": {
+                verdict: count
+                for verdict, count in Counter(one.verdict for one in by_rule[rule.id]).items()
+            },
+        }
+        for rule in registry().values()
+    ]
+
+
+def _case(one: CaseResult) -> dict[str, Any]:
+    case = one.case
+    return {
+        "name": case.name,
+        "suite": case.suite,
+        "title": case.title,
+        "rules": list(case.rules),
+        "phase": case.phase,
+        "profile": case.profile,
+        "negative": case.is_negative,
+        "may_fail": case.may_fail,
+        "unconfirmed": case.unconfirmed,
+        "digest": case.digest,
+        "io": list(case.io),
+        "verdict": one.verdict,
+        "files": [{"name": each.path, "text": each.text} for each in case.sources],
+        "results": [_result(result, is_first=not at) for at, result in enumerate(one.results)],
+    }
+
+
+def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "executor": result.executor,
+        "robot": result.robot,
+        "verdict": result.verdict,
+        "reason": result.reason,
+        "seconds": round(result.seconds, 4),
+        "checks": [
+            {
+                "file": check.file,
+                "line": check.line,
+                "text": check.text,
+                "state": check.state,
+                "actual": check.actual,
+            }
+            for check in result.checks
+        ],
+        "divergence": None if result.divergence is None else result.divergence.record(),
+    }
+    if result.observation is not None:
+        is_whole = is_first or result.verdict == "fail"
+        found |= _seen(result.observation, is_whole=is_whole)
+    return found
+
+
+def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
+    """What was seen: whole for the first executor and for failures, else what differs by robot."""
+    told: dict[str, Any] = {"ending": seen.ending}
+    if is_whole:
+        kept = [event.record() for event in seen.events if event.kind not in _STATEMENTS]
+        told["events"] = kept[:_MOST_EVENTS]
+        told["events_total"] = len(seen.events)
+        told["findings"] = [
+            {
+                "file": one.file,
+                "line": one.line,
+                "severity": one.severity,
+                "code": one.code,
+                "message": one.message,
+            }
+            for one in seen.findings
+        ]
+    if seen.path is not None and len(seen.path.times) and (is_whole or seen.path.measured is not None):
+        told["path"] = _path(seen.path)
+    return told
+
+
+def _path(path: PathRecord) -> dict[str, Any]:
+    """Points of a path, every n-th where there are many."""
+    every = max(1, -(-len(path.times) // _MOST_POINTS))
+    told: dict[str, Any] = {
+        "t": path.times[::every].tolist(),
+        "axes": path.axes[::every].round(5).tolist(),
+        "poses": path.poses[::every].round(4).tolist(),
+    }
+    if path.measured is not None:
+        told["axes_meas"] = path.measured[::every].round(5).tolist()
+    if path.measured_poses is not None:
+        told["poses_meas"] = path.measured_poses[::every].round(4).tolist()
+    return told

@@ -1,0 +1,173 @@
+"""Runs cases: every executor with every robot, in parallel, the same results in any order.
+
+Cases of phases parse and check have one front end and run once. Each result of phase run is judged
+by the case's expectations, and compared with that of the first executor on the same robot, and of
+the first robot: whatever the rule, executors that differ have failed.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
+from typing import Final
+
+from conformance.case import Case
+from conformance.comparison import Divergence, first_divergence
+from conformance.judging import Check, judge
+from conformance.observation import Observation
+from conformance.observing import FRONT, Setup, missing, observe
+from conformance.verdicts import KnownFailures, Verdict, verdict_of
+
+__all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
+
+#: So many cases go to a process at once.
+_SHARE: Final = 8
+
+Observe = Callable[[Case, Setup], Observation]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What became of a case on one executor and robot; ``seconds`` are wall-clock time."""
+
+    executor: str
+    robot: str
+    verdict: Verdict
+    reason: str
+    checks: tuple[Check, ...]
+    seconds: float
+    divergence: Divergence | None = None
+    observation: Observation | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CaseResult:
+    """A case with its results, in the order of executors and robots."""
+
+    case: Case
+    results: tuple[Result, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The gravest of its verdicts."""
+        order: tuple[Verdict, ...] = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
+        return min((one.verdict for one in self.results), key=order.index)
+
+
+def run_case(
+    case: Case,
+    setups: Sequence[Setup],
+    known: KnownFailures = KnownFailures(),  # noqa: B008 - frozen
+    see: Observe = observe,
+    absent: Callable[[Setup], str] = missing,
+) -> CaseResult:
+    """Run one case. ``see`` observes it, ``absent`` tells which setups there are not."""
+    wanted = setups if case.phase == "run" else (Setup(FRONT, "none"),)
+    results: list[Result] = []
+    for setup in wanted:
+        lacking = absent(setup) if case.phase == "run" else ""
+        if lacking:
+            results.append(Result(setup.executor, setup.robot, "skipped", lacking, (), 0.0))
+            continue
+        begun = time.perf_counter()
+        seen = see(case, setup)
+        checks = tuple(judge(case, seen))
+        reason = known.reason(case.name, setup.executor, setup.robot)
+        verdict, told = verdict_of(case, checks, reason)
+        took = time.perf_counter() - begun
+        result = Result(setup.executor, setup.robot, verdict, told, checks, took, None, seen)
+        results.append(_compared(result, results))
+    return CaseResult(case, tuple(results))
+
+
+def _compared(result: Result, before: Iterable[Result]) -> Result:
+    """Beside the first that ran on the same robot, or else beside the first of all."""
+    ran = [one for one in before if one.observation is not None]
+    if not ran or result.observation is None:
+        return result
+    first = next((one for one in ran if one.robot == result.robot), ran[0])
+    names = (f"{first.executor}/{first.robot}", f"{result.executor}/{result.robot}")
+    assert first.observation is not None, "only what ran was kept"
+    found = first_divergence(names, first.observation, result.observation)
+    if found is None:
+        return result
+    return replace(result, verdict="fail", reason=str(found), divergence=found)
+
+
+def run_cases(
+    cases: Sequence[Case],
+    executors: Sequence[str] = ("tree",),
+    robots: Sequence[str] = ("none",),
+    known: KnownFailures | None = None,
+    jobs: int | None = None,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> list[CaseResult]:
+    """Run cases in so many processes (default: one a core); the results are in their order.
+
+    ``on_done`` is told how many cases were finished. A case that takes its process with it has
+    failed, and no other with it.
+    """
+    listed = known if known is not None else KnownFailures.load()
+    setups = tuple(Setup(executor, robot) for robot in robots for executor in executors)
+    shares = [list(range(at, min(at + _SHARE, len(cases)))) for at in range(0, len(cases), _SHARE)]
+    wanted = min(jobs or os.cpu_count() or 1, len(shares))
+    done: dict[int, CaseResult] = {}
+    if wanted <= 1:
+        for number, case in enumerate(cases):
+            done[number] = run_case(case, setups, listed)
+            on_done(1)
+        return [done[number] for number in range(len(cases))]
+    broken: list[int] = []
+    for share, results in _shared(cases, shares, setups, listed, wanted):
+        if results is None:
+            broken += share
+            continue
+        done |= dict(zip(share, results, strict=True))
+        on_done(len(share))
+    for number in broken:
+        done[number] = _alone(cases[number], setups, listed)
+        on_done(1)
+    return [done[number] for number in range(len(cases))]
+
+
+def _shared(
+    cases: Sequence[Case],
+    shares: Sequence[list[int]],
+    setups: tuple[Setup, ...],
+    known: KnownFailures,
+    jobs: int,
+) -> Iterator[tuple[list[int], list[CaseResult] | None]]:
+    """The shares with their results as they come; ``None`` where the process died."""
+    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+        waiting: dict[Future[list[CaseResult]], list[int]] = {
+            pool.submit(_run_share, [cases[one] for one in share], setups, known): share
+            for share in shares
+        }
+        for future in as_completed(waiting):
+            try:
+                yield waiting[future], future.result()
+            except BrokenProcessPool:
+                yield waiting[future], None
+
+
+def _run_share(
+    cases: Sequence[Case], setups: tuple[Setup, ...], known: KnownFailures
+) -> list[CaseResult]:
+    return [run_case(case, setups, known) for case in cases]
+
+
+def _alone(case: Case, setups: tuple[Setup, ...], known: KnownFailures) -> CaseResult:
+    """A case in a process of its own, where one of its like died."""
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        try:
+            return pool.submit(run_case, case, setups, known).result()
+        except BrokenProcessPool:
+            told = "the process died"
+    return CaseResult(
+        case, tuple(Result(one.executor, one.robot, "fail", told, (), 0.0) for one in setups)
+    )

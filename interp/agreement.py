@@ -1,0 +1,274 @@
+"""Whether executors agree: what they ask and what they tell, side by side.
+
+Executors that run the same program in the same world make the same requests and tell the same
+events, in the same order [design section 6]. `observe` writes both down as one list of steps,
+`difference` compares two such lists.
+
+What executors hand over as `Code` they number as they like. It is compared by what it does: a
+`Prober` has conditions evaluated and actions entered, at requests drawn from a seed, as interrupts,
+triggers and cyclic signals would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from random import Random
+from typing import Any, Final
+
+from interp.events import Event, Recorder, Sink
+from interp.executor import Executor
+from interp.faults import Fault, RuntimeFailure, fault
+from interp.requests import (
+    At,
+    Code,
+    Crash,
+    DeclareInterrupt,
+    End,
+    Fail,
+    Invoke,
+    Move,
+    MoveSpline,
+    Request,
+    Resume,
+    SetTrigger,
+    SplineStop,
+    SwitchSignal,
+    Value,
+    Write,
+)
+from interp.stub import StubWorld
+
+__all__ = ["Difference", "Entered", "Evaluated", "Observed", "Prober", "difference", "observe"]
+
+#: One of so many requests is a reason to look at conditions, or to enter an action.
+_PROBED: Final = 6
+#: One of so many requests that can fail does.
+_FAILING: Final = 300
+#: So many actions may interrupt one another.
+_DEEPEST: Final = 3
+#: What stands for any code: executors number them as they like.
+_ANY: Final = Code(-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluated:
+    """A condition was evaluated: its value, or what was raised."""
+
+    value: Value | RuntimeFailure
+
+
+@dataclass(frozen=True, slots=True)
+class Entered:
+    """An action was entered."""
+
+    depth: int
+
+
+Step = Event | Request | Evaluated | Entered
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """All that an executor asked and told; ``is_cut`` where it was stopped from outside."""
+
+    steps: tuple[Step, ...]
+    is_cut: bool
+
+    @property
+    def last(self) -> Step:
+        """What it ended with."""
+        return self.steps[-1]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The first step at which two executors differ; ``None`` stands behind the last one."""
+
+    place: int
+    left: Step | None
+    right: Step | None
+
+    def __str__(self) -> str:
+        return f"step {self.place}: {self.left} here, {self.right} there"
+
+
+@dataclass(frozen=True, slots=True)
+class _Action:
+    """Code that can be entered, and how deep the program was when it was handed over."""
+
+    code: Code
+    depth: int
+
+
+class Prober:
+    """What an eager controller would do at some requests, drawn from a seed.
+
+    With ``faults`` some requests fail, so that ON_ERROR_PROCEED has something to take.
+    """
+
+    def __init__(self, seed: int, *, faults: bool = True) -> None:
+        self._random = Random(seed)  # nobody's secret depends on it
+        self._faults = faults
+        self._conditions: list[Code] = []
+        self._actions: list[_Action] = []
+        self._entered: list[_Action] = []
+        self._depths: list[int] = []
+
+    def notice(self, request: Request) -> None:
+        """Keep the code that a request hands over."""
+        depth = request.at.depth
+        for code, is_action in _handed(request):
+            if is_action:
+                self._actions.append(_Action(code, depth))
+            else:
+                self._conditions.append(code)
+
+    def failing(self, request: Request) -> Fault | None:
+        """A fault as the reply, if this request is to fail."""
+        if not self._faults or not isinstance(request, Write | Invoke | Move | MoveSpline):
+            return None
+        return fault("inadmissible") if self._random.randrange(_FAILING) == 0 else None
+
+    def disturb(self, executor: Executor, world: StubWorld) -> Iterator[Step]:
+        """Evaluate a condition or enter an action, perhaps both."""
+        if self._random.randrange(_PROBED):
+            return
+        if self._conditions:
+            yield Evaluated(_evaluated(executor, self._random.choice(self._conditions), world))
+        if self._actions and len(self._entered) < _DEEPEST:
+            action = self._random.choice(self._actions)
+            executor.enter(action.code)
+            self._entered.append(action)
+            self._depths.append(executor.depth)
+            yield Entered(executor.depth)
+
+    def is_end_of_action(self) -> bool:
+        """Whether it is an action that has ended, and not the program."""
+        if not self._entered:
+            return False
+        self._entered.pop()
+        self._depths.pop()
+        return True
+
+    def resume(self, executor: Executor) -> bool:
+        """Answer RESUME as `interp.requests.Resume` has it, if the innermost action can [INT-10].
+
+        Its routine has to be deeper than the one that handed the action over.
+        """
+        if not self._entered or self._depths[-1] <= self._entered[-1].depth:
+            return False
+        depth = self._entered[-1].depth
+        executor.unwind(depth)
+        while self._depths and self._depths[-1] >= depth:
+            self._depths.pop()
+            self._entered.pop()
+        return True
+
+
+def observe(
+    make: Callable[[Sink], Executor],
+    world: StubWorld,
+    prober: Prober | None = None,
+    most: int = 10_000,
+) -> Observed:
+    """Run a program to its end, or until it has made so many requests.
+
+    Raises `interp.faults.LinkError` where it cannot begin.
+    """
+    recorder = Recorder()
+    executor = make(recorder)
+    steps: list[Step] = []
+    reply: Any = None
+    for _ in range(most):
+        request = executor.advance(reply)
+        steps += recorder.events
+        recorder.events.clear()
+        steps.append(_comparable(request))
+        reply = None
+        match request:
+            case End() if prober is not None and prober.is_end_of_action():
+                continue
+            case End() | Fail() | Crash():
+                return Observed(tuple(steps), is_cut=False)
+            case Resume() if prober is not None and prober.resume(executor):
+                continue
+        reply = world.reply(request)
+        if prober is None:
+            continue
+        reply = prober.failing(request) or reply
+        prober.notice(request)
+        for step in prober.disturb(executor, world):
+            steps.append(step)
+            if isinstance(step, Entered):  # the request will be asked again
+                reply = None
+    return Observed(tuple(steps), is_cut=True)
+
+
+def difference(left: Observed, right: Observed) -> Difference | None:
+    """Where two executors begin to differ; ``None`` where they agree."""
+    for place, (one, other) in enumerate(zip(left.steps, right.steps, strict=False)):
+        if not _alike(one, other):
+            return Difference(place, one, other)
+    place = min(len(left.steps), len(right.steps))
+    if len(left.steps) == len(right.steps):
+        return None
+    return Difference(place, _step(left.steps, place), _step(right.steps, place))
+
+
+def _step(steps: Sequence[Step], place: int) -> Step | None:
+    return steps[place] if place < len(steps) else None
+
+
+def _alike(one: Step, other: Step) -> bool:
+    """Whether two steps are the same to the last bit: 1 is not 1.0, and 0.0 not -0.0."""
+    match one, other:
+        case (Fail(), Fail()):
+            return one.at == other.at and repr(one.fault) == repr(other.fault)
+        case (Evaluated(RuntimeFailure()), Evaluated()):
+            return repr(one) == repr(other)
+    return one == other and repr(one) == repr(other)
+
+
+def _evaluated(executor: Executor, code: Code, world: StubWorld) -> Value | RuntimeFailure:
+    try:
+        return executor.evaluate(code, world.read)
+    except RuntimeFailure as error:
+        return error
+
+
+def _handed(request: Request) -> Iterator[tuple[Code, bool]]:
+    """The codes in a request, and whether each is an action."""
+    match request:
+        case DeclareInterrupt(condition=condition, action=action):
+            yield condition, False
+            yield action, True
+        case SetTrigger(action=action):
+            yield action, True
+        case SwitchSignal(cycle=Code() as cycle):
+            yield cycle, True
+        case MoveSpline(items=items):
+            for item in items:
+                if isinstance(item, SplineStop):
+                    yield item.condition, False
+                elif isinstance(item, SetTrigger):
+                    yield item.action, True
+
+
+def _comparable(part: Any) -> Any:
+    """A request without the numbers of codes; runtime failures are compared by their texts."""
+    match part:
+        case Code():
+            return _ANY
+        case tuple():
+            return tuple(_comparable(one) for one in part)
+        case At():
+            return part
+    if (
+        is_dataclass(part)
+        and not isinstance(part, type)
+        and type(part).__module__.endswith("requests")
+    ):
+        changed = {one.name: _comparable(getattr(part, one.name)) for one in fields(part)}
+        return replace(part, **changed)
+    return part

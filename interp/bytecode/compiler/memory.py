@@ -1,0 +1,385 @@
+"""Moving values: what instructions read a place, refer to it, store in it, and tell of it.
+
+`Memory` knows cells and types and nothing of syntax trees.
+"""
+
+from __future__ import annotations
+
+from grammar.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, Type
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cells import Plain, bits_of, offset_of, shared_cells
+from interp.bytecode.compiler.context import Context, Ended
+from interp.bytecode.compiler.places import (
+    Block,
+    Cells,
+    DataCells,
+    Formal,
+    FormalView,
+    Hole,
+    Place,
+    Pushed,
+    PushedView,
+    Remote,
+    Scalar,
+    Text,
+    Value,
+    View,
+)
+from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
+from interp.faults import FAULTS, LinkError
+from interp.values import single
+
+__all__ = ["Memory"]
+
+#: How a value of one type becomes one of another.
+_CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
+    (INT, REAL): (Op.INT_TO_REAL,),
+    (REAL, INT): (Op.REAL_TO_INT,),
+    (CHAR, INT): (Op.CHAR_TO_INT,),
+    (INT, CHAR): (Op.INT_TO_CHAR,),
+}
+
+
+class Memory:
+    """Reads and stores in one code object."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.writer = context.writer
+        self.emit = context.writer.emit
+
+    # ----------------------------------------------------------------------- ends
+
+    def fail(self, slug: str) -> Ended:
+        """The program faults here; what comes back is to be raised."""
+        self.emit(Op.FAIL, FAULTS[slug].code)
+        return Ended()
+
+    def unlinked(self, reason: str) -> Ended:
+        """The program ends here with a `LinkError`, on every executor."""
+        text = reason.encode("latin-1", errors="replace").decode("latin-1")
+        self.emit(Op.UNLINKED, self.context.tables.text(text))
+        return Ended()
+
+    def refuse(self, reason: str) -> Ended:
+        """The program ends here because it cannot be compiled."""
+        self.context.note(reason)
+        return self.unlinked(reason)
+
+    # ----------------------------------------------------------------------- types
+
+    def number(self, type_: Type) -> int:
+        """The number of a type; refuses what no variable can be of."""
+        try:
+            return self.context.tables.number(type_)
+        except LinkError as error:
+            raise self.refuse(str(error)) from None
+
+    def closed(self, type_: Type) -> Type:
+        """The type as the program has it."""
+        return self.context.tables.types[self.number(type_)]
+
+    # ----------------------------------------------------------------------- reading
+
+    def load(self, place: Place) -> Value:
+        """The value of a place."""
+        match place:
+            case Remote():
+                return self.read(place)
+            case FormalView() | PushedView():
+                return self.view(place)
+        if isinstance(place.type, Plain):
+            self._load_cell(place)
+            return Scalar(place.type)
+        self.refer(place)
+        return Block(place.type)
+
+    def _load_cell(self, place: Cells | DataCells | Formal | Pushed) -> None:
+        match place:
+            case Cells(offset):
+                self.emit(Op.LOAD_LOCAL, offset)
+            case DataCells(address):
+                self.emit(Op.LOAD_DATA, address)
+            case Formal(offset):
+                self.emit(Op.LOAD_REF, offset)
+                self.emit(Op.LOAD)
+            case Pushed():
+                last = self.writer.last()
+                element = _ELEMENTS.get(last.op) if last else None
+                if last is None or element is None:
+                    self.emit(Op.LOAD)
+                else:
+                    last.op = element
+
+    def refer(self, place: Cells | DataCells | Formal | Pushed) -> None:
+        """Leave a reference to a place on the stack."""
+        match place:
+            case Cells(offset, type_):
+                self.emit(Op.REF_LOCAL, offset, self.number(type_))
+            case DataCells(address, type_):
+                self.emit(Op.REF_DATA, address, self.number(type_))
+            case Formal(offset):
+                self.emit(Op.LOAD_REF, offset)
+
+    def view(self, place: FormalView | PushedView) -> View:
+        """Leave a view on the stack."""
+        if isinstance(place, FormalView):
+            self.emit(Op.LOAD_VIEW, place.offset)
+        return View(place.element, place.dimensions)
+
+    def as_view(self, value: Block | View, at: int | None = None) -> View:
+        """Make a view of a reference to an array: of the one on top, or of one pushed before."""
+        if isinstance(value, View):
+            return value
+        assert isinstance(value.type, Array), "only arrays have views"
+        place = self.writer.here if at is None else at
+        self.writer.insert(place, Op.VIEW, self.number(value.type))
+        return View(value.type.element, len(value.type.sizes))
+
+    def read(self, place: Remote) -> Value:
+        """Ask the world for a value."""
+        type_ = place.type
+        if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
+            raise self.refuse(f"the type of {_written(place)} is not known")
+        type_ = self.closed(type_)
+        path = self.pushed_path(place)
+        ask = self.context.tables.ask(Ask("Read", (path,), self.number(type_)))
+        if isinstance(type_, Plain):
+            self.emit(Op.ASK, ask)
+            return Scalar(type_)
+        kept = Cells(self.writer.temporary(type_), type_)
+        self.refer(kept)
+        self.emit(Op.ASK, ask)
+        self.refer(kept)
+        return Block(type_)
+
+    def pushed_path(self, place: Remote) -> Items:
+        """The path of a system variable as a part of a request; its indices are pushed."""
+        parts: list[Argument] = []
+        for step in place.path:
+            if isinstance(step, Hole):
+                self._push_hole(step)
+                parts.append(Input(Mode.IN, self.number(INT)))
+            else:
+                parts.append(Constant(step))
+        return Items(tuple(parts))
+
+    def _push_hole(self, hole: Hole) -> None:
+        self.emit(Op.LOAD_REF if hole.is_formal else Op.LOAD_LOCAL, hole.offset)
+        if hole.is_formal:
+            self.emit(Op.LOAD)
+
+    # ----------------------------------------------------------------------- parts
+
+    def member(self, base: Place, name: str) -> Place:
+        """A component of a structure."""
+        key = name.upper()
+        if isinstance(base, Remote):
+            known = base.type.member(key) if isinstance(base.type, Structure) else None
+            return Remote((*base.path, key), known or UNKNOWN)
+        if isinstance(base, FormalView | PushedView) or not isinstance(base.type, Structure):
+            raise self.unlinked(f"{key} is a member of nothing")
+        found = offset_of(base.type, (key,))
+        if found is None:
+            raise self.unlinked(f"{base.type} has no component {name} that is known")
+        return self._part(base, *found)
+
+    def _part(self, base: Cells | DataCells | Formal | Pushed, offset: int, type_: Type) -> Place:
+        match base:
+            case Cells(first):
+                return Cells(first + offset, type_)
+            case DataCells(first):
+                return DataCells(first + offset, type_)
+        through = base.offset if isinstance(base, Formal) else base.through
+        self.refer(base)
+        last = self.writer.last()
+        if last is not None and last.op is Op.MEMBER:
+            before = last.operands[0]
+            assert isinstance(before, int), "an offset"
+            last.operands = (before + offset, self.number(type_))
+        else:
+            self.emit(Op.MEMBER, offset, self.number(type_))
+        return Pushed(type_, through)
+
+    def fixed_element(
+        self, base: Cells | DataCells, indices: tuple[int, ...]
+    ) -> Cells | DataCells | None:
+        """An element, or what is left of an array, by indices that are known and inside."""
+        found = offset_of(base.type, indices)
+        if found is None:
+            return None
+        if isinstance(base, Cells):
+            return Cells(base.offset + found[0], found[1])
+        return DataCells(base.address + found[0], found[1])
+
+    # ----------------------------------------------------------------------- converting
+
+    def convert(self, value: Value, to: Type) -> None:
+        """Make of the value on top a value of one cell of another type."""
+        if isinstance(value, Text) and len(value.text) == 1:
+            self.emit(Op.PUSH_CHAR, ord(value.text))
+            value = Scalar(CHAR)
+        if not isinstance(value, Scalar):
+            raise self.fail("inadmissible")
+        if value.type == to:
+            return
+        ways = _CONVERSIONS.get((value.type, to))
+        if ways is None:
+            raise self.fail("inadmissible")
+        last = self.writer.last()
+        if ways == (Op.INT_TO_REAL,) and last is not None and last.op is Op.PUSH_INT:
+            number = last.operands[0]
+            assert isinstance(number, int), "a constant"
+            last.op, last.operands = Op.PUSH_REAL, (bits_of(single(number)),)
+            return
+        for op in ways:
+            self.emit(op)
+
+    # ----------------------------------------------------------------------- storing
+
+    def ready(self, place: Place) -> Place:
+        """Push what a place needs below the value that is to be stored."""
+        match place:
+            case Formal():
+                self.refer(place)
+                return Pushed(place.type, place.offset)
+            case FormalView():
+                self.view(place)
+                return PushedView(place.element, place.dimensions, place.offset)
+            case Cells() | DataCells() if not isinstance(place.type, Plain):
+                self.refer(place)
+        return place
+
+    def store(self, place: Place, value: Value, behind: int) -> None:
+        """Store the value on top in a place made `ready`; ``behind`` is where the value begins."""
+        if isinstance(place, Remote):
+            self._write(place, value, behind)
+            return
+        if isinstance(place, PushedView):
+            self._fill(View(place.element, place.dimensions), value)
+            return
+        assert not isinstance(place, FormalView), "made ready"
+        if isinstance(place.type, Plain):
+            self.convert(value, place.type)
+            match place:
+                case Cells(offset):
+                    self.emit(Op.STORE_LOCAL, offset)
+                case DataCells(address):
+                    self.emit(Op.STORE_DATA, address)
+                case _:
+                    self.emit(Op.STORE)
+            return
+        self.store_block(place.type, value, behind)
+
+    def store_block(self, type_: Type, value: Value, behind: int) -> None:
+        """Store in a structure or array whose reference lies below the value."""
+        match value:
+            case Block(of) if of == type_:
+                self.emit(Op.COPY, self.number(type_))
+            case Block(of) if shared_cells(type_, of) is not None:
+                self.emit(Op.FILL_POSE, self.number(type_), self.number(of))
+            case _ if isinstance(type_, Array):
+                target = self.as_view(Block(type_), at=behind)
+                self._fill(target, value)
+            case _:
+                raise self.fail("inadmissible")
+
+    def _fill(self, target: View, value: Value) -> None:
+        """Store in an array of which a view lies below the value."""
+        if isinstance(value, Text):
+            if (target.element, target.dimensions) != (CHAR, 1):
+                raise self.fail("inadmissible")
+            self.emit(Op.SET_TEXT, self.context.tables.text(value.text))
+            return
+        if isinstance(value, Scalar) or (
+            isinstance(value, Block) and not isinstance(value.type, Array)
+        ):
+            raise self.fail("inadmissible")
+        given = self.as_view(value)
+        if given.dimensions != target.dimensions:
+            raise self.fail("inadmissible")
+        if given.element != target.element:
+            raise self.refuse(f"an array of {given.element} fills one of {target.element}")
+        self.emit(Op.FILL_ARRAY, self.number(target.element), target.dimensions)
+
+    def _write(self, place: Remote, value: Value, behind: int) -> None:
+        """Tell the world a value. The indices of the path come before the value."""
+        path = self._path_below(place, behind)
+        part = self.remote_value(place.type, value, behind + _pushes(place))
+        self.emit(Op.ASK, self.context.tables.ask(Ask("Write", (path, part), None)))
+
+    def _path_below(self, place: Remote, behind: int) -> Items:
+        """The path as a part of a request; its indices are pushed below the value."""
+        parts: list[Argument] = []
+        for step in place.path:
+            if isinstance(step, Hole):
+                parts.append(Input(Mode.IN, self.number(INT)))
+                self.writer.insert(
+                    behind, Op.LOAD_REF if step.is_formal else Op.LOAD_LOCAL, step.offset
+                )
+                behind += 1
+                if step.is_formal:
+                    self.writer.insert(behind, Op.LOAD)
+                    behind += 1
+            else:
+                parts.append(Constant(step))
+        return Items(tuple(parts))
+
+    def remote_value(self, type_: Type, value: Value, behind: int) -> Argument:
+        """The value on top as a part of a request, converted to the type as far as it is known."""
+        if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
+            return self.handed(value)
+        type_ = self.closed(type_)
+        if isinstance(type_, Plain):
+            self.convert(value, type_)
+            return Input(Mode.IN, self.number(type_))
+        if value != Block(type_):
+            kept = Cells(self.writer.temporary(type_), type_)
+            self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(type_))
+            self.store_block(type_, value, behind + 1)
+            self.refer(kept)
+        return Input(Mode.REF, self.number(type_))
+
+    def handed(self, value: Value) -> Argument:
+        """The value on top as a part of a request, as it is."""
+        match value:
+            case Text(text):
+                return Constant(text)
+            case Scalar(type_):
+                return Input(Mode.IN, self.number(type_))
+            case Block(type_):
+                return Input(Mode.REF, self.number(type_))
+        return Input(Mode.VIEW, self.number(value.element), value.dimensions)
+
+    # ----------------------------------------------------------------------- telling
+
+    def tell(self, place: Place) -> None:
+        """Tell the trace that a place was assigned, just now."""
+        match place:
+            case Cells(offset, type_):
+                self.emit(Op.TELL_LOCAL, offset, self.number(type_))
+            case DataCells(address, type_):
+                self.emit(Op.TELL_DATA, address, self.number(type_))
+            case Pushed(type_, through):
+                self._tell_last(type_, 0, through)
+            case PushedView(element, dimensions, through):
+                self._tell_last(element, dimensions, through)
+
+    def _tell_last(self, type_: Type, dimensions: int, through: int | None) -> None:
+        if through is None:
+            self.emit(Op.TELL, self.number(type_), dimensions)
+        else:
+            self.emit(Op.TELL_REF, through, self.number(type_), dimensions)
+
+
+_ELEMENTS = {Op.INDEX_LOCAL: Op.ELEMENT_LOCAL, Op.INDEX_DATA: Op.ELEMENT_DATA}
+
+
+def _pushes(place: Remote) -> int:
+    """How many instructions push the indices of a path."""
+    holes = [step for step in place.path if isinstance(step, Hole)]
+    return sum(2 if hole.is_formal else 1 for hole in holes)
+
+
+def _written(place: Remote) -> str:
+    return ".".join("[]" if isinstance(step, int | Hole) else step for step in place.path)

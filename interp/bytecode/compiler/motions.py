@@ -1,0 +1,306 @@
+"""Motions, triggers, interrupts and cyclic signals: statements that only ask the world."""
+
+from __future__ import annotations
+
+from grammar import ast
+from grammar.symbols import SignalSymbol
+from grammar.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
+from grammar.walk import walk
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.compiler.calls import Calls
+from interp.bytecode.compiler.places import Block, Cells, Remote, Scalar, Value
+from interp.bytecode.compiler.writer import Label
+from interp.bytecode.program import (
+    Argument,
+    Ask,
+    Choice,
+    CodeKind,
+    Constant,
+    Handle,
+    Input,
+    Items,
+    Mode,
+    Record,
+)
+from interp.faults import Fault, LinkError
+from interp.operators import apply_unary
+from interp.values import EnumValue, constant, converted, integer, letters, single
+from interp.values import Value as Known
+
+__all__ = ["Motions"]
+
+_CONSTANT = (
+    ast.IntegerLiteral,
+    ast.RealLiteral,
+    ast.BoolLiteral,
+    ast.BitLiteral,
+    ast.StringLiteral,
+    ast.EnumConstant,
+    ast.Unary,
+    ast.Parenthesised,
+    ast.Name,
+)
+
+
+class Motions(Calls):
+    """Makes the code of statements that ask the world to do something."""
+
+    def ask(self, request: str, *parts: Argument) -> None:
+        """Make a request of what lies on the stack."""
+        self.emit(Op.ASK, self.context.tables.ask(Ask(request, parts, None)))
+
+    # ----------------------------------------------------------------------- motions
+
+    def motion(self, node: ast.Motion) -> None:
+        """PTP, LIN, CIRC and all others."""
+        self.ask("Move", *self._move(node))
+
+    def _move(self, node: ast.Motion) -> tuple[Argument, ...]:
+        auxiliary: Cells | None = None
+        if node.auxiliary is not None:
+            auxiliary = self._kept(node.auxiliary)
+        target = self.handed(self._target(node))
+        parts: list[Argument] = [Constant(node.kind), target, Constant(None)]
+        if auxiliary is not None:
+            self.refer(auxiliary)
+            parts[2] = self.handed(Block(auxiliary.type))
+        parts.append(self._optional(node.angle))
+        parts.append(self._values(node.values))
+        parts.append(Items(tuple(Constant(one) for one in node.criteria)))
+        parts.append(Constant(None if node.reference is None else node.reference.name.key))
+        return tuple(parts)
+
+    def _target(self, node: ast.Motion) -> Value:
+        """The target; a copy where it could be changed before the request is made."""
+        later: list[ast.Expression] = [one.value for one in node.values]
+        if node.angle is not None:
+            later.append(node.angle)
+        if any(isinstance(one, ast.Call) for part in later for one in walk(part)):
+            kept = self._kept(node.target)
+            self.refer(kept)
+            return Block(kept.type)
+        return self.value(node.target)
+
+    def _kept(self, node: ast.Expression) -> Cells:
+        """A copy of a value, in the frame."""
+        behind = self.writer.here
+        value = self.value(node)
+        if not isinstance(value, Block | Scalar):
+            raise self.refuse("a motion goes to what is no position")
+        kept = Cells(self.writer.temporary(value.type), value.type)
+        self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(kept.type))
+        self.emit(*((Op.COPY, self.number(kept.type)) if isinstance(value, Block) else (Op.STORE,)))
+        return kept
+
+    def _optional(self, node: ast.Expression | None) -> Argument:
+        if node is None:
+            return Constant(None)
+        self.real(node)
+        return Input(Mode.IN, self.number(REAL))
+
+    def _values(self, nodes: tuple[ast.Assignment, ...]) -> Items:
+        """What stands behind WITH [SPL-08]."""
+        found: list[Argument] = []
+        for node in nodes:
+            place = self.place(node.target)
+            if not isinstance(place, Remote):
+                raise self.unlinked("WITH gives a value to what is no system variable")
+            path = self.pushed_path(place)
+            behind = self.writer.here
+            value = self.value(node.value, place.type)
+            found.append(Items((path, self.remote_value(place.type, value, behind))))
+        return Items(tuple(found))
+
+    def emily_motion(self, node: ast.EmilyMotion) -> None:
+        """MOVE_EMI."""
+        parts = [self._word(node.device), self._word(node.action)]
+        self.ask("MoveEmily", *parts, self._optional(node.number))
+
+    def _word(self, node: ast.Expression) -> Argument:
+        value = self.value(node)
+        if isinstance(value, Block):
+            value = self.as_view(value)
+        if isinstance(value, Scalar):
+            raise self.fail("argument")
+        return self.handed(value)
+
+    # ----------------------------------------------------------------------- spline blocks
+
+    def spline_block(self, node: ast.SplineBlock, end: Label) -> None:
+        """SPLINE: what stands in it is evaluated first, then planned as one motion [SPL-01]."""
+        values = self._values(node.values)
+        first, items = self.context.line, []
+        for item in node.items:
+            self._go_on_at(self.context.unit.line(item), end)
+            items.append(self._item(item))
+        self._go_on_at(first, end)
+        is_approximated = Constant(node.is_approximated)
+        self.ask("MoveSpline", Constant(node.keyword), values, Items(tuple(items)), is_approximated)
+
+    def _go_on_at(self, line: int, end: Label) -> None:
+        if line != self.context.line:
+            self.context.line = line
+            self.emit(Op.AT, line, end)
+
+    def _item(
+        self, node: ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
+    ) -> Record:
+        line = self.context.line
+        match node:
+            case ast.Motion():
+                return Record("Move", line, self._move(node))
+            case ast.Trigger():
+                return Record("SetTrigger", line, self._set_trigger(node))
+            case ast.ConstantVelocity():
+                words = (Constant("CONST_VEL"), Constant(node.edge))
+                place = self._optional(node.place)
+                return Record("SplineRange", 0, (*words, place, Constant(node.on_start)))
+            case ast.TimeBlock():
+                words = (Constant("TIME_BLOCK"), Constant(node.edge))
+                value = self._optional(node.value)
+                return Record("SplineRange", 0, (*words, value, Constant(False)))
+        place = self._optional(node.place)
+        condition = self._handed_over(node.condition, CodeKind.CONDITION)
+        return Record("SplineStop", 0, (place, Constant(node.on_start), condition))
+
+    # ----------------------------------------------------------------------- triggers
+
+    def trigger(self, node: ast.Trigger) -> None:
+        """TRIGGER."""
+        self.ask("SetTrigger", *self._set_trigger(node))
+
+    def _set_trigger(self, node: ast.Trigger) -> tuple[Argument, ...]:
+        place = self._optional(node.place)
+        delay = self._optional(node.delay)
+        output = self._output(node.action)
+        priority = self._optional_integer(node.priority)
+        action = self._handed_over(node.action, CodeKind.ACTION)
+        words = Constant(node.place_kind), place, Constant(node.on_start)
+        return (*words, delay, action, output, priority)
+
+    def _optional_integer(self, node: ast.Expression | None) -> Argument:
+        if node is None:
+            return Constant(None)
+        self.integer(node)
+        return Input(Mode.IN, self.number(INT))
+
+    def _handed_over(
+        self,
+        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
+        kind: CodeKind,
+    ) -> Handle:
+        return Handle(self.context.project.handed_over(self.context, node, kind))
+
+    def _output(self, action: ast.Assignment | ast.CallStatement) -> Argument:
+        """The assignment of a literal to a system variable with literal indices, if it is one."""
+        if not isinstance(action, ast.Assignment):
+            return Constant(None)
+        parts = [action.value, *_indices(action.target)]
+        if not all(isinstance(one, _CONSTANT) for part in parts for one in walk(part)):
+            return Constant(None)
+        before = self.writer.here
+        place = self.place(action.target)
+        if not isinstance(place, Remote):
+            if self.writer.here != before:
+                raise self.refuse("an action on a part of a variable")
+            return Constant(None)
+        value = self._known(action.value, place.type)
+        path = self.pushed_path(place)
+        return Items((path, self._as_part(value)))
+
+    def _known(self, node: ast.Expression, type_: Type) -> Known:
+        """The value of a literal as a system variable receives it."""
+        try:
+            value = self._literal(node, type_)
+            is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
+            return value if is_open else converted(value, type_)
+        except Fault as error:
+            raise self.fail(error.slug) from None
+        except LinkError as error:
+            raise self.unlinked(str(error)) from None
+
+    def _literal(self, node: ast.Expression, type_: Type) -> Known:
+        match node:
+            case ast.Parenthesised():
+                return self._literal(node.inner, type_)
+            case ast.Unary():
+                return apply_unary(node.operator, self._literal(node.operand, UNKNOWN))
+            case ast.IntegerLiteral():
+                return integer(node.value)
+            case ast.BitLiteral():
+                return integer(node.value - 2**32 if node.value >= 2**31 else node.value)
+            case ast.RealLiteral():
+                return single(node.value)
+            case ast.StringLiteral():
+                return letters(node.text)
+            case ast.BoolLiteral():
+                return node.value
+            case ast.EnumConstant():
+                enumeration = self.context.unit.checked.enumerations.get(node, type_)
+                if isinstance(enumeration, Enumeration):
+                    return constant(enumeration, node.name.key)
+                raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
+        raise LinkError("no literal")
+
+    def _as_part(self, value: Known) -> Argument:
+        if isinstance(value, EnumValue):
+            return Choice(self.number(value.type), value.index)
+        if isinstance(value, int | float | str):
+            return Constant(value)
+        raise self.refuse("a text is the output of a trigger")
+
+    # ----------------------------------------------------------------------- interrupts
+
+    def interrupt_declaration(self, node: ast.InterruptDeclaration) -> None:
+        """INTERRUPT DECL [INT-01]."""
+        number = self._optional_integer(node.number)
+        condition = self._handed_over(node.condition, CodeKind.CONDITION)
+        action = self._handed_over(node.action, CodeKind.ACTION)
+        self.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
+
+    def interrupt_switch(self, node: ast.InterruptSwitch) -> None:
+        """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
+        number = self._optional_integer(node.number)
+        self.ask("SwitchInterrupt", Constant(node.action), number)
+
+    def brake(self, node: ast.Brake) -> None:
+        """BRAKE [INT-09]."""
+        self.ask("BrakeArm", Constant(node.mode))
+
+    # ----------------------------------------------------------------------- cyclic signals
+
+    def signal_on(self, node: ast.SignalOn) -> None:
+        """ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
+        source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
+        name = self._signal_name(source)
+        numbers = [self._optional(one) for one in (node.delay, node.minimum, node.maximum)]
+        cycle = self._handed_over(node.assignment, CodeKind.ACTION)
+        words = Constant(node.keyword), Constant(True), Constant(name)
+        self.ask("SwitchSignal", *words, cycle, *numbers)
+
+    def signal_off(self, node: ast.SignalOff) -> None:
+        """ANIN OFF, ANOUT OFF, DIGIN OFF."""
+        words = Constant(node.keyword), Constant(False), Constant(self._signal_name(node.variable))
+        self.ask("SwitchSignal", *words, *[Constant(None)] * 4)
+
+    def _signal_name(self, node: ast.Expression) -> str:
+        """The signal, or else the system variable, in an expression, by its name here."""
+        names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
+        for name in names:
+            found = self.context.unit.found(name)
+            if found is not None and isinstance(found.symbol, SignalSymbol):
+                return name.key
+        for name in names:
+            if name.key.startswith("$"):
+                return name.key
+        raise self.unlinked("nothing tells which signal is meant")
+
+
+def _indices(node: ast.Expression) -> list[ast.Expression]:
+    """All indices in what is written to."""
+    found: list[ast.Expression] = []
+    while isinstance(node, ast.Subscript | ast.Member):
+        if isinstance(node, ast.Subscript):
+            found += [one for one in node.indices if one is not None]
+        node = node.base
+    return found

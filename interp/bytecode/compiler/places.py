@@ -1,0 +1,125 @@
+"""Where values are while code is made, and what an expression has left on the stack."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grammar.types import Type
+
+__all__ = [
+    "Block",
+    "Cells",
+    "DataCells",
+    "Formal",
+    "FormalView",
+    "Hole",
+    "Place",
+    "Pushed",
+    "PushedView",
+    "Remote",
+    "Scalar",
+    "Text",
+    "Value",
+    "View",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """In the frame."""
+
+    offset: int
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class DataCells:
+    """In the data lists."""
+
+    address: int
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Formal:
+    """What the parameter at this offset refers to."""
+
+    offset: int
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class FormalView:
+    """The array that the parameter at this offset is a view of."""
+
+    offset: int
+    element: Type
+    dimensions: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pushed:
+    """A reference on the stack. ``through`` is the parameter it was reached by, if any."""
+
+    type: Type
+    through: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class PushedView:
+    """A view on the stack."""
+
+    element: Type
+    dimensions: int
+    through: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """An index that a cell of the frame has, or what the parameter there refers to."""
+
+    offset: int
+    is_formal: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Remote:
+    """A system variable or a part of one; ``type`` is `UNKNOWN` where nothing tells it."""
+
+    path: tuple[str | int | Hole, ...]
+    type: Type
+
+
+Place = Cells | DataCells | Formal | FormalView | Pushed | PushedView | Remote
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A value on the stack."""
+
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A reference to a structure or an array on the stack."""
+
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A view of an array on the stack."""
+
+    element: Type
+    dimensions: int
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A text of the program; nothing is on the stack."""
+
+    text: str
+
+
+Value = Scalar | Block | View | Text

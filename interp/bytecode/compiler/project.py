@@ -1,0 +1,228 @@
+"""From a checked program to bytecode: routines are compiled as they are called."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from grammar import ast
+from grammar.symbols import Symbol
+from grammar.types import BOOL, INT, UNKNOWN, Array, Type
+from grammar.walk import walk
+from interp.bytecode.cells import Plain
+from interp.bytecode.compiler.calls import Binding, Formals, formals_of
+from interp.bytecode.compiler.context import Context, Refusal
+from interp.bytecode.compiler.data import declare_data, initial_values
+from interp.bytecode.compiler.places import (
+    Cells,
+    DataCells,
+    Formal,
+    FormalView,
+    Hole,
+    Place,
+    Pushed,
+    PushedView,
+    Remote,
+)
+from interp.bytecode.compiler.statements import Statements
+from interp.bytecode.compiler.tables import Tables
+from interp.bytecode.compiler.writer import Writer
+from interp.bytecode.program import Code, CodeKind, Mode, Program
+from interp.bytecode.verify import measured
+from interp.faults import LinkError
+from interp.program import CheckedProgram, Routine
+
+__all__ = ["Compiled", "Project", "compile_program"]
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """A program, and what of it is not compiled though it may be right."""
+
+    program: Program
+    refusals: tuple[Refusal, ...]
+
+
+def compile_program(program: CheckedProgram) -> Compiled:
+    """Compile a program; raises `LinkError` where it cannot be run at all.
+
+    It can begin with any routine of its first file that has no parameters.
+    """
+    return Project(program).compiled()
+
+
+class Project:
+    """One program that is compiled."""
+
+    def __init__(self, program: CheckedProgram) -> None:
+        self.program = program
+        self.tables = Tables()
+        self.refusals: list[Refusal] = []
+        self._codes: list[Code | None] = []
+        self._numbers: dict[tuple[Symbol, tuple[Binding, ...]], int] = {}
+        self._todo: deque[tuple[int, Routine, tuple[Binding, ...]]] = deque()
+
+    def compiled(self) -> Compiled:
+        """The whole program."""
+        declare_data(self.program, self.tables)
+        main = self.program.main
+        scope = self.program.project.scope(main.module)
+        writer = Writer(self.tables, "", CodeKind.ROUTINE, "", 0)
+        initial = initial_values(Context(self, main, scope, writer), self.tables)
+        for routine in self.program.routines_of(main):
+            if not routine.node.parameters:
+                self.code_of(routine, ())
+        if not self._codes:
+            raise LinkError(f"{main.module.path} has no routine that a program can begin with")
+        while self._todo:
+            number, routine, bindings = self._todo.popleft()
+            self._codes[number] = self._routine(number, routine, bindings)
+        tables = self.tables
+        codes = tuple(code for code in self._codes if code is not None)
+        program = Program(
+            tuple(tables.types),
+            tuple(tables.texts),
+            tuple(tables.asks),
+            tuple(tables.builtins),
+            tuple(tables.data),
+            initial,
+            codes,
+        )
+        return Compiled(measured(program), tuple(self.refusals))
+
+    # ----------------------------------------------------------------------- routines
+
+    def code_of(self, routine: Routine, bindings: tuple[Binding, ...]) -> int:
+        """The number of the code object of a routine, called with these system variables."""
+        key = routine.table.routine, bindings
+        if key not in self._numbers:
+            self._numbers[key] = self._reserved()
+            self._todo.append((self._numbers[key], routine, bindings))
+        return self._numbers[key]
+
+    def _reserved(self) -> int:
+        self._codes.append(None)
+        return len(self._codes) - 1
+
+    def _routine(self, number: int, routine: Routine, bindings: tuple[Binding, ...]) -> Code:
+        unit = routine.unit
+        line = unit.line(routine.node)
+        writer = Writer(self.tables, routine.name, CodeKind.ROUTINE, unit.module.path, line)
+        context = Context(self, unit, routine.scope, writer, line=line, number=number)
+        result = self.program.result_of(routine)
+        if result is not None:
+            self._give(context, result)
+        formals = formals_of(routine, self.program.type_of)
+        for place, binding in enumerate(bindings):
+            self._formal(context, formals, place, binding)
+        self._declare(context, routine, {found.symbol for found in formals.found})
+        Statements(context).routine(routine.node)
+        return writer.code()
+
+    def _give(self, context: Context, result: Type) -> None:
+        """What a function gives: a value, or something put where a hidden parameter leads."""
+        context.result = self.tables.closed(result)
+        if isinstance(context.result, Plain):
+            context.writer.result = self.tables.number(result)
+        else:
+            context.target = context.writer.parameter("%result", Mode.REF, context.result)
+
+    def _formal(self, context: Context, formals: Formals, place: int, binding: Binding) -> None:
+        writer, symbol = context.writer, formals.found[place].symbol
+        if binding is not None:
+            path, type_ = binding
+            steps = tuple(
+                Hole(writer.parameter(f"%{symbol.key}", Mode.IN, INT)) if step is None else step
+                for step in path
+            )
+            context.variables[symbol] = Remote(steps, type_)
+            return
+        type_, is_in = formals.types[place], formals.is_in[place]
+        if isinstance(type_, Array) and (not is_in or None in type_.sizes):
+            element, count = self.tables.closed(type_.element), len(type_.sizes)
+            offset = writer.parameter(symbol.name, Mode.VIEW, element, count)
+            context.variables[symbol] = FormalView(offset, element, count)
+            return
+        closed = self.tables.closed(type_)
+        offset = writer.parameter(symbol.name, Mode.IN if is_in else Mode.REF, closed)
+        context.variables[symbol] = Cells(offset, closed) if is_in else Formal(offset, closed)
+
+    def _declare(self, context: Context, routine: Routine, formals: set[Symbol]) -> None:
+        """The local data. What has no known type is refused where it is used."""
+        for statement in routine.node.body:
+            if not isinstance(statement, ast.VariableDeclaration):
+                continue
+            for declarator in statement.declarators:
+                found = context.unit.found(declarator.name)
+                if found is None or found.symbol in formals or found.symbol in context.variables:
+                    continue
+                type_ = self.program.type_of(found)
+                if type_ == UNKNOWN:
+                    continue
+                try:
+                    closed = self.tables.closed(type_)
+                except LinkError:
+                    continue
+                offset = context.writer.local(found.symbol.name, closed)
+                context.variables[found.symbol] = Cells(offset, closed)
+
+    # ----------------------------------------------------------------------- handed over
+
+    def handed_over(
+        self,
+        owner: Context,
+        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
+        kind: CodeKind,
+    ) -> int:
+        """The number of an action or a condition, which uses variables of its owner."""
+        number = self._reserved()
+        line = owner.unit.line(node)
+        file = owner.unit.module.path
+        name = owner.writer.name
+        writer = Writer(self.tables, name, kind, file, line, owner.number)
+        context = Context(self, owner.unit, owner.scope, writer, line=line, number=number)
+        for symbol in self._used(owner, node):
+            context.variables[symbol] = self._captured(writer, symbol, owner.variables[symbol])
+        made = Statements(context)
+        if isinstance(node, ast.Assignment | ast.CallStatement | ast.Brake):
+            made.action(node)
+        else:
+            writer.result = self.tables.number(BOOL)
+            made.condition(node)
+        self._codes[number] = writer.code()
+        return number
+
+    def _used(self, owner: Context, node: ast.Node) -> list[Symbol]:
+        """The variables of the owner that are named in a node, in the order of the text."""
+        found: dict[Symbol, None] = {}
+        for one in walk(node):
+            if isinstance(one, ast.Variable):
+                means = owner.unit.found(one.name)
+                if means is not None and means.symbol in owner.variables:
+                    found[means.symbol] = None
+        return list(found)
+
+    def _captured(self, writer: Writer, symbol: Symbol, place: Place) -> Place:
+        """A variable of the owner as a parameter."""
+        match place:
+            case Cells(offset, type_) | Formal(offset, type_):
+                writer.captures.append(offset)
+                return Formal(writer.parameter(symbol.name, Mode.REF, type_), type_)
+            case FormalView(offset, element, dimensions):
+                writer.captures.append(offset)
+                mine = writer.parameter(symbol.name, Mode.VIEW, element, dimensions)
+                return FormalView(mine, element, dimensions)
+            case Remote():
+                return self._captured_remote(writer, symbol, place)
+        assert not isinstance(place, DataCells | Pushed | PushedView), "a variable of a frame"
+        return place
+
+    def _captured_remote(self, writer: Writer, symbol: Symbol, place: Remote) -> Remote:
+        steps: list[str | int | Hole] = []
+        for step in place.path:
+            if isinstance(step, Hole):
+                writer.captures.append(step.offset)
+                steps.append(Hole(writer.parameter(f"%{symbol.key}", Mode.REF, INT), True))
+            else:
+                steps.append(step)
+        return Remote(tuple(steps), place.type)

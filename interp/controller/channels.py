@@ -1,0 +1,158 @@
+"""Channels: COPEN, CREAD, CWRITE, CCLOSE, with a peer that a script plays [FCT-08, ADV-07].
+
+What the peer sends waits until the program reads it. A text is read as `SREAD` reads; CWRITE writes
+as `SWRITE` does. The order of arguments is that of the transcribed manual: CREAD(handle, state,
+mode, timeout, offset, format, variables …), CWRITE(handle, state, mode, format, values …).
+Timeouts are in seconds; #SYNC and #ABS wait for data, #COND does not (unconfirmed).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from grammar.predefined import System
+from grammar.types import CHAR, REAL, Array, Enumeration, Structure
+from interp.controller.clock import Clock, microseconds
+from interp.controller.messages import own_fault
+from interp.faults import fault
+from interp.formats import sread, swrite
+from interp.requests import Value
+from interp.values import (
+    ArrayValue,
+    EnumValue,
+    StructureValue,
+    constant,
+    converted,
+    empty,
+    known,
+    letters,
+    set_text,
+    text_of,
+)
+
+__all__ = ["COMMANDS", "Channels", "Waiting", "state_value"]
+
+_LONGEST: Final = 2047
+_READ_VARIABLES: Final = 6
+_WRITTEN_VALUES: Final = 4
+#: Channels that are open from the start, with the handles that are in $CMD and $FCT_CALL.
+COMMANDS: Final = {"$CMD": 1, "$FCT_CALL": 2}
+
+
+def state_value(word: str, hits: int = 0, length: int = 0) -> StructureValue:
+    """A STATE_T [FCT-08]."""
+    types = System.load().types
+    structure, results = types["STATE_T"], types["CMD_STAT"]
+    assert isinstance(structure, Structure)
+    assert isinstance(results, Enumeration)
+    value = empty(structure)
+    assert isinstance(value, StructureValue)
+    value.set("RET1", constant(results, word))
+    value.set("MSG_NO", 0)
+    value.set("HITS", hits)
+    value.set("LENGTH", length)
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """CREAD has to wait for data of a channel, until a time in µs; ``None``: for ever."""
+
+    channel: str
+    until: int | None
+
+
+Arguments = Sequence[Value | None]
+
+
+@dataclass(slots=True)
+class Channels:
+    """All channels by their names; ``sent`` is told what a program writes."""
+
+    clock: Clock
+    sent: Callable[[str, str], None]
+    _handles: dict[int, str] = field(
+        default_factory=lambda: {handle: name[1:] for name, handle in COMMANDS.items()}
+    )
+    _data: dict[str, deque[str]] = field(default_factory=lambda: defaultdict(deque))
+    _last: int = len(COMMANDS)
+
+    def receive(self, channel: str, text: str) -> None:
+        """The peer of a channel sends a text."""
+        self._data[channel.lstrip("$:")].append(letters(text))
+
+    def has_data(self, channel: str) -> bool:
+        """Whether there is something to read."""
+        return bool(self._data.get(channel))
+
+    def open(self, arguments: Arguments) -> list[Value | None]:
+        """COPEN(:NAME, handle)."""
+        name = text_of(known(arguments[0])).upper().lstrip(":")
+        self._last += 1
+        self._handles[self._last] = name
+        return [arguments[0], self._last]
+
+    def close(self, arguments: Arguments) -> list[Value | None]:
+        """CCLOSE(handle, state); what was not read is lost."""
+        name = self._name(arguments[0])
+        self._handles = {handle: one for handle, one in self._handles.items() if one != name}
+        self._data.pop(name, None)
+        return [arguments[0], state_value("CMD_OK")]
+
+    def write(self, arguments: Arguments) -> list[Value | None]:
+        """CWRITE: what was formatted is sent; a text without values is sent as it is."""
+        if len(arguments) < _WRITTEN_VALUES:
+            raise fault("argument")
+        name = self._name(arguments[0])
+        after = list(arguments)
+        target = empty(Array(CHAR, (_LONGEST,)))
+        assert isinstance(target, ArrayValue)
+        pattern, values = known(arguments[3]), [known(one) for one in arguments[4:]]
+        if not values:
+            text = text_of(pattern)
+            after[1] = state_value("CMD_OK", 0, len(text))
+        else:
+            _, changes = swrite(target, None, 0, pattern, *values)
+            after[1] = changes.get(1, state_value("CMD_OK"))
+            text = text_of(changes.get(0, target))
+        self.sent(name, text)
+        return after
+
+    def read(self, arguments: Arguments, since: int) -> list[Value | None] | Waiting:
+        """CREAD, asked for at ``since``; tells to wait where there is nothing yet."""
+        if len(arguments) < _READ_VARIABLES:
+            raise fault("argument")
+        name = self._name(arguments[0])
+        after = list(arguments)
+        mode = arguments[2]
+        if not self._data[name]:
+            timeout = converted(known(arguments[3]), REAL)
+            assert isinstance(timeout, float), "converted"
+            until = since + microseconds(timeout) if timeout > 0 else None
+            is_over = until is not None and self.clock.now >= until
+            is_cyclic = isinstance(mode, EnumValue) and mode.name.upper() == "COND"
+            if is_cyclic or is_over:
+                after[1] = state_value("CMD_TIMEOUT")
+                return after
+            return Waiting(name, until)
+        text = self._data[name].popleft()
+        source = empty(Array(CHAR, (max(1, len(text)),)))
+        assert isinstance(source, ArrayValue)
+        set_text(source, text)
+        _, changes = sread(source, None, known(arguments[4]), known(arguments[5]), *arguments[6:])
+        for place, value in changes.items():
+            if place == 1:
+                after[1] = value
+            elif place == 2:
+                after[4] = value
+            elif place >= 4:
+                after[place + 2] = value
+        return after
+
+    def _name(self, handle: Value | None) -> str:
+        if isinstance(handle, int) and handle in self._handles:
+            return self._handles[handle]
+        raise own_fault("channel")

@@ -1,0 +1,125 @@
+"""The interrupts of one program: which there are, which are watched, which have come [INT-01 ff.].
+
+The event is an edge: the condition is TRUE and was not before. It is looked at in every
+interpolation cycle [INT-06, INT-18]. One that came while it could not run is kept, once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from interp.controller.messages import own_fault
+from interp.requests import At, Code, DeclareInterrupt
+
+__all__ = ["Interrupt", "Interrupts", "is_usable"]
+
+#: Numbers that programs may use; 3 is the system's own, in files that come with a controller
+#: [INT-02]. For those of triggers see TRG-06.
+_RANGES: Final = (range(1, 40), range(81, 129))
+
+
+def is_usable(number: int) -> bool:
+    """Whether an interrupt can have this number [INT-02]."""
+    return any(number in numbers for numbers in _RANGES)
+
+
+@dataclass(slots=True, eq=False)
+class Interrupt:
+    """A declaration and its state.
+
+    ``off`` is not watched; ``on`` is watched and executed; ``held`` (DISABLE) is watched and kept
+    [INT-07]. ``depth`` is that of the routine that declared it. ``was_true`` is its condition when
+    it was looked at last, ``has_come`` that its event has not been served yet.
+    """
+
+    number: int
+    at: At
+    is_global: bool
+    condition: Code
+    action: Code
+    state: Literal["off", "on", "held"] = "off"
+    was_true: bool = False
+    has_come: bool = False
+
+    @property
+    def depth(self) -> int:
+        """How deep the declaring routine was."""
+        return self.at.depth
+
+
+class Interrupts:
+    """The declarations of a program, by number: at most ``most``, ``active`` of them at work."""
+
+    def __init__(self, most: int, active: int) -> None:
+        self._most = most
+        self._active = active
+        self._by_number: dict[int, Interrupt] = {}
+
+    def __iter__(self) -> Iterator[Interrupt]:
+        return iter(sorted(self._by_number.values(), key=lambda one: one.number))
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether there is one whose condition has to be looked at."""
+        return any(one.state != "off" for one in self._by_number.values())
+
+    def declare(self, request: DeclareInterrupt) -> None:
+        """A declaration, which replaces one of the same number; faults for a wrong number."""
+        if not is_usable(request.number):
+            raise own_fault("interrupt_number")
+        if request.number not in self._by_number and len(self._by_number) >= self._most:
+            raise own_fault("interrupt_count")
+        self._by_number[request.number] = Interrupt(
+            request.number, request.at, request.is_global, request.condition, request.action
+        )
+
+    def switch(self, action: str, number: int | None, holds: Callable[[Code], bool]) -> None:
+        """ON, OFF, ENABLE or DISABLE; ``holds`` gives a condition as it is now."""
+        if number is None:
+            chosen = list(self)
+        elif number in self._by_number:
+            chosen = [self._by_number[number]]
+        else:
+            raise own_fault("interrupt_unknown")
+        for one in chosen:
+            match action:
+                case "ON" if one.state == "off":
+                    one.state, one.was_true = "on", holds(one.condition)
+                case "ON" | "ENABLE" if one.state == "held":
+                    one.state = "on"
+                case "DISABLE" if one.state == "on":
+                    one.state = "held"
+                case "OFF":
+                    one.state, one.has_come = "off", False
+
+    def forget(self, depth: int) -> None:
+        """A routine of this depth has ended: what it declared is gone, unless global [INT-04]."""
+        self._by_number = {
+            number: one
+            for number, one in self._by_number.items()
+            if one.is_global or one.depth < depth
+        }
+
+    def watch(self, holds: Callable[[Code], bool], running: int) -> list[Interrupt]:
+        """Look at all conditions once; gives those whose event has come now.
+
+        ``running`` is how many routines are at work; faults where there are too many.
+        """
+        come = []
+        for one in self:
+            if one.state == "off":
+                continue
+            is_true = holds(one.condition)
+            if is_true and not one.was_true:
+                come.append(one)
+                one.has_come = True
+            one.was_true = is_true
+        if running + sum(one.has_come for one in self) > self._active:
+            raise own_fault("interrupt_count")
+        return come
+
+    def next(self) -> Interrupt | None:
+        """The one with the highest priority that has come and may run [INT-05]."""
+        return next((one for one in self if one.has_come and one.state == "on"), None)

@@ -1,0 +1,242 @@
+"""Motion instructions become motions of the arm, with all that was in force [MOT-10 to MOT-16].
+
+What a program has not set is a documented message: no tool 1419, no base 1516, a first motion that
+is no complete PTP 1443.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from interp import requests
+from interp.controller.messages import message_fault, own_fault
+from interp.controller.positions import pose_of
+from interp.controller.variables import Snapshot, Variables
+from interp.requests import At, Move, MoveSpline, SetTrigger, SplineStop, Value
+from interp.robot.arm import (
+    Approximation,
+    Motion,
+    Place,
+    Settings,
+    SplinePart,
+    SplineRange,
+    Target,
+)
+from interp.robot.frames import IDENTITY, Pose
+from interp.robot.placement import IpoMode, Placement
+from interp.values import ArrayValue, EnumValue, StructureValue
+
+__all__ = ["Built", "MotionBuilder", "is_complete", "placement_of", "target_of"]
+
+_AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
+_KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})
+_JOINT: Final = frozenset({"PTP", "SPTP"})
+
+
+@dataclass(slots=True, eq=False)
+class Built:
+    """A motion, the values it was planned with, and what its places mean, by their keys."""
+
+    motion: Motion
+    snapshot: Snapshot
+    triggers: dict[int, SetTrigger] = field(default_factory=dict)
+    stops: dict[int, SplineStop] = field(default_factory=dict)
+
+
+def target_of(value: Value) -> Target:
+    """The components of a position that have a value."""
+    if not isinstance(value, StructureValue):
+        raise own_fault("motion_kind")
+    numbers: list[Any] = value.members
+    pairs = zip(value.type.members, numbers, strict=True)
+    return {member.name.upper(): float(one) for member, one in pairs if one is not None}
+
+
+def is_complete(target: Target) -> bool:
+    """Whether it tells everything: six axes, or a pose with Status and Turn [MOT-10]."""
+    return set(_AXES) <= set(target) or set("XYZABCST") <= set(target)
+
+
+def placement_of(values: Snapshot, robroot: Pose) -> Placement:
+    """The frames in force; a $TOOL or $BASE without a value counts as zero."""
+    mode = values["$IPO_MODE"]
+    return Placement(
+        pose_of(values["$BASE"]) or IDENTITY,
+        pose_of(values["$TOOL"]) or IDENTITY,
+        robroot,
+        IpoMode(_word(mode)),
+    )
+
+
+def _word(value: Any) -> str:
+    return f"#{value.name.upper()}" if isinstance(value, EnumValue) else str(value)
+
+
+def _numbers(value: Any, default: float) -> tuple[float, ...]:
+    found = list(value) if isinstance(value, ArrayValue) else []
+    return tuple(float(default if one is None else one) for one in found)
+
+
+def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
+    return float(velocity.get(name) or 0.0), float(acceleration.get(name) or 0.0)
+
+
+class MotionBuilder:
+    """Builds motions; counts them, and gives each place a key of its own."""
+
+    def __init__(
+        self, variables: Variables, robroot: Callable[[], Pose], is_reduced: Callable[[], bool]
+    ) -> None:
+        self._variables = variables
+        self._robroot = robroot
+        self._is_reduced = is_reduced
+        self._number = 0
+        self._key = 0
+
+    @property
+    def count(self) -> int:
+        """How many motions there were."""
+        return self._number
+
+    def forget(self) -> None:
+        """The motion built last was not planned."""
+        self._number -= 1
+
+    def build(self, request: Move, triggers: Sequence[SetTrigger]) -> Built:
+        """A single motion with the triggers before it. Raises `Fault`."""
+        kind, _, suffix = request.kind.partition("_")
+        if kind not in _KINDS or kind == "SPL":
+            raise own_fault("motion_kind")
+        target = target_of(request.target)
+        if self._number == 0 and (suffix or kind not in _JOINT or not is_complete(target)):
+            raise message_fault(1443)
+        snapshot = self._variables.snapshot(request.values)
+        self._check_frames(snapshot, kind, target)
+        settings = self._settings(snapshot)
+        motion = Motion(
+            self._next(),
+            request.at,
+            kind,
+            settings,
+            target,
+            None if request.auxiliary is None else target_of(request.auxiliary),
+            request.angle,
+            bool(suffix),
+            None if request.reference is None else f"#{request.reference.lstrip('#')}",
+            request.criteria,
+        )
+        built = Built(motion, snapshot)
+        built.motion = replace(motion, places=self._places(built, triggers))
+        return built
+
+    def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> Built:
+        """A spline block. Raises `Fault`."""
+        if self._number == 0:
+            raise message_fault(1443)
+        snapshot = self._variables.snapshot(request.values)
+        built = Built(Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot)
+        outside = self._places(built, triggers)
+        parts: list[SplinePart] = []
+        ranges: list[SplineRange] = []
+        places: list[Place] = []
+        stops: list[Place] = []
+        for item in request.items:
+            match item:
+                case Move():
+                    parts.append(self._part(item, request, ranges, places))
+                    ranges, places = [], []
+                case SetTrigger():
+                    places += self._places(built, [item])
+                case SplineStop(place, on_start, _):
+                    stops.append(self._place("PATH", place, on_start, 0.0))
+                    built.stops[stops[-1].key] = item
+                case requests.SplineRange(keyword, edge, value, on_start):
+                    ranges.append(SplineRange(keyword, edge, value, on_start))
+        built.motion = replace(
+            built.motion,
+            number=self._next(),
+            criteria=("C_SPL",) if request.is_approximated else (),
+            places=(*outside, *places),
+            parts=tuple(parts),
+            last_ranges=tuple(ranges),
+            stop_places=tuple(stops),
+        )
+        return built
+
+    def back_to(self, at: At, axes: Sequence[float]) -> Built:
+        """The way back to where an interrupt routine has stopped the arm."""
+        snapshot = self._variables.snapshot()
+        names = [*_AXES, *(f"E{place}" for place in range(1, 7))]
+        target = dict(zip(names, axes, strict=False))
+        return Built(Motion(self._next(), at, "PTP", self._settings(snapshot), target), snapshot)
+
+    def _next(self) -> int:
+        self._number += 1
+        return self._number
+
+    def _part(
+        self,
+        item: Move,
+        block: MoveSpline,
+        ranges: Sequence[SplineRange],
+        places: Sequence[Place],
+    ) -> SplinePart:
+        snapshot = self._variables.snapshot((*block.values, *item.values))
+        target = target_of(item.target)
+        self._check_frames(snapshot, item.kind, target)
+        return SplinePart(
+            item.kind,
+            target,
+            None if item.auxiliary is None else target_of(item.auxiliary),
+            item.angle,
+            self._settings(snapshot),
+            tuple(ranges),
+            tuple(places),
+        )
+
+    def _check_frames(self, snapshot: Snapshot, kind: str, target: Target) -> None:
+        """A Cartesian motion needs a tool and a base [MOT-15]."""
+        if kind in _JOINT and not set("XYZABC") & set(target):
+            return
+        if pose_of(snapshot["$TOOL"]) is None:
+            raise message_fault(1419)
+        if pose_of(snapshot["$BASE"]) is None:
+            raise message_fault(1516)
+
+    def _settings(self, values: Snapshot) -> Settings:
+        velocity, acceleration, apo = values["$VEL"], values["$ACC"], values["$APO"]
+        return Settings(
+            placement_of(values, self._robroot()),
+            float(velocity.get("CP") or 0.0),
+            float(acceleration.get("CP") or 0.0),
+            _pair(velocity, acceleration, "ORI1"),
+            _pair(velocity, acceleration, "ORI2"),
+            _numbers(values["$VEL_AXIS"], 100.0) + _numbers(values["$VEL_EXTAX"], 100.0),
+            _numbers(values["$ACC_AXIS"], 100.0) + _numbers(values["$ACC_EXTAX"], 100.0),
+            _numbers(values["$GEAR_JERK"], 100.0),
+            Approximation(
+                float(apo.get("CDIS") or 0.0),
+                float(apo.get("CPTP") or 0.0),
+                float(apo.get("CVEL") or 0.0),
+                float(apo.get("CORI") or 0.0),
+            ),
+            _word(values["$ORI_TYPE"]),
+            _word(values["$CIRC_TYPE"]),
+            self._is_reduced(),
+        )
+
+    def _places(self, built: Built, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:
+        places = []
+        for one in triggers:
+            place = self._place(one.place_kind, one.place, one.on_start, one.delay)
+            built.triggers[place.key] = one
+            places.append(place)
+        return tuple(places)
+
+    def _place(self, kind: str, position: float, on_start: bool, delay: float) -> Place:
+        """``delay`` in ms, as TRIGGER has it [TRG-03]."""
+        self._key += 1
+        words = "DISTANCE" if kind == "DISTANCE" else "PATH"
+        return Place(self._key, words, position, on_start, round(delay * 1000))  # type: ignore[arg-type]

@@ -1,0 +1,285 @@
+"""Motions on their way: planned as transactions of the control core, and what becomes of them.
+
+Each KRL motion is one transaction: the motion, for each trigger that switches an output an
+`OutputCommand` at its place, for each other trigger a `CallCommand` [TRG-01 to TRG-08]. So outputs
+are switched inside the core at their exact time, and what has to be computed is entered by the
+controller when the core tells it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from dataclasses import dataclass
+from typing import Any, Final
+
+from interp.controller.messages import message_fault, own_fault
+from interp.controller.motions import Built, MotionBuilder
+from interp.controller.tasks import Task
+from interp.controller.trace import path_text
+from interp.controller.world import World
+from interp.faults import Fault
+from interp.requests import At, Code, Move, MoveSpline, Path, SetTrigger, Value
+from interp.rendering import to_json
+from interp.robot.arm import Place
+from interp.robot.commands import (
+    CallCommand,
+    CoreEvent,
+    MotionCommand,
+    OutputCommand,
+    Transaction,
+)
+
+__all__ = ["Call", "Moving"]
+
+#: What triggers that call a routine may have as PRIO [TRG-06].
+_PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
+_KINDS: Final = {
+    "started": "motion_start",
+    "ended": "motion_end",
+    "blend_start": "blend_start",
+    "apex": "blend_apex",
+    "blend_end": "blend_end",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call:
+    """What a trigger does that is more than switching an output."""
+
+    trigger: SetTrigger
+    action: Code
+
+
+@dataclass(slots=True, eq=False)
+class _Way:
+    """A motion on its way. ``is_held_up`` once something has stopped the advance run behind it."""
+
+    built: Built
+    task: Task
+    is_held_up: bool = False
+    is_coinciding: bool = False
+
+
+class Moving(World):
+    """A controller's motions."""
+
+    def __init__(self, core: Any, **given: Any) -> None:
+        super().__init__(core, **given)
+        self.builder = MotionBuilder(self.variables, self.robroot, lambda: self.mode == "T1")
+        self._ways: dict[int, _Way] = {}
+        self._outputs: dict[OutputCommand, SetTrigger] = {}
+        self._calls: dict[CallCommand, SetTrigger] = {}
+        #: Outputs that were switched inside the core and are not told yet, in their order.
+        self._switched: deque[list[tuple[str, int, Value]]] = deque()
+        self._is_switching = False
+        #: $OUT_C: what is written at the end of a motion, by its number.
+        self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
+        #: Calls of triggers that have fired and were not entered yet.
+        self.fired: list[CallCommand] = []
+        self.has_stopped = False
+        self.is_resumed = False
+        self.stops: list[tuple[Task, Any]] = []
+
+    # ---------------------------------------------------------------------------- planning
+
+    def plan(self, task: Task, request: Move | MoveSpline) -> Built:
+        """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned."""
+        triggers, task.triggers = task.triggers, []
+        if isinstance(request, MoveSpline):
+            if task.levels:
+                raise own_fault("spline_place")
+            built = self.builder.block(request, triggers)
+        else:
+            if self.is_resumed and request.kind == "CIRC":  # [INT-14]
+                request = Move(
+                    *(request.at, "LIN", request.target, None, None, request.values),
+                    request.criteria,
+                    request.reference,
+                )
+            built = self.builder.build(request, triggers)
+        self.load(task, built)
+        self.is_resumed = False
+        return built
+
+    def load(self, task: Task, built: Built) -> None:
+        """Load what was built into the core. Raises `Fault`."""
+        motion = built.motion
+        command = MotionCommand(motion)
+        transaction = Transaction(command)
+        places = [*motion.places, *(place for part in motion.parts for place in part.places)]
+        outputs, calls = self._link(built, command, transaction, places)
+        try:
+            self.core.load(self.clock.now, transaction)
+        except Fault:
+            self.builder.forget()
+            raise
+        self._outputs |= outputs
+        self._calls |= calls
+        self._ways[motion.number] = _Way(built, task)
+        if task.level is not None:
+            task.level.motions.add(motion.number)
+            task.level.has_moved = True
+        kind = motion.kind
+        self.trace.tell(
+            task.name, "motion_planned", motion.at, motion=motion.number, motion_kind=kind
+        )
+
+    def _link(
+        self,
+        built: Built,
+        command: MotionCommand,
+        transaction: Transaction,
+        places: list[Place],
+    ) -> tuple[dict[OutputCommand, SetTrigger], dict[CallCommand, SetTrigger]]:
+        outputs: dict[OutputCommand, SetTrigger] = {}
+        calls: dict[CallCommand, SetTrigger] = {}
+        for place in places:
+            trigger = built.triggers[place.key]
+            then: OutputCommand | CallCommand
+            if trigger.output is not None:
+                then = OutputCommand(*trigger.output)
+                outputs[then] = trigger
+            else:
+                then = CallCommand(Call(trigger, trigger.action))
+                calls[then] = trigger
+            transaction.add(then).link(command.reached(place), "start", then)
+        return outputs, calls
+
+    def set_trigger(self, task: Task, request: SetTrigger) -> None:
+        """A trigger for the next motion. Raises `Fault`."""
+        if task.levels or task.name == "submit":
+            raise message_fault(1409)
+        if request.priority not in (None, -1) and request.priority not in _PRIORITIES:
+            raise own_fault("trigger_priority")
+        waiting = len(task.triggers) + len(self._outputs) + len(self._calls)
+        if waiting >= self.profile.most["triggers"]:
+            raise message_fault(1524)
+        task.triggers.append(request)
+
+    def output_in_main_run(self, task: Task, at: At, path: Path, value: Value) -> None:
+        """$OUT_C: written when the motion planned last ends or is at its apex [ADV-11]."""
+        plain: Path = ("$OUT", *path[1:])
+        number = max((number for number, way in self._ways.items() if way.task is task), default=0)
+        if number and self.own_pending(task):
+            self.variables.read(plain)
+            self._at_end[number].append((task, at, plain, value))
+        else:
+            self.put_at(task.name, at, plain, value)
+
+    def own_pending(self, task: Task) -> int:
+        """How many motions of the program, or of the routine that interrupted it, have not ended.
+
+        An interrupt routine runs while the program's motions go on, so these do not hold it up
+        [INT-08] (unconfirmed for its advance stops).
+        """
+        if task.name == "submit":
+            return 0
+        return self.core.pending() if task.level is None else len(task.level.motions)
+
+    def hold_up(self) -> None:
+        """The advance run has been stopped behind the motions that are planned."""
+        for way in self._ways.values():
+            way.is_held_up = True
+
+    # ------------------------------------------------------------------------ what happens
+
+    def switch(self, path: Path, value: Value, time: int) -> None:
+        """The core switches an output. Raises `Fault`."""
+        before, self._is_switching = self._is_switching, True
+        self._switched.append([])
+        now, self.clock.now = self.clock.now, time
+        try:
+            self.variables.write(path, value)
+        except Fault:
+            self._switched.pop()
+            raise
+        finally:
+            self.clock.now = now
+            self._is_switching = before
+
+    def _signal_changed(self, name: str, place: int, value: Value) -> None:
+        if self._is_switching:
+            self._switched[-1].append((name, place, value))
+        else:
+            super()._signal_changed(name, place, value)
+
+    def happened(self, event: CoreEvent) -> None:
+        """Something that the core tells."""
+        command = event.command
+        if isinstance(command, MotionCommand):
+            self._moved(event, command.motion.number)
+        elif isinstance(command, OutputCommand):
+            self._put_out(event, command)
+        elif isinstance(command, CallCommand) and event.what == "started":
+            self._fire(command)
+        elif isinstance(command, CallCommand) and event.what == "cancelled":
+            self._calls.pop(command, None)
+        elif event.what == "stopped":
+            self.has_stopped = True
+
+    def _moved(self, event: CoreEvent, number: int) -> None:
+        way = self._ways.get(number)
+        if way is None:
+            return
+        motion, task = way.built.motion, way.task
+        if event.what in _KINDS:
+            fields: dict[str, Any] = {"motion": number}
+            if event.what == "started":
+                fields["motion_kind"] = motion.kind
+            self.trace.tell(task.name, _KINDS[event.what], motion.at, **fields)
+        match event.what:
+            case "started":
+                self.variables.main = way.built.snapshot
+                self.positions.keep("BACK")
+            case "reached" if event.key in way.built.stops:
+                self.stops.append((task, way.built.stops[event.key]))
+            case "ended":
+                self._ended(event, way)
+            case "cancelled" | "failed":
+                self._gone(number, task)
+
+    def _ended(self, event: CoreEvent, way: _Way) -> None:
+        motion, task = way.built.motion, way.task
+        self._gone(motion.number, task, keeps=True)
+        for owner, at, path, value in self._at_end.pop(motion.number, ()):
+            self.put_at(owner.name, at, path, value)
+        if event.arm is not None and event.arm.is_exact_unwanted:
+            number = 1442 if way.is_held_up else 1123  # [ADV-12]
+            stops = self.variables.read(("$STOPNOAPROX",)) is True
+            self.say_number(motion.at, number, "acknowledgement" if stops else "notification")
+
+    def _gone(self, number: int, task: Task, *, keeps: bool = False) -> None:
+        del self._ways[number]
+        for level in task.levels:
+            level.motions.discard(number)
+        if not keeps:
+            self._at_end.pop(number, None)
+
+    def _put_out(self, event: CoreEvent, command: OutputCommand) -> None:
+        trigger = self._outputs.get(command)
+        if trigger is None or event.what == "started":
+            return
+        del self._outputs[command]
+        if event.what != "ended":
+            if event.fault is not None:
+                self.say("robot", trigger.at, event.fault.number or 0, event.fault.text)
+            return
+        self.trace.tell(
+            "robot",
+            "trigger",
+            trigger.at,
+            sets=path_text(command.path),
+            value=to_json(command.value),
+        )
+        before, self.acting = self.acting, ("robot", trigger.at)
+        for name, place, value in self._switched.popleft():
+            super()._signal_changed(name, place, value)
+        self.acting = before
+        self._was_put(command.path, command.value)
+
+    def _fire(self, command: CallCommand) -> None:
+        trigger = self._calls.pop(command, None)
+        if trigger is None:
+            return
+        self.trace.tell("robot", "trigger", trigger.at, priority=trigger.priority)
+        self.fired.append(command)

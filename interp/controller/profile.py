@@ -1,0 +1,138 @@
+"""What differs from one release of the controller to the next, as data: see ``profiles/*.toml``.
+
+Sizes of arrays, the interpolation cycle, how many interrupts there may be, what system variables
+have at the start [CON-07]. A profile is named by its file, or given as the path of another one.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from interp.faults import RuntimeFailure
+
+__all__ = ["Profile", "ProfileError", "profile_names"]
+
+
+class ProfileError(RuntimeFailure):
+    """There is no such profile, or it does not say what it has to; the text is one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """One profile.
+
+    ``cycle`` is in µs, ``statements`` and ``requests`` are what a task may do in a cycle, ``start``
+    is the date at which the virtual clock begins. ``runs_coincidence``: the first motion is a block
+    coincidence run, which ends exactly and holds the program until it is started again [ADV-14].
+    ``submit_every`` is in cycles. ``sizes`` are those of arrays, ``most`` how many there may be of
+    something at once. ``values`` are initial values by name, as `interp.rendering` writes them.
+    """
+
+    name: str
+    release: str
+    machine: str
+    cycle: int
+    statements: int
+    requests: int
+    start: datetime
+    advance: int
+    runs_coincidence: bool
+    submit_every: int
+    submit_requests: int
+    sizes: Mapping[str, int]
+    most: Mapping[str, int]
+    values: Mapping[str, Any]
+
+    @staticmethod
+    def load(name: str = "kss8") -> Profile:
+        """The profile of a name, or that of a ``.toml`` file; raises `ProfileError`."""
+        if name.lower().endswith(".toml"):
+            try:
+                return _read(Path(name).stem, Path(name).read_text(encoding="utf-8"))
+            except (OSError, UnicodeDecodeError) as error:
+                raise ProfileError(f"{name} cannot be read: {error}") from None
+        return _built_in(name)
+
+
+def profile_names() -> list[str]:
+    """The profiles that come along."""
+    folder = resources.files(__package__).joinpath("profiles")
+    return sorted(one.name.removesuffix(".toml") for one in folder.iterdir() if _is_profile(one))
+
+
+def _is_profile(entry: Any) -> bool:
+    return str(entry.name).endswith(".toml")
+
+
+@cache
+def _built_in(name: str) -> Profile:
+    if name not in profile_names():
+        known = ", ".join(profile_names())
+        raise ProfileError(f"there is no profile {name}; there are {known}, and any .toml file")
+    file = resources.files(__package__).joinpath("profiles", f"{name}.toml")
+    return _read(name, file.read_text(encoding="utf-8"))
+
+
+def _read(name: str, text: str) -> Profile:
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ProfileError(f"profile {name}: {error}") from None
+    reader = _Reader(name, data)
+    coincidence = reader.get("advance", "coincidence", str)
+    if coincidence not in ("assumed", "run"):
+        raise reader.wrong("advance", "coincidence", 'is neither "assumed" nor "run"')
+    return Profile(
+        name,
+        reader.get("", "release", str),
+        reader.get("", "machine", str),
+        reader.count("time", "cycle"),
+        reader.count("time", "statements"),
+        reader.count("time", "requests"),
+        reader.get("time", "start", datetime),
+        reader.count("advance", "default", 0),
+        coincidence == "run",
+        reader.count("submit", "every"),
+        reader.count("submit", "requests"),
+        reader.counts("sizes"),
+        reader.counts("most"),
+        {key.upper(): value for key, value in reader.get("", "values", dict).items()},
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Looks up entries of a profile, and says clearly what is wrong with one."""
+
+    name: str
+    data: Mapping[str, Any]
+
+    def wrong(self, table: str, key: str, why: str) -> ProfileError:
+        """An error about an entry."""
+        return ProfileError(f"profile {self.name}: {table + '.' if table else ''}{key} {why}")
+
+    def get(self, table: str, key: str, type_: type) -> Any:
+        """An entry of a type."""
+        holder = self.data.get(table, {}) if table else self.data
+        value = holder.get(key) if isinstance(holder, Mapping) else None
+        if not isinstance(value, type_) or (isinstance(value, bool) and type_ is int):
+            raise self.wrong(table, key, f"is no {type_.__name__}")
+        return value
+
+    def count(self, table: str, key: str, least: int = 1) -> int:
+        """An entry that counts something."""
+        value: int = self.get(table, key, int)
+        if value < least:
+            raise self.wrong(table, key, f"is below {least}")
+        return value
+
+    def counts(self, table: str) -> Mapping[str, int]:
+        """A table of such entries."""
+        return {key: self.count(table, key, 0) for key in self.get("", table, dict)}

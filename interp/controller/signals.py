@@ -1,0 +1,134 @@
+"""Inputs and outputs: digital, analog, groups of bits, pulses.
+
+Digital ones are FALSE at first, but for input 1025, which is always TRUE, as 1026 is always FALSE
+[IOT-02]. A group ``("$OUT", 3, "TO", 6)`` is an INT, its first bit the lowest one [IOT-03]; with 32
+bits it has a sign. Analog values lie between -1 and 1 [IOT-06].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from interp.controller.clock import Agenda, Appointment, Clock
+from interp.controller.profile import Profile
+from interp.faults import fault
+from interp.requests import Path, Value
+from interp.values import single
+
+__all__ = ["ALWAYS_FALSE", "ALWAYS_TRUE", "Signals"]
+
+ALWAYS_TRUE: Final = 1025
+ALWAYS_FALSE: Final = 1026
+_SHORTEST: Final = 0.1
+_LONGEST: Final = 3.0
+
+#: Told of a change: the array, the index, the new value.
+Changed = Callable[[str, int, Value], None]
+
+
+class Signals:
+    """All of them by the names of their arrays; ``changed`` is told of every change."""
+
+    def __init__(self, profile: Profile, clock: Clock, agenda: Agenda, changed: Changed) -> None:
+        sizes = profile.sizes
+        self._digital = {
+            "$IN": [False] * (sizes["inputs"] + 1),
+            "$OUT": [False] * (sizes["outputs"] + 1),
+        }
+        self._analog = {
+            "$ANIN": [0.0] * (sizes["analog_inputs"] + 1),
+            "$ANOUT": [0.0] * (sizes["analog_outputs"] + 1),
+        }
+        if sizes["inputs"] >= ALWAYS_TRUE:
+            self._digital["$IN"][ALWAYS_TRUE] = True
+        self._clock = clock
+        self._agenda = agenda
+        self._changed = changed
+        self._pulses: dict[int, tuple[bool, Appointment]] = {}
+
+    def read(self, path: Path) -> Value:
+        """The value of one signal or of a group; faults `index`."""
+        name, first, last = self._range(path)
+        if name in self._analog:
+            return self._analog[name][first]
+        bits = self._digital[name]
+        if len(path) == 2:
+            return bits[first]
+        number = sum(bits[place] << (place - first) for place in range(first, last + 1))
+        return number - 2**32 if number >= 2**31 else number
+
+    def write(self, path: Path, value: Value) -> None:
+        """A program sets an output; faults `read_only`, `index`, `inadmissible`, `invalid`."""
+        if path[0] in ("$IN", "$ANIN"):
+            raise fault("read_only")
+        self.put(path, value)
+
+    def put(self, path: Path, value: Value) -> None:
+        """Set what is at the other end of a wire as well: inputs."""
+        name, first, last = self._range(path)
+        if name in self._analog:
+            self._put_analog(name, first, value)
+        elif len(path) == 2:
+            if not isinstance(value, bool):
+                raise fault("inadmissible")
+            self._put_bit(name, first, value)
+        else:
+            if not isinstance(value, int) or isinstance(value, bool):
+                raise fault("inadmissible")
+            for place in range(first, last + 1):
+                self._put_bit(name, place, bool(value >> (place - first) & 1))
+
+    def pulse(self, number: int, level: bool, seconds: float) -> None:
+        """PULSE: the level for a time, then the other one [IOT-07].
+
+        Times are rounded to tenths of a second and limited to 0.1 to 3 s. A new pulse restarts it;
+        the other level, set meanwhile, ends it.
+        """
+        tenths = min(max(round(seconds * 10) / 10, _SHORTEST), _LONGEST)
+        self._end_pulse(number)
+        self.put(("$OUT", number), level)
+        end = self._clock.tick_after(round(tenths * 1_000_000))
+
+        def over() -> None:
+            del self._pulses[number]
+            self.put(("$OUT", number), not level)
+
+        self._pulses[number] = level, self._agenda.add(end, over)
+
+    def _end_pulse(self, number: int) -> None:
+        running = self._pulses.pop(number, None)
+        if running is not None:
+            running[1].is_off = True
+
+    def _put_bit(self, name: str, place: int, value: bool) -> None:
+        if name == "$IN" and place in (ALWAYS_TRUE, ALWAYS_FALSE):
+            return
+        if name == "$OUT" and place in self._pulses and self._pulses[place][0] != value:
+            self._end_pulse(place)
+        if self._digital[name][place] != value:
+            self._digital[name][place] = value
+            self._changed(name, place, value)
+
+    def _put_analog(self, name: str, place: int, value: Value) -> None:
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            raise fault("inadmissible")
+        if not -1.0 <= value <= 1.0:
+            raise fault("invalid")
+        if self._analog[name][place] != value:
+            self._analog[name][place] = single(value)
+            self._changed(name, place, single(value))
+
+    def _range(self, path: Path) -> tuple[str, int, int]:
+        """The array, and the first and last index."""
+        name = str(path[0])
+        size = len(self._digital.get(name) or self._analog[name]) - 1
+        if len(path) == 2 and isinstance(path[1], int):
+            first = last = path[1]
+        elif len(path) == 4 and isinstance(path[1], int) and isinstance(path[3], int):
+            first, last = path[1], path[3]
+        else:
+            raise fault("inadmissible")
+        if not 1 <= first <= last <= size or last - first >= 32:
+            raise fault("index")
+        return name, first, last

@@ -1,0 +1,99 @@
+"""A program that runs: its executor, what it waits for, and the stack of what interrupted it.
+
+Of all levels only the top one runs [INT-05]. A level is an interrupt routine, the action of a
+trigger, or a cyclic signal that is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+from interp.controller.interrupts import Interrupt, Interrupts
+from interp.controller.trace import Task as TaskName
+from interp.controller.trace import TaskSink
+from interp.executor import Executor
+from interp.requests import At, Request, SetTrigger, SwitchSignal, Value
+from interp.robot.commands import CallCommand
+
+__all__ = ["ALWAYS", "Blocked", "Level", "LevelKind", "Task"]
+
+#: The priority of what nothing interrupts: plain actions of triggers, cyclic signals.
+ALWAYS: Final = 0
+#: The priority of a program that no interrupt has interrupted.
+PROGRAM: Final = 1 << 16
+
+LevelKind = Literal["interrupt", "trigger", "cycle"]
+
+
+@dataclass(slots=True, eq=False)
+class Blocked:
+    """A request that waits to be answered.
+
+    ``finish`` gives the reply once ``is_ready``, or what is to be waited for next. ``wake`` is a
+    time at which to look again; else it is looked at whenever something happened.
+    """
+
+    request: Request
+    is_ready: Callable[[], bool]
+    finish: Callable[[], Any]
+    wake: int | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Level:
+    """Something that interrupted the program.
+
+    ``depth`` is that of the program then, ``saved`` what it waited for. ``motions`` are the numbers
+    of its own motions that have not ended. ``base`` is $BASE as it was, which the routine changes
+    for itself only [INT-13]. ``stand`` are the axes at which its BRAKE stopped the arm.
+    """
+
+    kind: LevelKind
+    priority: int
+    at: At
+    depth: int
+    saved: Blocked | None
+    base: Value | None = None
+    interrupt: Interrupt | None = None
+    call: CallCommand | None = None
+    signal: SwitchSignal | None = None
+    motions: set[int] = field(default_factory=set)
+    has_moved: bool = False
+    has_braked: bool = False
+    stand: tuple[float, ...] | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Task:
+    """One program with its interrupts, which are its own [INT-17].
+
+    ``spared`` is the line whose requests do not stop the advance run, behind a CONTINUE. ``spent``
+    are the requests since the tick ``spent_at``. ``triggers`` wait for the next motion.
+    """
+
+    name: TaskName
+    executor: Executor
+    sink: TaskSink | None
+    interrupts: Interrupts
+    levels: list[Level] = field(default_factory=list)
+    blocked: Blocked | None = None
+    reply: Any = None
+    spared: tuple[str, int] | None = None
+    spent: int = 0
+    spent_at: int = -1
+    triggers: list[SetTrigger] = field(default_factory=list)
+    signals: dict[str, SwitchSignal] = field(default_factory=dict)
+    is_over: bool = False
+    is_halted: bool = False
+
+    @property
+    def level(self) -> Level | None:
+        """What runs on top of the program, if anything does."""
+        return self.levels[-1] if self.levels else None
+
+    @property
+    def priority(self) -> int:
+        """The priority of what runs: only a lower number interrupts it."""
+        return self.levels[-1].priority if self.levels else PROGRAM

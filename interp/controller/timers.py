@@ -1,0 +1,92 @@
+"""The timers, and date and time, on the virtual clock.
+
+A timer counts milliseconds in steps of the interpolation cycle [TIM-05]. At the start all of them
+stand at 0 with their flags FALSE [TIM-02]; a flag follows its timer from the moment on that this is
+started or given a value: TRUE at zero and above [TIM-03, TIM-04].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from interp.controller.clock import Clock
+from interp.faults import fault
+from interp.requests import Path, Value
+from interp.values import StructureValue
+
+__all__ = ["Timers", "date_members"]
+
+
+@dataclass(slots=True)
+class _Timer:
+    """``base`` is its value in ms at ``since``, the tick in µs at which it was started or set."""
+
+    base: int = 0
+    since: int | None = None
+    was_used: bool = False
+
+
+class Timers:
+    """$TIMER, $TIMER_STOP and $TIMER_FLAG [TIM-01]."""
+
+    def __init__(self, clock: Clock, size: int) -> None:
+        self._clock = clock
+        self._timers = [_Timer() for _ in range(size)]
+
+    def read(self, path: Path) -> Value:
+        """The value of one of the three; faults `index`."""
+        timer = self._timer(path)
+        match path[0]:
+            case "$TIMER":
+                return self._value(timer)
+            case "$TIMER_STOP":
+                return timer.since is None
+        return timer.was_used and self._value(timer) >= 0
+
+    def write(self, path: Path, value: Value) -> None:
+        """Set, start or stop a timer; a flag cannot be written (`read_only`)."""
+        timer = self._timer(path)
+        tick = self._clock.tick
+        match path[0], value:
+            case "$TIMER", int():
+                timer.base = value
+                timer.since = None if timer.since is None else tick
+            case "$TIMER_STOP", bool():
+                timer.base = self._value(timer)
+                timer.since = None if value else tick
+            case "$TIMER_FLAG", _:
+                raise fault("read_only")
+            case _:
+                raise fault("inadmissible")
+        if value is not True:
+            timer.was_used = True
+
+    def _value(self, timer: _Timer) -> int:
+        if timer.since is None:
+            return timer.base
+        return timer.base + (self._clock.tick - timer.since) // 1000
+
+    def _timer(self, path: Path) -> _Timer:
+        if len(path) != 2 or not isinstance(path[1], int):
+            raise fault("inadmissible")
+        if not 1 <= path[1] <= len(self._timers):
+            raise fault("index")
+        return self._timers[path[1] - 1]
+
+
+def date_members(start: datetime, now: int, date: StructureValue) -> StructureValue:
+    """Fill a DATE with the time of the virtual clock, µs after a start."""
+    at = start + timedelta(microseconds=now)
+    members = {
+        "CSEC": at.microsecond // 10_000,
+        "SEC": at.second,
+        "MIN": at.minute,
+        "HOUR": at.hour,
+        "DAY": at.day,
+        "MONTH": at.month,
+        "YEAR": at.year,
+    }
+    for name, value in members.items():
+        date.set(name, value)
+    return date

@@ -1,0 +1,129 @@
+"""The trace: what happened, one event after the other, as docs/trace.md has it.
+
+Two executors conform when the traces of all programs are equal. So an event says nothing of the
+executor, of wall-clock time or of memory, and a line of JSON is written in one way only.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+from interp.rendering import to_json
+from interp.requests import At, Path, Value
+
+__all__ = ["KINDS", "Task", "TaskSink", "Trace", "TraceEvent", "path_text"]
+
+Task = Literal["robot", "submit"]
+
+#: The kinds of events; ``line`` and ``assign`` are of the full level only.
+KINDS: Final = tuple(
+    """
+    line assign call return branch advance_stop motion_planned motion_start blend_start blend_apex
+    blend_end motion_end in out anout trigger interrupt_enter interrupt_leave brake resume wait
+    message fault halt end
+    """.split()
+)
+
+
+@dataclass(frozen=True, slots=True)
+class TraceEvent:
+    """One event: ``time`` in µs, whose it is, its kind, the line it comes from, and what it tells.
+
+    ``at`` is ``None`` for what comes from outside the program, such as an input. ``fields`` are
+    ready for JSON.
+    """
+
+    time: int
+    task: Task
+    kind: str
+    at: At | None
+    fields: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def place(self) -> str | None:
+        """``file:line``."""
+        return None if self.at is None else f"{self.at.file}:{self.at.line}"
+
+    def line(self) -> str:
+        """The event as a line of JSON, without the line end."""
+        head = {"t": self.time, "task": self.task, "kind": self.kind, "at": self.place}
+        return json.dumps({**head, **self.fields}, ensure_ascii=False, separators=(",", ":"))
+
+
+def path_text(path: Path) -> str:
+    """A path as people write it: ``$OUT[3]``, ``A[1,2].X``, ``$IN[1] TO $IN[8]``."""
+    if len(path) == 4 and path[2] == "TO":
+        return f"{path[0]}[{path[1]}] TO {path[0]}[{path[3]}]"
+    text, indices = str(path[0]), []
+    for step in (*path[1:], ""):
+        if isinstance(step, int):
+            indices.append(str(step))
+            continue
+        text += f"[{','.join(indices)}]" if indices else ""
+        indices = []
+        text += f".{step}" if step else ""
+    return text
+
+
+class Trace:
+    """Takes events with the time that the controller's clock has.
+
+    ``take`` receives each event as it happens; by default they are kept in ``events``. With
+    ``is_full`` every line and assignment is told too.
+    """
+
+    def __init__(
+        self, take: Callable[[TraceEvent], None] | None = None, *, is_full: bool = False
+    ) -> None:
+        self.events: list[TraceEvent] = []
+        self.now = 0
+        self.is_full = is_full
+        self._take = take or self.events.append
+
+    def tell(self, task: Task, kind: str, at: At | None, **fields: Any) -> None:
+        """Something happened now."""
+        self._take(TraceEvent(self.now, task, kind, at, fields))
+
+    def sink(self, task: Task = "robot") -> TaskSink:
+        """What an executor is given, so that what it tells gets into this trace."""
+        return TaskSink(self, task)
+
+
+class TaskSink:
+    """Takes what one executor tells.
+
+    The controller is told by ``left`` which depth a routine had that has ended: interrupts that it
+    declared end with it [INT-04].
+    """
+
+    def __init__(self, trace: Trace, task: Task) -> None:
+        self.task: Task = task
+        self.left: Callable[[int], None] | None = None
+        self._trace = trace
+
+    def line(self, at: At) -> None:
+        """A statement begins."""
+        if self._trace.is_full:
+            self._trace.tell(self.task, "line", at)
+
+    def assign(self, at: At, path: Path, value: Value | None) -> None:
+        """A variable of the program was assigned."""
+        if self._trace.is_full:
+            self._trace.tell(self.task, "assign", at, name=path_text(path), value=to_json(value))
+
+    def call(self, at: At, name: str) -> None:
+        """A routine is called."""
+        self._trace.tell(self.task, "call", at, name=name)
+
+    def leave(self, at: At, name: str) -> None:
+        """A routine has ended."""
+        self._trace.tell(self.task, "return", at, name=name)
+        if self.left is not None:
+            self.left(at.depth)
+
+    def branch(self, at: At, way: int) -> None:
+        """A way was taken."""
+        self._trace.tell(self.task, "branch", at, way=way)

@@ -1,0 +1,309 @@
+"""The system variables: values, which of them exist twice, and what stops the advance run.
+
+Which variables there are, their types, who may write them, their limits, their twins in the main
+run [ADV-10] and whether an access stops the advance run [ADV-05 to ADV-07] are data, the tables of
+`grammar.predefined`. Variables that are more than a value (inputs, timers, positions) are answered
+by a `Live` that is given for them.
+
+A motion takes a `Snapshot` of the advance values along. When it starts, that becomes what the
+``_C`` variables show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Protocol
+
+from grammar.predefined import System, Variable
+from grammar.types import INT, UNKNOWN, Array, Structure, Type
+from interp.controller.profile import Profile, ProfileError
+from interp.faults import Fault, LinkError, fault
+from interp.rendering import from_json
+from interp.requests import Path, Value
+from interp.values import (
+    ArrayValue,
+    StructureValue,
+    converted,
+    copied,
+    empty,
+    fill,
+    zero,
+)
+
+__all__ = ["Computed", "Live", "Snapshot", "Variables", "part"]
+
+#: The advance values of all variables that exist twice, by name.
+Snapshot = Mapping[str, Any]
+_UNKNOWN_SIZE: Final = 128
+_SIZES: Final = {"$FLAG": "flags", "$CYCFLAG": "cyclic_flags"}
+
+
+class Live(Protocol):
+    """Answers for a system variable that is more than a value."""
+
+    def read(self, path: Path) -> Value:
+        """Its value, or that of a part; raises `Fault`."""
+        ...
+
+    def write(self, path: Path, value: Value) -> None:
+        """Give it a value; raises `Fault`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """A variable whose value is computed whenever it is read, and that nobody writes."""
+
+    compute: Callable[[], Value]
+
+    def read(self, path: Path) -> Value:
+        """The value, or that of a part."""
+        return part(self.compute(), path[1:])
+
+    def write(self, _path: Path, _value: Value) -> None:
+        """A fault."""
+        raise fault("read_only")
+
+
+class Variables:
+    """All system variables; names are in upper case."""
+
+    def __init__(self, profile: Profile, given: Mapping[str, Value] | None = None) -> None:
+        self._profile = profile
+        self._release = System.load(profile.release)
+        self._newest = System.load()
+        self._values: dict[str, Any] = {}
+        self._live: dict[str, Live] = {}
+        self._twins = {
+            entry.twin: name
+            for name, entry in ((name, self.entry(name)) for name in _twice())
+            if entry is not None and entry.twin is not None
+        }
+        self._twice = frozenset(self._twins.values())
+        self._snapshot: Snapshot | None = None
+        for name, data in profile.values.items():
+            self._values[name] = self._initial(name, data)
+        for name, value in (given or {}).items():
+            self._give(name.upper(), value)
+        #: What the motion had that runs, or ran last.
+        self.main: Snapshot = self.snapshot()
+
+    # ------------------------------------------------------------------------------- the tables
+
+    def entry(self, name: str) -> Variable | None:
+        """What the tables say of a variable."""
+        return self._release.variables.get(name) or self._newest.variables.get(name)
+
+    def stops(self, name: str, *, is_write: bool) -> bool:
+        """Whether an access stops the advance run."""
+        entry = self.entry(name)
+        if entry is None:
+            return False
+        return bool(entry.stops_on_write if is_write else entry.stops_on_read)
+
+    def type_of(self, name: str) -> Type:
+        """The type of a variable, `UNKNOWN` where no table has it."""
+        for system in (self._release, self._newest):
+            found = system.variables.get(name)
+            if found is not None and found.type != UNKNOWN:
+                return self._sized(name, found.type)
+        return UNKNOWN
+
+    def _sized(self, name: str, type_: Type) -> Type:
+        if not isinstance(type_, Array):
+            return type_
+        sizes = tuple(_UNKNOWN_SIZE if size is None else size for size in type_.sizes)
+        if name in _SIZES:
+            sizes = (self._profile.sizes[_SIZES[name]],)
+        return Array(type_.element, sizes)
+
+    # ------------------------------------------------------------------------------- the values
+
+    def connect(self, names: Iterable[str], live: Live) -> None:
+        """Something else answers for these variables."""
+        for name in names:
+            self._live[name] = live
+
+    def read(self, path: Path) -> Value:
+        """The value of a variable or a part of it, a copy; faults `uninitialised`, `index`."""
+        name = str(path[0])
+        live = self._live.get(name)
+        if live is not None:
+            return live.read(path)
+        root = self.main[self._twins[name]] if name in self._twins else self._root(name)
+        return part(root, path[1:])
+
+    def write(self, path: Path, value: Value) -> None:
+        """A program writes a variable; faults `read_only`, `invalid`, `inadmissible`, `index`."""
+        name = str(path[0])
+        entry = self.entry(name)
+        if entry is not None and entry.access == "read" and not entry.access_unconfirmed:
+            raise fault("read_only")
+        if name in self._twins:
+            raise fault("read_only")
+        self.put(path, value)
+
+    def put(self, path: Path, value: Value) -> None:
+        """Anybody gives a variable a value, write-protected or not."""
+        name = str(path[0])
+        entry = self.entry(name)
+        if entry is not None and entry.limits is not None and isinstance(value, int | float):
+            low, high = entry.limits
+            if not low <= value <= high:
+                raise fault("invalid")
+        live = self._live.get(name)
+        if live is not None:
+            live.write(path, value)
+            return
+        if name in self._twice:  # snapshots keep the old one
+            self._values[name] = copied(self._root(name))
+            self._snapshot = None
+        self._store(path, value)
+
+    def snapshot(self, changes: Iterable[tuple[Path, Value]] = ()) -> Snapshot:
+        """The advance values as they are now, with changes that hold for one motion only."""
+        if self._snapshot is None:
+            self._snapshot = {name: self._root(name) for name in sorted(self._twice)}
+        changed: dict[str, Any] = {}
+        for path, value in changes:
+            name = str(path[0])
+            if name not in changed:
+                changed[name] = copied(self._root(name))
+            holder = _Holder(changed[name], self.type_of(name))
+            holder.put(path[1:], value)
+            changed[name] = holder.root
+        return {**self._snapshot, **changed} if changed else self._snapshot
+
+    def _store(self, path: Path, value: Value) -> None:
+        name = str(path[0])
+        holder = _Holder(self._root(name), self.type_of(name))
+        holder.put(path[1:], value)
+        self._values[name] = holder.root
+
+    def _root(self, name: str) -> Any:
+        if name not in self._values:
+            type_ = self.type_of(name)
+            self._values[name] = _zero(type_)
+        return self._values[name]
+
+    def _initial(self, name: str, data: Any) -> Any:
+        type_ = self.type_of(name)
+        if isinstance(type_, Structure | Array) and data is False:
+            return empty(type_)
+        try:
+            return data if type_ == UNKNOWN else from_json(type_, data)
+        except (ValueError, Fault, LinkError) as error:
+            raise ProfileError(f"profile {self._profile.name}: {name}: {error}") from None
+
+    def _give(self, name: str, value: Value) -> None:
+        """The value that a data list gives a variable at first."""
+        if self.type_of(name) == UNKNOWN:
+            self._values[name] = copied(value)
+            return
+        try:
+            self._store((name,), value)
+        except Fault:  # the file has another type for it, which then is the right one
+            self._values[name] = copied(value)
+
+
+def _twice() -> list[str]:
+    variables = System.load().variables
+    return [name for name in variables if variables[name].twin is not None]
+
+
+@dataclass(slots=True)
+class _Holder:
+    """A value of a type, of which a part is replaced."""
+
+    root: Any
+    type: Type
+
+    def put(self, steps: Path, value: Value) -> None:
+        """Give the part that the steps lead to a value, converted and copied."""
+        if not steps:
+            self.root = self._whole(value)
+            return
+        parent: Any = self.root
+        place = 0
+        while place < len(steps) - 1 and not _is_rest(parent, steps[place:]):
+            parent, place = _step(parent, steps, place)
+        last = steps[place:]
+        if isinstance(parent, ArrayValue) and all(isinstance(one, int) for one in last):
+            self._put_element(parent, [one for one in last if isinstance(one, int)], value)
+        elif isinstance(parent, StructureValue) and isinstance(last[0], str):
+            self._put_member(parent, last[0], value)
+        else:
+            raise fault("inadmissible")
+
+    def _whole(self, value: Value) -> Any:
+        if isinstance(self.root, StructureValue | ArrayValue):
+            whole = copied(self.root)
+            fill(whole, value)
+            return whole
+        return copied(value) if self.type == UNKNOWN else converted(value, self.type)
+
+    @staticmethod
+    def _put_element(array: ArrayValue, indices: list[int], value: Value) -> None:
+        if len(indices) < len(array.sizes):
+            fill(array.part(*indices), value)
+            return
+        old = array.get(*indices)
+        if isinstance(old, StructureValue | ArrayValue):
+            fill(old, value)
+        else:
+            array.set(converted(value, array.type.element), *indices)
+
+    @staticmethod
+    def _put_member(structure: StructureValue, name: str, value: Value) -> None:
+        type_ = structure.type.member(name)
+        if type_ is None:
+            raise fault("inadmissible")
+        old = structure.get(name)
+        if isinstance(old, StructureValue | ArrayValue):
+            fill(old, value)
+        else:
+            structure.set(name, converted(value, type_))
+
+
+def _is_rest(parent: Any, steps: Path) -> bool:
+    """Whether the steps left are the indices of one array."""
+    return isinstance(parent, ArrayValue) and len(steps) <= len(parent.sizes)
+
+
+def _step(parent: Any, steps: Path, place: int) -> tuple[Any, int]:
+    """One step into a value: a member, or all indices of an array."""
+    step = steps[place]
+    if isinstance(parent, StructureValue) and isinstance(step, str):
+        if parent.type.member(step) is None:
+            raise fault("uninitialised")
+        return parent.get(step), place + 1
+    if isinstance(parent, ArrayValue):
+        indices = [one for one in steps[place : place + len(parent.sizes)] if isinstance(one, int)]
+        if len(indices) == len(parent.sizes):
+            return parent.get(*indices), place + len(indices)
+        if indices:
+            return parent.part(*indices), place + len(indices)
+    raise fault("uninitialised")
+
+
+def part(value: Any, steps: Path) -> Value:
+    """A part of a value, a copy; faults `uninitialised`, `index`."""
+    place = 0
+    while place < len(steps):
+        value, place = _step(value, steps, place)
+    if value is None:
+        raise fault("uninitialised")
+    found: Value = copied(value)
+    return found
+
+
+def _zero(type_: Type) -> Any:
+    """Zeros in every part; of what no type is known, an INT."""
+    match type_:
+        case Array():
+            sizes = tuple(_UNKNOWN_SIZE if size is None else size for size in type_.sizes)
+            return zero(Array(INT if type_.element == UNKNOWN else type_.element, sizes))
+        case Structure():
+            return StructureValue(type_, [_zero(one.type) for one in type_.members])
+    return 0 if type_ == UNKNOWN else zero(type_)

@@ -1,0 +1,241 @@
+"""What a controller has, apart from programs and motions: clock, variables, signals, messages.
+
+It is the stage on which a script plays, and it tells the trace what changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from grammar.predefined import System
+from grammar.types import Enumeration, Structure
+from interp.controller.channels import COMMANDS, Channels
+from interp.controller.clock import Agenda, Clock
+from interp.controller.messages import Board
+from interp.controller.motions import placement_of
+from interp.controller.playing import Player
+from interp.controller.positions import Positions, Where, pose_of
+from interp.controller.profile import Profile
+from interp.controller.script import Script
+from interp.controller.signals import Signals
+from interp.controller.timers import Timers, date_members
+from interp.controller.trace import Task as TaskName
+from interp.controller.trace import Trace
+from interp.controller.variables import Computed, Variables
+from interp.requests import At, Path, Value
+from interp.robot.core import ControlCore
+from interp.robot.frames import IDENTITY, Pose
+from interp.robot.machine import Machine
+from interp.robot.placement import Placement
+from interp.values import EnumValue, StructureValue, constant, empty, single
+
+__all__ = ["World"]
+
+_SIGNAL_KINDS: Final = {"$IN": "in", "$ANIN": "in", "$OUT": "out", "$ANOUT": "anout"}
+
+
+class World:
+    """The state around programs.
+
+    ``machine`` is that of the arm, for Status and Turn; ``values`` are those that data lists give
+    system variables at first; ``measured`` gives where the arm really is, by default where it
+    should be.
+    """
+
+    def __init__(
+        self,
+        core: ControlCore,
+        *,
+        profile: Profile,
+        script: Script,
+        trace: Trace,
+        machine: Machine | None = None,
+        values: Mapping[str, Value] | None = None,
+        measured: Callable[[], tuple[float, ...]] | None = None,
+    ) -> None:
+        self.core = core
+        self.profile = profile
+        self.trace = trace
+        self.machine = machine
+        self.clock = Clock(profile.cycle)
+        self.agenda = Agenda()
+        self.board = Board()
+        self.variables = Variables(profile, values)
+        self.signals = Signals(profile, self.clock, self.agenda, self._signal_changed)
+        self.timers = Timers(self.clock, profile.sizes["timers"])
+        self._measured = measured
+        #: Whose doing it is what changes now.
+        self.acting: tuple[TaskName, At | None] = ("robot", None)
+        self.state = "P_RESET"
+        self.submit_state = "P_FREE"
+        self.is_coinciding = False
+        self._connect()
+        self.positions = Positions(
+            self.variables, machine, self.where, self._where_measured, self.placement
+        )
+        self.channels = Channels(self.clock, self._sent)
+        self.player = Player(script, self.variables, self.clock, self.agenda, self)
+
+    # ------------------------------------------------------------------- computed variables
+
+    def _connect(self) -> None:
+        """Have the variables answered that are more than a value."""
+        variables = self.variables
+        variables.connect(["$IN", "$OUT", "$ANIN", "$ANOUT"], self.signals)
+        variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
+        computed: Mapping[str, Callable[[], Value]] = {
+            "$DATE": self._date,
+            "$ROB_TIMER": lambda: self.clock.tick // 1000,
+            "$PRO_STATE": lambda: self._state_word(self.state),
+            "$PRO_STATE1": lambda: self._state_word(self.state),
+            "$PRO_STATE0": lambda: self._state_word(self.submit_state),
+            "$PRO_ACT": lambda: self.state == "P_ACTIVE",
+            "$PRO_MOVE": lambda: self.state == "P_ACTIVE" and self.core.pending() > 0,
+            "$ROB_STOPPED": lambda: self.core.arm.speed(self.clock.now) == 0.0,
+            "$MOVE_BCO": lambda: self.is_coinciding,
+            "$ON_PATH": lambda: True,
+            "$ACT_ADVANCE": lambda: max(0, self.core.pending() - 1),
+            "$VEL_ACT": lambda: single(self.core.arm.speed(self.clock.now)),
+            "$DISTANCE": lambda: single(self.core.arm.distances(self.clock.now)[0]),
+            "$DIST_NEXT": lambda: single(self.core.arm.distances(self.clock.now)[1]),
+            "$STOPMESS": lambda: bool(self.board.waiting),
+            "$NUM_IN": lambda: self.profile.sizes["inputs"],
+            "$NUM_OUT": lambda: self.profile.sizes["outputs"],
+            "$NULLFRAME": _null_frame,
+            **{f"${mode}": self._mode_is(mode) for mode in ("T1", "T2", "AUT", "EXT")},
+        }
+        for name, compute in computed.items():
+            variables.connect([name], Computed(compute))
+        for name, handle in COMMANDS.items():
+            variables.put((name,), handle)
+
+    def _mode_is(self, mode: str) -> Callable[[], Value]:
+        word = "EX" if mode == "EXT" else mode
+        return lambda: self.mode == word
+
+    @property
+    def mode(self) -> str:
+        """$MODE_OP as a word."""
+        value = self.variables.read(("$MODE_OP",))
+        return value.name.upper() if isinstance(value, EnumValue) else "AUT"
+
+    def _date(self) -> Value:
+        date = _empty_structure("DATE")
+        return date_members(self.profile.start, self.clock.now, date)
+
+    @staticmethod
+    def _state_word(word: str) -> Value:
+        type_ = System.load().types["PRO_STATE"]
+        assert isinstance(type_, Enumeration)
+        return constant(type_, word)
+
+    # ------------------------------------------------------------------------- where it is
+
+    def where(self) -> Where:
+        """Where the set-point is."""
+        position = self.core.arm.position(self.clock.now)
+        return position.axes, position.flange
+
+    def _where_measured(self) -> Where:
+        where = self.where()
+        if self._measured is None or self.machine is None:
+            return where
+        axes = self._measured()
+        return axes, self.positions.flange(axes)
+
+    def robroot(self) -> Pose:
+        """$ROBROOT, as data lists have it, else as the machine data has it."""
+        found = pose_of(self.variables.read(("$ROBROOT",)))
+        if found is not None and found != IDENTITY:
+            return found
+        return IDENTITY if self.machine is None else self.machine.robroot
+
+    def placement(self) -> Placement:
+        """The frames of the motion in the main run."""
+        return placement_of(self.variables.main, self.robroot())
+
+    # ------------------------------------------------------------------------- what changes
+
+    def _signal_changed(self, name: str, place: int, value: Value) -> None:
+        task, at = self.acting
+        kind = _SIGNAL_KINDS[name]
+        self.trace.tell(task, kind, at, signal=name, number=place, value=value)
+        self.player.changed(name)
+
+    def put(self, path: Path, value: Value) -> None:
+        """A program writes a system variable; raises `Fault`."""
+        self.variables.write(path, value)
+        self._was_put(path, value)
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Something outside gives a variable a value; raises `Fault`."""
+        before, self.acting = self.acting, ("robot", None)
+        if path[0] in _SIGNAL_KINDS:
+            self.signals.put(path, value)
+        else:
+            self.variables.put(path, value)
+            self._was_put(path, value)
+        self.acting = before
+
+    def _was_put(self, path: Path, value: Value) -> None:
+        if path[0] == "$OV_PRO" and isinstance(value, int | float):
+            self.core.override(self.clock.now, float(value))
+        if path[0] not in _SIGNAL_KINDS:
+            self.player.changed(str(path[0]))
+
+    def put_at(self, task: TaskName, at: At | None, path: Path, value: Value) -> None:
+        """Write a system variable on behalf of a line that has asked for it earlier."""
+        before, self.acting = self.acting, (task, at)
+        try:
+            self.put(path, value)
+        finally:
+            self.acting = before
+
+    # ---------------------------------------------------------------------------- messages
+
+    def say(
+        self, task: TaskName, at: At | None, number: int, text: str, kind: str = "notification"
+    ) -> None:
+        """Show a message of the controller."""
+        self.trace.tell(task, "message", at, number=number, text=text, type=kind)
+        if kind == "acknowledgement":
+            self.board.waiting.append(number)
+        self.player.shown(number)
+
+    def say_number(self, at: At | None, number: int, kind: str = "notification") -> None:
+        """Show a message of the catalogue."""
+        found = System.load().message(number)
+        self.say("robot", at, number, "" if found is None else found.text, kind)
+
+    def answer(self, button: int) -> None:
+        """The operator answers the oldest dialogue."""
+        dialogues = self.board.dialogues()
+        if dialogues:
+            dialogues[0].answer = button
+
+    def press(self, button: str, number: int | None) -> None:
+        """The operator presses a button."""
+        if button == "CONFIRM":
+            self.board.acknowledge(number)
+
+    def receive(self, channel: str, text: str) -> None:
+        """A peer sends a text."""
+        self.channels.receive(channel, text)
+
+    def _sent(self, channel: str, text: str) -> None:
+        self.player.received(channel, text)
+
+
+def _empty_structure(name: str) -> StructureValue:
+    type_ = System.load().types[name]
+    assert isinstance(type_, Structure)
+    value = empty(type_)
+    assert isinstance(value, StructureValue)
+    return value
+
+
+def _null_frame() -> StructureValue:
+    frame = _empty_structure("FRAME")
+    frame.members = [0.0] * len(frame.members)
+    return frame

@@ -1,0 +1,156 @@
+/* The machine: a program made ready to run, and what it works on while it runs.
+ *
+ * Code objects are translated, when they are loaded, from instructions on a stack into steps on
+ * registers (translate.c). A register is a cell counted from the first one of the frame: its
+ * variables come first, then the places of the stack of operands, so that arguments lie where the
+ * callee's frame begins. Nothing is allotted while the machine runs.
+ */
+#ifndef KRL_MACHINE_H
+#define KRL_MACHINE_H
+
+#include "program.h"
+
+/* A step: what it is, its operands, and the statement that begins with it, if one does. */
+struct krl_step {
+    const void *handler; /* where the interpreter goes on: op as an address, in compilers that can */
+    int32_t a, b, c, d;  /* of a jump d is the target, in bytes from this step on */
+    int32_t statement;   /* the place of a LINE, -1 for none */
+    uint16_t op;
+    uint16_t tag;
+};
+
+/* An array of which elements are reached: its first cell, the cells of an element, its sizes. */
+struct krl_array {
+    int32_t base;
+    int32_t width;
+    int32_t dimensions;
+    int32_t sizes[KRL_MOST_DIMENSIONS];
+};
+
+/* A code object made ready. */
+struct krl_routine {
+    struct krl_step *entry;
+    int32_t frame;    /* cells of its variables */
+    int32_t whole;    /* and of its places on the stack of operands */
+    int32_t received; /* cells of its parameters */
+    int32_t arguments; /* cells of its arguments on the stack of the caller */
+    int32_t is_owner; /* whether actions or conditions use its variables */
+    const struct krl_code *code;
+    int32_t *steps;   /* by the place of an instruction: its step where it is a target, else -1 */
+};
+
+/* The frame to return to. */
+struct krl_call {
+    int32_t step; /* to go on at; -1 where Python has made the frame that ends */
+    int32_t code;
+    int32_t fp;
+    int32_t extent;
+    int32_t statement;
+    int32_t serial;
+    int32_t result; /* the cell that takes the result */
+};
+
+enum { KRL_MOST_CALLS = 1 << 20 };
+
+struct krl_machine {
+    struct krl_program program;
+    int is_told; /* whether there is a trace to tell events to */
+    struct krl_routine *routines;
+    struct krl_step *steps;
+    int32_t step_count;
+    struct krl_array *arrays;
+    int32_t most_whole; /* the most cells that any frame takes */
+    int32_t most_stack;
+
+    krl_cell *cells;
+    int32_t cell_count;
+    struct krl_call *calls;
+    int32_t call_capacity;
+
+    /* The frame that runs. `extent` is where it would begin if frames had no stacks: what counts. */
+    int32_t code;
+    int32_t fp;
+    int32_t extent;
+    int32_t statement;
+    int32_t serial;
+    int32_t serials;
+    int32_t open; /* calls */
+    int32_t most_calls;
+    int32_t left; /* statements that may begin before something has to be done, and one more */
+    int32_t last; /* the cell that was written last through a reference */
+    int32_t top;  /* behind the last place of the stack of operands that is in use, when it stops */
+};
+
+/* How a run ends; `at` is a step. */
+enum krl_stop {
+    KRL_STOP_STEP,   /* the step is for Python */
+    KRL_STOP_LINE,   /* the statement of the step has to wait for Python */
+    KRL_STOP_FAULT,  /* `at` is the code of the fault */
+    KRL_STOP_LEFT,   /* a frame that Python has made has ended; its result is on the stack */
+    KRL_STOP_ACTION, /* an action has ended; its frame is still there */
+    KRL_STOP_END     /* the routine that the program began with has ended */
+};
+
+struct krl_stopped {
+    enum krl_stop why;
+    int32_t at;
+};
+
+/* What a step for Python is about: an instruction, or the end of a call or the call it is part of. */
+enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
+
+/* Loads an image. 0 where it is refused. */
+int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
+             struct krl_refusal *why);
+void krl_unload(struct krl_machine *machine);
+
+/* Makes room for all frames that can come. 0 where there is no memory. */
+int krl_reserve(struct krl_machine *machine);
+
+/* Begins with a code object: the first frame, with no value in any cell. */
+void krl_begin(struct krl_machine *machine, int32_t code);
+
+/* Opens a call of a code object from outside, behind all that is in use; its variables have no
+ * values. 0 where the frames have too many cells, or there is no memory. */
+int krl_open(struct krl_machine *machine, int32_t code);
+
+/* Forgets the frame that runs and goes back to the one before. */
+void krl_close(struct krl_machine *machine);
+
+/* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
+struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
+
+/* ---------------------------------------------------------------------------- its parts */
+
+/* Translates all code objects. */
+int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
+
+/* Puts handlers into steps. */
+void krl_thread(struct krl_step *steps, int32_t count);
+
+/* Functions give a fault's code or KRL_FINE. */
+enum { KRL_FINE = -1 };
+
+enum krl_function { KRL_ABS, KRL_SQRT, KRL_SIN, KRL_COS, KRL_TAN, KRL_ACOS, KRL_ATAN2, KRL_FUNCTIONS };
+
+/* The function of a name with so many arguments; KRL_FUNCTIONS where it is none of them. */
+enum krl_function krl_function_of(struct krl_text name, int32_t arguments);
+int krl_compute(enum krl_function function, float one, float other, float *result);
+
+/* `target` gets the pose left:right, whose cells are `size` many; they may be the same. */
+int krl_compose(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
+int krl_invert(krl_cell *target, const krl_cell *pose);
+
+enum krl_text_function {
+    KRL_STRLEN, KRL_STRDECLLEN, KRL_STRCLEAR, KRL_STRADD, KRL_STRCOPY, KRL_STRCOMP, KRL_STRFIND,
+    KRL_TEXT_FUNCTIONS
+};
+
+/* The text function that an entry calls, if this machine carries it out itself. */
+enum krl_text_function krl_text_function_of(const struct krl_program *program, const struct krl_entry *entry);
+
+/* `inputs` are what lay on the stack; the result takes the place of the first of them. */
+void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
+                   const struct krl_entry *entry, krl_cell *inputs);
+
+#endif

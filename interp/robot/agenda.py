@@ -1,0 +1,201 @@
+"""What the path passes, and when: the events of planned motions, places among them.
+
+Times follow from the legs of a timeline, so they change when the plan does. An event that was taken
+never comes again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from interp.robot.arm import ArmEvent, EventKind, Motion, Place
+from interp.robot.timeline import MICROSECOND, Leg, Section, Timeline
+
+__all__ = ["Passage", "events_of", "micros"]
+
+_APEX = 0.5
+"""The parameter of a blend at which the first motion ends and the second begins [TRG-02]."""
+_RANK: dict[EventKind, int] = {
+    "motion_start": 0,
+    "blend_end": 1,
+    "place": 2,
+    "blend_start": 3,
+    "blend_apex": 4,
+    "motion_end": 6,
+    "stopped": 7,
+}
+_AT_END = 5
+
+#: Kind and key of an event of one motion.
+Taken = tuple[str, int | None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Passage:
+    """A motion on the path: its section, and the blends on either side of it, if any."""
+
+    motion: Motion
+    body: Section
+    into: Section | None = None
+    out: Section | None = None
+    taken: frozenset[Taken] = frozenset()
+
+    @property
+    def number(self) -> int:
+        """The number of the motion."""
+        return self.motion.number
+
+    def parts(self) -> Iterator[tuple[Section, float, float]]:
+        """Sections with the parameters between which the motion itself runs."""
+        if self.into is not None:
+            yield self.into, _APEX, 1.0
+        yield self.body, self.body.start, self.body.end
+        if self.out is not None:
+            yield self.out, 0.0, _APEX
+
+
+def micros(seconds: float) -> int:
+    """The whole microsecond at which something has happened."""
+    return math.ceil(seconds / MICROSECOND - 1e-3)
+
+
+def events_of(passage: Passage, timeline: Timeline, now: int) -> list[tuple[int, int, ArmEvent]]:
+    """The events of a motion that are not taken, with time and rank; those that have a time yet.
+
+    None of them lies before ``now``.
+    """
+    clock = _Clock(passage, timeline)
+    found: list[tuple[int, int, ArmEvent]] = []
+
+    def add(kind: EventKind, seconds: float | None, key: int | None = None, rank: int = -1) -> None:
+        if seconds is not None and (kind, key) not in passage.taken:
+            time = max(micros(seconds), now)
+            is_unwanted = (
+                kind == "motion_end" and bool(passage.motion.criteria) and passage.out is None
+            )
+            event = ArmEvent(time, kind, passage.number, key, is_unwanted)
+            found.append((time, rank if rank >= 0 else _RANK[kind], event))
+
+    add("motion_start", clock.start)
+    if passage.into is not None:
+        add("blend_end", clock.time(passage.into, 1.0))
+    if passage.out is not None:
+        add("blend_start", clock.time(passage.out, 0.0))
+        add("blend_apex", clock.time(passage.out, _APEX))
+    add("motion_end", clock.end)
+    for place in _places(passage.motion):
+        at_start = place.kind == "DISTANCE" and place.position == 0.0
+        add("place", clock.place(place), place.key, -1 if at_start else _AT_END)
+    return found
+
+
+def _places(motion: Motion) -> Iterable[Place]:
+    return (*motion.places, *motion.stop_places)
+
+
+class _Clock:
+    """When a motion passes what."""
+
+    def __init__(self, passage: Passage, timeline: Timeline) -> None:
+        self._passage = passage
+        self._timeline = timeline
+        self._legs: dict[tuple[int, bool], list[Leg]] = {}
+
+    @property
+    def start(self) -> float | None:
+        """When the motion begins: at the apex of the blend into it, if there is one."""
+        passage = self._passage
+        if passage.into is not None:
+            return self.time(passage.into, _APEX)
+        return self.time(passage.body, passage.body.start)
+
+    @property
+    def end(self) -> float | None:
+        """When the motion ends."""
+        passage = self._passage
+        if passage.out is not None:
+            return self.time(passage.out, _APEX)
+        return self.time(passage.body, passage.body.end)
+
+    def time(self, section: Section, u: float) -> float | None:
+        """When a section's parameter is passed, in seconds; ``None`` if not as planned today."""
+        legs = self._legs.get(section.key)
+        if legs is None:
+            legs = self._legs[section.key] = list(self._timeline.of(section.key))
+        if not legs:
+            return self._beside(section, u)
+        if u <= legs[0].stretch.start:
+            return legs[0].begins
+        for leg in legs:
+            if u <= leg.last + 1e-12:
+                return leg.time_at(u)
+        return None
+
+    def _beside(self, section: Section, u: float) -> float | None:
+        """A section of no length, between two blends that use up all of a motion."""
+        if section is not self._passage.body or section.end > section.start:
+            return None
+        into = self._passage.into
+        return self.time(into, 1.0) if into is not None and u >= 0.0 else None
+
+    def place(self, place: Place) -> float | None:
+        """When a place is passed, its delay included, moved into the admissible range."""
+        passage = self._passage
+        earliest = self.start if passage.into is None else self.time(passage.into, 0.0)
+        latest = self.end if passage.out is None else self.time(passage.out, 1.0)
+        if place.kind == "PATH":
+            seconds = self._path_place(place)
+        elif place.position == 0.0:
+            seconds = self.start if passage.into is None else self.time(passage.into, 1.0)
+            latest = self.end
+        else:
+            seconds = self.end
+            if passage.out is not None:
+                earliest = self.time(passage.out, 0.0)
+        if seconds is None:
+            return None
+        seconds += place.delay * MICROSECOND
+        if earliest is not None:
+            seconds = max(seconds, earliest)
+        if latest is None:  # not planned that far, so it may still come to lie earlier
+            return seconds if seconds <= self._known_until() else None
+        return min(seconds, latest)
+
+    def _known_until(self) -> float:
+        legs = self._timeline.legs
+        return legs[-1].ends if legs else 0.0
+
+    def _path_place(self, place: Place) -> float | None:
+        """When the tool passes a place so many mm from the end or the start [TRG-04, TRG-11]."""
+        passage = self._passage
+        sections = [
+            (section, *section.way.at(np.array(range_)))
+            for section, range_ in self._extended(passage)
+        ]
+        sums = np.cumsum([0.0, *(end - start for _, start, end in sections)])
+        if place.on_start:
+            origin = sums[1] if passage.into is not None else 0.0
+        else:
+            origin = sums[-1]
+            if passage.out is not None:
+                section, start, end = sections[-1]
+                origin -= end - float(section.way.at(np.array([_APEX]))[0])
+        wanted = float(np.clip(origin + place.position, 0.0, sums[-1]))
+        index = int(np.clip(np.searchsorted(sums, wanted, side="left") - 1, 0, len(sections) - 1))
+        section, start, _ = sections[index]
+        u = float(section.way.parameters(np.array([start + wanted - sums[index]]))[0])
+        return self.time(section, u)
+
+    @staticmethod
+    def _extended(passage: Passage) -> Sequence[tuple[Section, tuple[float, float]]]:
+        """The sections on which places may lie: the blends on either side as a whole [TRG-11]."""
+        parts = [(passage.body, (passage.body.start, passage.body.end))]
+        if passage.into is not None:
+            parts.insert(0, (passage.into, (0.0, 1.0)))
+        if passage.out is not None:
+            parts.append((passage.out, (0.0, 1.0)))
+        return parts

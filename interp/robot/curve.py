@@ -1,0 +1,249 @@
+"""Curves: what the axes do along a path, over its parameter u from 0 to 1.
+
+Axes are arrays ``(n, axes)``, the six of the robot first, then the external ones, which go along in
+step with u. `Curve.rates` are first and second derivatives by u: exact for joint curves, elsewhere
+those of a spline through enough points of the curve. The axes themselves are always exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]
+
+from interp.faults import Fault
+from interp.robot.course import Course, poses_of
+from interp.robot.kinematics import Arm, Array, matrix_of
+from interp.robot.machine import ROBOT_AXES
+from interp.robot.placement import IpoMode, Placement
+from interp.robot.targets import check_limits, follow
+
+__all__ = ["BlendedAxes", "CourseCurve", "Curve", "JointLine", "tool_positions"]
+
+_FEWEST = 33
+_MOST = 1025
+_EXACT = 0.001
+"""Degrees by which every second point may miss the spline through the others; with all of them it
+is a sixteenth of that."""
+_JUMP = 20.0  # degrees between points that lie a thousandth of the path apart
+
+
+class Curve(Protocol):
+    """What the axes do along a path."""
+
+    @property
+    def arm(self) -> Arm:
+        """The kinematics."""
+        ...
+
+    @property
+    def placement(self) -> Placement:
+        """The frames in force, which tell where the tool is."""
+        ...
+
+    @property
+    def course(self) -> Course | None:
+        """The path of the tool, where that is what was programmed."""
+        ...
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether the axes go in step, so that the second derivative is zero."""
+        ...
+
+    @property
+    def grid(self) -> Array:
+        """Parameters ``(n,)`` from 0 to 1, close enough to see all of the curve."""
+        ...
+
+    def axes(self, u: Array) -> Array:
+        """Axes at parameters."""
+        ...
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First and second derivatives of the axes by u."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class JointLine:
+    """All axes in step from one position to another: PTP [MOT-01]."""
+
+    arm: Arm
+    placement: Placement
+    start: Array
+    end: Array
+
+    course = None
+    is_straight = True
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        return np.linspace(0.0, 1.0, 2)
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        return self.start + u[:, None] * (self.end - self.start)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        shape = (len(u), len(self.start))
+        return np.broadcast_to(self.end - self.start, shape), np.zeros(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class BlendedAxes:
+    """A blend of axes: ``first(1 - before·(1 - u)²) - P + second(after·u²)`` [BLD-12].
+
+    P are the axes at the point between. Between two PTP that is a parabola in the space of axes.
+    """
+
+    first: Curve
+    before: float
+    second: Curve
+    after: float
+
+    course = None
+    is_straight = False
+
+    @property
+    def arm(self) -> Arm:
+        """See `Curve.arm`."""
+        return self.first.arm
+
+    @property
+    def placement(self) -> Placement:
+        """See `Curve.placement`."""
+        return self.first.placement
+
+    @cached_property
+    def corner(self) -> Array:
+        """The axes at the point between."""
+        return self.first.axes(np.ones(1))[0]
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        return np.linspace(0.0, 1.0, _FEWEST)
+
+    def _parameters(self, u: Array) -> tuple[Array, Array]:
+        return 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        one, other = self._parameters(u)
+        axes: Array = self.first.axes(one) - self.corner + self.second.axes(other)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        one, other = self._parameters(u)
+        one_rate, other_rate = 2.0 * self.before * (1.0 - u)[:, None], 2.0 * self.after * u[:, None]
+        first, first_bend = self.first.rates(one)
+        second, second_bend = self.second.rates(other)
+        rates: tuple[Array, Array] = (
+            first * one_rate + second * other_rate,
+            first_bend * one_rate**2
+            - 2.0 * self.before * first
+            + second_bend * other_rate**2
+            + 2.0 * self.after * second,
+        )
+        return rates
+
+
+class CourseCurve:
+    """The axes along a course, unbroken from ``start`` on; Turn results from the path [POS-02].
+
+    External axes go from those of ``start`` to ``externals``. Raises `Fault`: 1366 or 1447 where
+    the course cannot be followed, 1102 where it leads through a singularity that would make an
+    axis jump.
+    """
+
+    is_straight = False
+
+    def __init__(
+        self, arm: Arm, placement: Placement, course: Course, start: Array, externals: Array
+    ) -> None:
+        self.arm = arm
+        self.placement = placement
+        self.course: Course | None = course
+        self._course = course
+        self._before = matrix_of(placement.before)
+        self._after = matrix_of(placement.after)
+        self._externals = start[ROBOT_AXES:]
+        self._travel = externals - start[ROBOT_AXES:]
+        self.grid, axes = self._points(start[:ROBOT_AXES])
+        self._table = CubicSpline(self.grid, axes)
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        flanges = self._flanges(u)
+        robot = self.arm.inverse_near(flanges, self._table(u))
+        lost = np.isnan(robot).any(axis=1)
+        if lost.any():  # stretched out to the last nanometre
+            robot[lost] = self._table(u[lost])
+        return np.concatenate((robot, self._externals + u[:, None] * self._travel), axis=1)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        others = np.broadcast_to(self._travel, (len(u), len(self._travel)))
+        first = np.concatenate((self._table(u, 1), others), axis=1)
+        return first, np.concatenate((self._table(u, 2), np.zeros_like(others)), axis=1)
+
+    def _flanges(self, u: Array) -> Array:
+        poses = poses_of(self._course, u)
+        if self.placement.mode is IpoMode.TCP:
+            poses = _inverted(poses)
+        flanges: Array = self._before @ poses @ self._after
+        return flanges
+
+    def _points(self, start: Array) -> tuple[Array, Array]:
+        """Parameters and axes of so many points that a spline through them is the curve."""
+        count = _FEWEST
+        while True:
+            grid = np.linspace(0.0, 1.0, count)
+            axes = follow(self.arm, self._flanges(grid), start.tolist())
+            missed = np.abs(CubicSpline(grid[::2], axes[::2])(grid[1::2]) - axes[1::2]).max()
+            if missed < _EXACT:
+                break
+            if count >= _MOST:
+                if np.abs(np.diff(axes, axis=0, prepend=start[None])).max() > _JUMP:
+                    raise _singular()
+                break
+            count = 2 * count - 1
+        if np.abs(axes[0] - start).max() > _JUMP:
+            raise _singular()
+        for values in (axes.min(axis=0), axes.max(axis=0)):
+            check_limits(self.arm.machine.axes, values.tolist())
+        return grid, axes
+
+
+def tool_positions(curve: Curve, u: Array) -> Array:
+    """Where the tool is in the base, or with a fixed tool the base in the tool: mm, ``(n, 3)``."""
+    if curve.course is not None:
+        return curve.course.at(u)[0]
+    flanges = curve.arm.forward(curve.axes(u)[:, :ROBOT_AXES])
+    placement = curve.placement
+    points = matrix_of(placement.before.inverse()) @ flanges @ matrix_of(placement.tool)
+    if placement.mode is IpoMode.TCP:
+        points = _inverted(points)
+    positions: Array = points[:, :3, 3]
+    return positions
+
+
+def _inverted(poses: Array) -> Array:
+    turned = np.swapaxes(poses[:, :3, :3], 1, 2)
+    inverse = np.zeros_like(poses)
+    inverse[:, :3, :3] = turned
+    inverse[:, :3, 3] = -(turned @ poses[:, :3, 3:])[:, :, 0]
+    inverse[:, 3, 3] = 1.0
+    return inverse
+
+
+def _singular() -> Fault:
+    text = "the path leads through a singularity, where an axis would have to jump"
+    return Fault("axis_velocity", text, number=1102, rules=("MOT-08",))

@@ -1,0 +1,23 @@
+"""Make the MJCF of the arm that comes along: ``python -m interp.robot.models.generate``."""
+
+from __future__ import annotations
+
+from interp.robot.models import DEFAULT, default_machine, model_file
+from interp.robot.mujoco_model import mjcf_of
+
+__all__ = ["generated"]
+
+
+def generated() -> str:
+    """The text of the model, with a word on where it is from."""
+    word = (
+        f"<!-- Made of {DEFAULT}.dat by python -m interp.robot.models.generate; do not edit.\n"
+        f"     {DEFAULT}.dat names the sources, interp/robot/mujoco_model.py what is assumed. -->\n"
+    )
+    return word + mjcf_of(default_machine())
+
+
+if __name__ == "__main__":
+    path = model_file(f"{DEFAULT}.xml")
+    path.write_text(generated(), encoding="utf-8", newline="\n")
+    print(f"{path.name}: written")

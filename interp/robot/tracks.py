@@ -1,0 +1,237 @@
+"""From a motion instruction to its own piece of path: a curve, and how fast it may be travelled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from interp.faults import Fault
+from interp.robot.arm import Motion, Settings, Target
+from interp.robot.circle import Circle, circle_through
+from interp.robot.course import Arc, Course, Line
+from interp.robot.curve import CourseCurve, Curve, JointLine, tool_positions
+from interp.robot.frames import Pose
+from interp.robot.kinematics import Arm, Array, matrix_of
+from interp.robot.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
+from interp.robot.machine import Machine
+from interp.robot.orientation import Carried, Orientation, Turning, about, turning
+from interp.robot.programmed import Programmed
+
+__all__ = ["Track", "Tracks"]
+
+_STILL = 1e-6  # mm or degrees: less is no motion
+_ZERO_LENGTH, _SINGULAR = 3171, 2868
+_METRE = 1000.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """One motion's own path, from the target before it to its own.
+
+    ``axis_limits`` are what its percentages leave of the machine data. ``paths`` are its limits
+    along the path; none for PTP. ``is_still`` is a motion of length zero [MOT-11]. ``notices`` are
+    numbers of messages that stop nothing.
+    """
+
+    motion: Motion
+    curve: Curve
+    ceiling: Ceiling
+    axis_limits: AxisLimits
+    paths: tuple[PathLimits, ...]
+    is_still: bool
+    notices: tuple[int, ...]
+
+    @property
+    def is_cp(self) -> bool:
+        """Whether the path of the tool is what was programmed."""
+        return self.motion.kind not in {"PTP", "SPTP", "PTP_SPLINE"}
+
+
+class Tracks:
+    """Makes tracks for one arm."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.arm = Arm(machine)
+        self.limits = axis_limits(machine)
+
+    def track(
+        self, motion: Motion, before: Programmed, *, is_after_abort: bool = False
+    ) -> tuple[Track, Programmed]:
+        """The track of a motion behind a target, and the target it leads to.
+
+        After an aborted motion CIRC is executed as LIN, since its start is not where it was
+        [INT-14]. Raises `Fault`.
+        """
+        match motion.kind:
+            case "PTP" | "SPTP":
+                return self._ptp(motion, before)
+            case "LIN" | "SLIN":
+                return self._line(motion, before)
+            case "CIRC" | "SCIRC":
+                if is_after_abort and motion.kind == "CIRC":
+                    return self._line(motion, before)
+                return self._circle(motion, before)
+            case _:
+                raise Fault("motion", f"{motion.kind} is no motion of this arm")
+
+    # ------------------------------------------------------------------------------------ kinds
+
+    def _ptp(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        settings = motion.settings
+        goal = before.goal(motion, motion.target, settings.placement)
+        curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
+        limits = self.programmed(settings)
+        is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
+        notices = (_ZERO_LENGTH,) * is_still + (_SINGULAR,) * goal.is_singular
+        ceiling = ceiling_of(curve, self.limits, limits, self._reduced(curve, settings))
+        track = Track(motion, curve, ceiling, limits, (), is_still, notices)
+        components = None
+        if any(name in motion.target for name in "XYZABC"):
+            components = before.pose(
+                motion.target, settings.placement, motion.is_relative, motion.reference
+            )
+        return track, before.reached(goal.axes, components, settings.placement)
+
+    def _line(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        placement = motion.settings.placement
+        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        point = self._point(motion, motion.target, before)
+        end = matrix_of(placement.in_path(point))
+        course = Line(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
+        return self._along(motion, before, course, point)
+
+    def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        placement = motion.settings.placement
+        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        auxiliary = placement.in_path(self._point(motion, motion.auxiliary or {}, before))
+        point = self._point(motion, motion.target, before)
+        end = matrix_of(placement.in_path(point))
+        circle = circle_through(
+            start[:3, 3], np.array(auxiliary.position), end[:3, 3], motion.angle
+        )
+        course = Arc(circle, _along_circle(motion.settings, circle, start, end))
+        return self._along(motion, before, course, point)
+
+    def _along(
+        self, motion: Motion, before: Programmed, course: Course, point: Pose
+    ) -> tuple[Track, Programmed]:
+        """The track of a course; its last pose is the target, except for an angle of its own."""
+        settings = motion.settings
+        externals = before.externals(motion.target, motion.is_relative)
+        travel = np.abs(externals - before.axes[6:]).max(initial=0.0)
+        swivel, rotation = (math.degrees(angle) for angle in course.angles)
+        if max(course.length, swivel, rotation, travel) < _STILL:
+            still = JointLine(self.arm, settings.placement, before.axes, before.axes)
+            ceiling = ceiling_of(still, self.limits, self.limits, ())
+            track = Track(motion, still, ceiling, self.limits, (), True, (_ZERO_LENGTH,))
+            return track, before.reached(before.axes, point, settings.placement)
+        curve = CourseCurve(self.arm, settings.placement, course, before.axes, externals)
+        paths = self.paths(settings, course.length, swivel, rotation)
+        ceiling = ceiling_of(curve, self.limits, self.limits, paths)
+        self._check_speed(settings, curve, paths)
+        track = Track(motion, curve, ceiling, self.limits, paths, False, ())
+        axes = curve.axes(np.ones(1))[0]
+        reached = point if motion.angle is None and settings.orientation == "#VAR" else None
+        return track, before.reached(axes, reached, settings.placement)
+
+    def _point(self, motion: Motion, target: Target, before: Programmed) -> Pose:
+        placement = motion.settings.placement
+        return before.pose(target, placement, motion.is_relative, motion.reference)
+
+    # ----------------------------------------------------------------------------------- limits
+
+    def programmed(self, settings: Settings) -> AxisLimits:
+        """What percentages and T1 leave of the machine data [MOT-02, MOT-07]."""
+        percent = settings.axis_velocity
+        if settings.is_reduced:
+            share = self.machine.t1_reduction
+            percent = tuple(min(p if 0.0 < p <= 100.0 else 100.0, 100.0) * share for p in percent)
+        return self.limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
+
+    def paths(
+        self, settings: Settings, length: float, swivel: float, rotation: float
+    ) -> tuple[PathLimits, ...]:
+        """The limits along a path of so many mm, degrees and degrees [MOT-04, MOT-05, MOT-07]."""
+        velocity, acceleration = self.machine.velocity, self.machine.acceleration
+        path = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
+        if settings.is_reduced:
+            path = min(path, self.machine.t1_speed)
+        ramp = min(_above(settings.acceleration, "$ACC.CP"), acceleration.path)
+        (swivel_speed, rotation_speed) = settings.swivel[0], settings.rotation[0]
+        limits = (
+            PathLimits(length, path * _METRE, ramp * _METRE),
+            PathLimits(
+                swivel,
+                min(_above(swivel_speed, "$VEL.ORI1"), velocity.swivel),
+                min(_above(settings.swivel[1], "$ACC.ORI1"), acceleration.swivel),
+            ),
+            PathLimits(
+                rotation,
+                min(_above(rotation_speed, "$VEL.ORI2"), velocity.rotation),
+                min(_above(settings.rotation[1], "$ACC.ORI2"), acceleration.rotation),
+            ),
+        )
+        return tuple(limit for limit in limits if limit.length > _STILL)
+
+    def _reduced(self, curve: Curve, settings: Settings) -> tuple[PathLimits, ...]:
+        """In T1 the tool is no faster than $VEL_CP_T1 in PTP either [MOT-07]."""
+        if not settings.is_reduced:
+            return ()
+        places = tool_positions(curve, np.linspace(0.0, 1.0, 65))
+        fastest = float(np.linalg.norm(np.diff(places, axis=0), axis=1).max()) * 64.0
+        if fastest < _STILL:
+            return ()
+        return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
+
+    def _check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
+        """Raise `Fault` 1102 where an axis would be too fast and $CP_VEL_TYPE forbids to slow down.
+
+        The speed looked at is the programmed one, or what can be reached from standstill at the
+        nearer end; with a neighbour to blend into it would be slowed down there all the same.
+        """
+        may_reduce = settings.speed_type in {"#VAR_ALL", "#VAR_ALL_MODEL"}
+        if may_reduce or (settings.speed_type == "#VAR_T1" and settings.is_reduced) or not paths:
+            return
+        grid = curve.grid
+        first, _ = curve.rates(grid)
+        most = min(path.velocity / path.length for path in paths)
+        gain = min(path.acceleration / path.length for path in paths)
+        speeds = np.minimum(np.sqrt(2.0 * gain * np.minimum(grid, 1.0 - grid)), most)
+        over = (np.abs(first) * speeds[:, None] > self.limits.velocity).any(axis=0)
+        if over.any():
+            axes = (*self.machine.axes, *self.machine.externals)
+            name = axes[int(np.argmax(over))].name
+            text = f"the path would move {name} faster than it can"
+            raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
+
+
+def _turning(settings: Settings, start: Array, end: Array) -> Turning:
+    """The orientation along a line; #CONSTANT keeps that of the start [ORI-01]."""
+    if settings.orientation == "#CONSTANT":
+        return turning(start[:3, :3], start[:3, :3])
+    return turning(start[:3, :3], end[:3, :3])
+
+
+def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:
+    """The orientation along an arc, told in space or in the frame of the path [ORI-04].
+
+    The programmed end point has its orientation where it lies on the circle [MOT-13].
+    """
+    extent = circle.angle / circle.programmed
+    if settings.circle != "#PATH":
+        keeps = settings.orientation == "#CONSTANT"
+        return turning(start[:3, :3], start[:3, :3] if keeps else end[:3, :3], extent)
+    back = about(circle.normal, np.array([-circle.programmed]))[0]
+    other = start[:3, :3] if settings.orientation == "#CONSTANT" else back @ end[:3, :3]
+    return Carried(turning(start[:3, :3], other, extent), circle.normal, circle.angle)
+
+
+def _above(value: float, name: str) -> float:
+    """A speed or acceleration that is one. Raises `Fault` 1422."""
+    if not value > 0.0 or not math.isfinite(value):
+        raise Fault("invalid", f"{name} is {value:g}", number=1422, rules=("MSG-11",))
+    return value

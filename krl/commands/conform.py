@@ -1,0 +1,213 @@
+"""`krl conform`: the cases of the judge, on any executors and robots."""
+
+import time
+from collections.abc import Iterable, Sequence
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from conformance.case import Case
+    from conformance.runner import CaseResult
+
+__all__ = ["conform"]
+
+_SHOWN = 20
+
+
+def conform(
+    select: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[SELECT...]",
+            help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths; "
+            "default: all. Or: import FILE.",
+        ),
+    ] = None,
+    executor: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="tree, vm or native; may be repeated; default: all."),
+    ] = None,
+    robot: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="none, kinematic or mujoco; may be repeated."),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML here.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the page into this folder.")
+    ] = None,
+    lint: Annotated[
+        bool, typer.Option("--lint", help="See whether the cases are well formed; run nothing.")
+    ] = False,
+    list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Run conformance cases, compare each with what it expects and executors with one another.
+
+    Exit status 1 where a case failed. 'krl conform import FILE' judges a recording that was made
+    on a controller; conformance/CASES.md tells how to make one.
+    """
+    words = select or []
+    if lint:
+        return _lint(words)
+    for target in filter(None, (json_file, junit)):
+        if target.is_dir():
+            raise Unusable(f"{target}: a folder, not a file")
+    if words[:1] == ["import"]:
+        return _import(words[1:], json_file)
+    cases = _cases(words)
+    if list_:
+        for case in cases:
+            typer.echo(f"{case.name:42} {','.join(case.rules):22} {case.title}")
+        return FINE
+    executors = _chosen(executor, "executor")
+    robots = _chosen(robot, "robot")
+    begun = time.perf_counter()
+    results = _run(cases, executors, robots, jobs)
+    seconds = time.perf_counter() - begun
+    _write(results, executors, robots, seconds, json_file, junit, html)
+    _tell(results, seconds)
+    failed = any(one.verdict == "fail" for one in results)
+    return FINDINGS if failed else FINE
+
+
+def _cases(words: Sequence[str]) -> "list[Case]":
+    from conformance.case import CASES, CaseError, find_cases, selected
+
+    outside = [Path(word) for word in words if Path(word).exists()]
+    try:
+        cases = find_cases()
+        for path in outside:
+            if CASES.resolve() not in (path.resolve(), *path.resolve().parents):
+                cases += find_cases(path) if path.is_dir() else _one_case(path)
+        return selected(cases, words)
+    except CaseError as error:
+        raise Unusable(str(error)) from error
+
+
+def _one_case(path: Path) -> "list[Case]":
+    from conformance.case import read_case
+
+    return [read_case(path, path.parent)]
+
+
+def _chosen(wanted: list[str] | None, what: str) -> list[str]:
+    from conformance.observing import EXECUTORS, ROBOTS, Setup, missing
+
+    known = EXECUTORS if what == "executor" else ROBOTS
+    if not wanted:
+        setups = [Setup(n, "none") if what == "executor" else Setup("tree", n) for n in known]
+        there = [name for name, setup in zip(known, setups, strict=True) if not missing(setup)]
+        return there if what == "executor" else there[:2]
+    for name in wanted:
+        if name not in known:
+            raise Unusable(f"{name}: the {what} is one of {', '.join(known)}")
+    return list(dict.fromkeys(wanted))
+
+
+def _run(
+    cases: "Sequence[Case]", executors: Sequence[str], robots: Sequence[str], jobs: int | None
+) -> "list[CaseResult]":
+    from conformance.runner import run_cases
+    from conformance.verdicts import KnownFailures
+
+    try:
+        known = KnownFailures.load()
+    except (OSError, ValueError) as error:
+        raise Unusable(f"the list of known failures cannot be read: {error}") from error
+    with progress_bar("running cases", len(cases)) as bar:
+        return run_cases(cases, executors, robots, known, jobs, bar)
+
+
+def _write(
+    results: "Sequence[CaseResult]",
+    executors: Sequence[str],
+    robots: Sequence[str],
+    seconds: float,
+    json_file: Path | None,
+    junit: Path | None,
+    html: Path | None,
+) -> None:
+    from conformance.junit import write_junit
+    from conformance.record import record_of
+    from krl.writing import write_json
+
+    version = metadata.version("krl-workbench")
+    if json_file is not None or html is not None:
+        record = record_of(results, executors, robots, version=version, seconds=seconds)
+        if json_file is not None:
+            write_json(record, json_file)
+        if html is not None:
+            import reports
+
+            write_page = getattr(reports, "write_conformance_page", None)
+            if write_page is None:
+                raise Unusable("the page of the judge is not built yet; use --json")
+            typer.echo(f"page: {write_page(record, html)}")
+    if junit is not None:
+        write_junit(results, junit)
+
+
+def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
+    """What failed, case by case, then the figures."""
+    from conformance.lint import coverage
+    from conformance.verdicts import VERDICTS
+
+    failed = [one for one in results if one.verdict == "fail"]
+    for one in failed[:_SHOWN]:
+        _tell_failure(one)
+    if len(failed) > _SHOWN:
+        typer.echo(f"… and {len(failed) - _SHOWN} more cases failed")
+    runs = [result for one in results for result in one.results]
+    counted = {verdict: sum(r.verdict == verdict for r in runs) for verdict in VERDICTS}
+    told = ", ".join(f"{count:,} {verdict}" for verdict, count in counted.items() if count)
+    rate = len(runs) / seconds if seconds else 0.0
+    covered, hard = coverage(one.case for one in results).count(hard=True)
+    negative = sum(one.case.is_negative for one in results)
+    typer.echo(f"{len(results):,} cases ({negative:,} negative), {len(runs):,} runs: {told}")
+    typer.echo(f"rules that may fail: {covered} of {hard} have a case; {rate:.1f} runs a second")
+
+
+def _tell_failure(one: "CaseResult") -> None:
+    typer.echo(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]")
+    for result in one.results:
+        if result.verdict != "fail":
+            continue
+        typer.echo(one_line(f"  {result.executor}/{result.robot}: {result.reason}"))
+        if result.divergence is not None:
+            found = result.divergence
+            typer.echo(f"    {found.file}:{found.line}: {one.case.line(found.file, found.line)}")
+            for side in (found.left, found.right):
+                values = ", ".join(f"{name}={value}" for name, value in side.variables.items())
+                typer.echo(one_line(f"    {side.name}: {values or 'no variables yet'}"))
+
+
+def _lint(words: Iterable[str]) -> int:
+    from conformance.case import CASES
+    from conformance.lint import lint
+
+    folders = [Path(word) for word in words] or [CASES]
+    for folder in folders:
+        if not folder.is_dir():
+            raise Unusable(f"{folder}: no such folder of cases")
+    found = [fault for folder in folders for fault in lint(folder)]
+    for fault in found:
+        typer.echo(fault)
+    typer.echo(f"{len(found)} faults" if found else "the cases are well formed", err=True)
+    return FINDINGS if found else FINE
+
+
+def _import(words: Sequence[str], json_file: Path | None) -> int:
+    raise Unusable(f"import: not built yet {words} {json_file}")

@@ -1,0 +1,115 @@
+"""`krl fuzz`: random programs on several executors, whose traces must be equal."""
+
+import json
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.syntax import Syntax
+
+from krl.door import FINDINGS, FINE, Unusable
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from conformance.differential.campaign import Finding, Findings
+
+__all__ = ["fuzz"]
+
+_SHOWN = 5
+
+
+def fuzz(
+    programs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="How many programs to make and run.")
+    ] = 1_000,
+    seed: Annotated[int, typer.Option(metavar="N", help="Chooses the programs.")] = 1,
+    executor: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="tree, vm or native; may be repeated; the first is the reference; default: all.",
+        ),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Make programs at random, run each on all executors, compare every request and event.
+
+    The world answers at random too, and interferes with interrupts, triggers and faults; all of it
+    follows from the seed. A program on which two executors part is made as small as possible.
+    Exit status 1 where there is one.
+    """
+    from conformance.differential.campaign import fuzz as run
+    from conformance.differential.campaign import record_of
+
+    if json_file is not None and json_file.is_dir():
+        raise Unusable(f"{json_file}: a folder, not a file")
+    names = _chosen(executor or [])
+    begun = time.perf_counter()
+    with progress_bar("running programs", programs) as bar:
+        found = run(programs, seed, names, jobs or os.cpu_count() or 1, bar)
+    record = record_of(found, time.perf_counter() - begun)
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    _tell(found, record["seconds"])
+    return FINDINGS if found.findings else FINE
+
+
+def _chosen(wanted: list[str]) -> list[str]:
+    """Executors by name, each once; all that there are by default."""
+    from conformance.differential.runs import EXECUTORS, available
+
+    there = available()
+    for name in wanted:
+        if name not in EXECUTORS:
+            raise Unusable(f"{name}: the executor is one of {', '.join(EXECUTORS)}")
+        if name not in there:
+            raise Unusable(f"{name}: this executor is not available here")
+    names = list(dict.fromkeys(wanted or there))
+    if len(names) < 2:
+        raise Unusable("name two executors at least: one alone has nobody to be compared with")
+    return names
+
+
+def _tell(found: "Findings", seconds: float) -> None:
+    from conformance.differential.coverage import missing
+
+    console = Console(highlight=False)
+    ends = ", ".join(f"{count:,} with {word}" for word, count in sorted(found.ends.items()))
+    console.print(
+        f"{found.programs:,} programs on {', '.join(found.executors)} in {seconds:,.1f} s, "
+        f"{found.facts:,} requests and events; ended: {ends}",
+        soft_wrap=True,
+    )
+    for kind, names in missing(found.counts).items():
+        console.print(f"Never executed, {kind}: {', '.join(names)}", soft_wrap=True)
+    count = len(found.findings)
+    if not count:
+        console.print("No difference.")
+        return
+    console.print(f"[bold red]{count:,} difference{'s' if count > 1 else ''}[/]")
+    for one in found.findings[:_SHOWN]:
+        _show(console, one, found.executors[0])
+    if count > _SHOWN:
+        others = ", ".join(str(one.number) for one in found.findings[_SHOWN : _SHOWN + 20])
+        console.print(f"Others: programs {others}{' …' if count > _SHOWN + 20 else ''}")
+
+
+def _show(console: Console, finding: "Finding", reference: str) -> None:
+    parted = finding.difference
+    size = "" if finding.statements is None else f", reduced to {finding.statements} statements"
+    console.print(f"\n[bold]Program {finding.number}[/]{size}", soft_wrap=True)
+    console.print(f"{reference}: {parted.expected_text}", markup=False, soft_wrap=True)
+    console.print(f"{parted.executor}: {parted.actual_text}", markup=False, soft_wrap=True)
+    for path, text in finding.files:
+        console.print(f"{path}:", markup=False)
+        console.print(Syntax(text.rstrip(), "text", line_numbers=True, background_color="default"))

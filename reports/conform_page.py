@@ -1,0 +1,119 @@
+"""The page of a run of the judge: suites by executor and robot, and each case with what it did."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from reports.conform_view import VERDICTS, conform_view
+from reports.embed import embedded_json
+from reports.fields import Record, count, nested, number, records, text, texts
+from reports.page import render, source, write_page
+from reports.plain import plain, shown
+
+__all__ = ["write_conformance_page"]
+
+_MAX_CASES = 5_000
+_MAX_NIGHTS = 400
+_SCRIPTS = ("page", "conform-trend", "conform-timing", "conform-path", "conform-case", "conform")
+_CHECK = ("file", "line", "text", "state", "actual")
+
+Json = dict[str, Any]
+
+
+def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of one run of the judge, and return its path.
+
+    ``record`` is what ``krl conform --json`` writes; every field may be absent. Its ``history``,
+    where there is one, are the lines of ``history.jsonl`` with the nights before. The same record
+    gives the same bytes. The page appears whole or not at all.
+
+    Raises OSError when the folder cannot be made or written.
+    """
+    cases = records(record, "cases")[:_MAX_CASES]
+    data = embedded_json(
+        {
+            "verdicts": list(VERDICTS),
+            "cases": [_case(case) for case in cases],
+            "rules": {
+                shown(text(rule, "id"), 20): _rule(rule) for rule in records(record, "rules")
+            },
+            "nights": [_night(one) for one in records(record, "history")[-_MAX_NIGHTS:]],
+        }
+    )
+    script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
+    page = render(
+        "conform.html.j2",
+        script=f'"use strict";\n{{\n{script}}}\n',
+        styles=["page.css", "conform.css"],
+        data=data,
+        view=conform_view(record),
+    )
+    return write_page(page, folder / "index.html")
+
+
+def _case(case: Record) -> Json:
+    """A case as the page's script reads it; its first result is the one it is shown by."""
+    return {
+        "name": shown(text(case, "name"), 200),
+        "suite": shown(text(case, "suite"), 80),
+        "title": shown(text(case, "title"), 300),
+        "rules": [shown(rule, 20) for rule in texts(case, "rules")],
+        "phase": shown(text(case, "phase"), 20),
+        "profile": shown(text(case, "profile"), 40),
+        "negative": bool(case.get("negative")),
+        "unconfirmed": shown(text(case, "unconfirmed"), 300),
+        "verdict": shown(text(case, "verdict"), 20),
+        "io": [shown(line, 200) for line in texts(case, "io")],
+        "files": [
+            {
+                "name": shown(text(file, "name"), 200),
+                "lines": [shown(line, 400) for line in text(file, "text").splitlines()[:3000]],
+            }
+            for file in records(case, "files")
+        ],
+        "results": [_result(one) for one in records(case, "results")],
+    }
+
+
+def _result(result: Record) -> Json:
+    path = nested(result, "path")
+    return {
+        "executor": shown(text(result, "executor"), 40),
+        "robot": shown(text(result, "robot"), 40),
+        "verdict": shown(text(result, "verdict"), 20),
+        "reason": shown(text(result, "reason"), 600),
+        "seconds": number(result, "seconds"),
+        "ending": shown(text(result, "ending"), 60),
+        "checks": [
+            {name: plain(check.get(name)) for name in _CHECK} for check in records(result, "checks")
+        ],
+        "divergence": plain(result.get("divergence")),
+        "events": [plain(event) for event in records(result, "events")],
+        "eventsTotal": count(result, "events_total"),
+        "findings": [plain(one) for one in records(result, "findings")],
+        "path": {
+            name: plain(path[name])
+            for name in ("t", "poses", "poses_meas", "analytic")
+            if name in path
+        },
+    }
+
+
+def _rule(rule: Record) -> Json:
+    return {
+        "tier": shown(text(rule, "tier"), 10),
+        "mayFail": bool(rule.get("may_fail")),
+        "statement": shown(text(rule, "statement"), 600),
+        "source": shown(text(rule, "source"), 100),
+        "unshown": shown(text(rule, "unshown"), 300),
+        "cases": count(rule, "cases"),
+    }
+
+
+def _night(night: Record) -> Json:
+    conform = nested(night, "conform") or night
+    return {
+        "date": shown(text(night, "date") or text(night, "generated"), 40),
+        "verdicts": {name: count(nested(conform, "verdicts"), name) for name in VERDICTS},
+        "seconds": number(conform, "seconds"),
+    }

@@ -1,0 +1,136 @@
+"""What the page of the judge says in words: headline figures, and the matrix of the suites."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from reports.fields import Record, count, nested, number, records, text, texts
+from reports.plain import shown
+from reports.spelling import Figure, counted, moment, percent, share
+
+__all__ = ["VERDICTS", "Cell", "ConformView", "Row", "conform_view"]
+
+VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A suite on one executor and robot: how many cases came to which verdict."""
+
+    executor: str
+    robot: str
+    counts: tuple[tuple[str, int], ...]
+
+    @property
+    def total(self) -> int:
+        """All its cases."""
+        return sum(number for _, number in self.counts)
+
+    @property
+    def worst(self) -> str:
+        """The gravest verdict that occurs."""
+        there = {name for name, number in self.counts if number}
+        order = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
+        return next((name for name in order if name in there), "none")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A suite with its cells, one for each column or ``None``."""
+
+    suite: str
+    cases: int
+    negative: int
+    cells: tuple[Cell | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ConformView:
+    """What the template shows; all texts are fit to be printed."""
+
+    headline: str
+    is_green: bool
+    made: str
+    figures: tuple[Figure, ...]
+    columns: tuple[tuple[str, str], ...]
+    rows: tuple[Row, ...]
+    uncovered: tuple[str, ...]
+    has_history: bool
+
+
+def conform_view(record: Mapping[str, Any]) -> ConformView:
+    """The view of a record, as `reports.conform_page.write_conformance_page` takes it."""
+    suites = records(record, "suites")
+    columns = _columns(suites)
+    failed = count(nested(record, "case_verdicts"), "fail")
+    total = count(record, "cases_total")
+    headline = f"{counted(failed, 'case')} of {total:,} failed" if failed else "No case failed"
+    return ConformView(
+        headline=headline if total else "No case was run",
+        is_green=bool(total) and not failed,
+        made=shown(moment(text(record, "generated")), 60),
+        figures=tuple(_figures(record)),
+        columns=columns,
+        rows=tuple(_row(suite, columns) for suite in suites),
+        uncovered=tuple(shown(rule, 20) for rule in texts(nested(record, "coverage"), "uncovered")),
+        has_history=len(records(record, "history")) > 1,
+    )
+
+
+def _columns(suites: list[Record]) -> tuple[tuple[str, str], ...]:
+    """The executors and robots that occur; the front end's column comes last."""
+    found = {
+        (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
+        for suite in suites
+        for cell in records(suite, "cells")
+    }
+    order = {name: place for place, name in enumerate(("tree", "vm", "native"))}
+    robots = {name: place for place, name in enumerate(("none", "kinematic", "mujoco"))}
+    return tuple(sorted(found, key=lambda c: (robots.get(c[1], 9), order.get(c[0], 9), c)))
+
+
+def _row(suite: Record, columns: tuple[tuple[str, str], ...]) -> Row:
+    cells = {}
+    for cell in records(suite, "cells"):
+        place = (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
+        verdicts = nested(cell, "verdicts")
+        cells[place] = Cell(*place, tuple((name, count(verdicts, name)) for name in VERDICTS))
+    return Row(
+        shown(text(suite, "name"), 80),
+        count(suite, "cases"),
+        count(suite, "negative"),
+        tuple(cells.get(place) for place in columns),
+    )
+
+
+def _figures(record: Mapping[str, Any]) -> list[Figure]:
+    verdicts, coverage = nested(record, "case_verdicts"), nested(record, "coverage")
+    total, passed = count(record, "cases_total"), count(verdicts, "pass")
+    hard, hard_covered = count(coverage, "hard"), count(coverage, "hard_covered")
+    seconds = number(record, "seconds")
+    figures = [
+        Figure("cases pass", f"{passed:,}", f"of {total:,}", share(passed, total)),
+        Figure("fail", f"{count(verdicts, 'fail'):,}"),
+        Figure(
+            "not sure enough to fail",
+            f"{count(verdicts, 'unconfirmed'):,}",
+            f"{count(verdicts, 'known-failure'):,} known, {count(verdicts, 'skipped'):,} skipped",
+        ),
+        Figure(
+            "rules that may fail have cases",
+            percent(hard_covered, hard),
+            f"{hard_covered:,} of {hard:,}; "
+            f"{count(coverage, 'covered'):,} of all {count(coverage, 'rules'):,}",
+            share(hard_covered, hard),
+        ),
+        Figure("negative", percent(count(record, "negative"), total)),
+    ]
+    if seconds:
+        runs = count(record, "runs")
+        figures.append(
+            Figure("runs a second", f"{runs / seconds:.1f}", f"{runs:,} in {seconds:.1f} s")
+        )
+    kill = record.get("kill_rate")
+    if isinstance(kill, int | float):
+        figures.append(Figure("planted faults found", percent(float(kill), 1.0)))
+    return figures
