@@ -30,7 +30,17 @@ __all__ = ["CASES", "ENDINGS", "Case", "CaseError", "find_cases", "read_case", "
 CASES: Final = Path(__file__).parent / "cases"
 #: Ends of files that a program consists of.
 ENDINGS: Final = (".src", ".sub", ".dat")
-_KEYS: Final = ("rule", "title", "phase", "profile", "io", "robot", "with", "seconds", "unconfirmed")
+_KEYS: Final = (
+    "rule",
+    "title",
+    "phase",
+    "profile",
+    "io",
+    "robot",
+    "with",
+    "seconds",
+    "unconfirmed",
+)
 _MANY: Final = ("io",)
 _FRONT: Final = re.compile(r";@\s*([a-z]+):\s*(.*?)\s*$")
 #: The code of a line, and what stands behind the first ``;>`` that is in no text.
@@ -84,7 +94,9 @@ class Case:
         kinds = {one.kind for one in self.expectations}
         if kinds & {"syntax", "error", "fault"}:
             return True
-        return any(one.kind == "message" and "never" not in one.arguments for one in self.expectations)
+        return any(
+            one.kind == "message" and "never" not in one.arguments for one in self.expectations
+        )
 
     @cached_property
     def digest(self) -> str:
@@ -103,7 +115,9 @@ class Case:
         return ""
 
 
-def find_cases(root: Path = CASES, on_error: Callable[[CaseError], None] | None = None) -> list[Case]:
+def find_cases(
+    root: Path = CASES, on_error: Callable[[CaseError], None] | None = None
+) -> list[Case]:
     """All cases below a folder, by name. Raises the first `CaseError`, or hands all of them over."""
     found = []
     for path in sorted(root.rglob("*")):

@@ -14,7 +14,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from conformance.observation import Event, Observation, PathRecord
+from conformance.observation import Event, Observation
+from interp.robot.following import PathRecord
 
 __all__ = ["Divergence", "Side", "first_divergence"]
 
@@ -117,19 +118,11 @@ def _side(name: str, events: Sequence[Event], place: int) -> Side:
     outputs: dict[str, Any] = {}
     for event in events[: place + 1]:
         if event.kind == "assign":
-            variables[_name(event.fields.get("path", ()))] = event.fields.get("value")
+            variables[str(event.fields.get("name"))] = event.fields.get("value")
         elif event.kind in ("out", "anout"):
             outputs[f"{event.kind} {event.fields.get('number')}"] = event.fields.get("value")
     there = events[place].record() if place < len(events) else None
     return Side(name, there, variables, outputs)
-
-
-def _name(path: Sequence[str | int]) -> str:
-    """A path as people write it: ``A[2].X``."""
-    text = ""
-    for step in path:
-        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
-    return text
 
 
 def _told(event: dict[str, Any] | None) -> str:

@@ -52,6 +52,10 @@ _NUMBER: Final = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 _NAME: Final = r"[$\w]+(?:\[\d+(?:,\d+)*\])?(?:\.\w+(?:\[\d+\])?)*"
 _VALUE: Final = rf"(?:{_NUMBER}|TRUE|FALSE|#\w+|\"[^\"]*\"|none)"
 _MANY: Final = rf"{_NUMBER}(?: {_NUMBER})*"
+_POINT: Final = rf"{_NUMBER} {_NUMBER} {_NUMBER}"
+_SHAPE: Final = (
+    rf"(?:line {_POINT} to {_POINT}|(?:circle|blend) {_POINT} by {_POINT} to {_POINT}|joint)"
+)
 
 _RUN: Final[tuple[Phase, ...]] = ("run",)
 _FRONT: Final[tuple[Phase, ...]] = ("parse", "check")
@@ -78,7 +82,7 @@ def _kinds() -> Mapping[str, Kind]:
         Kind("stops", _RUN, "advance"),
         Kind("runs-ahead", _RUN),
         # what happens in the cell, and when
-        Kind("out", _RUN, r"\d+ (?:TRUE|FALSE|never)", timed=True),
+        Kind("out", _RUN, r"\d+ (?:(?:TRUE|FALSE)(?: never)?|never)", timed=True),
         Kind("anout", _RUN, rf"\d+ {_NUMBER}", timed=True, tolerant=True),
         Kind("message", _RUN, r"\d+(?: never)?", timed=True),
         Kind("interrupt", _RUN, r"\d+(?: never| times \d+)?", timed=True),
@@ -98,14 +102,14 @@ def _kinds() -> Mapping[str, Kind]:
         Kind("exact", _RUN),
         Kind("lasts", _RUN, _NUMBER, tolerant=True),
         # the path of a line's motion
-        Kind("path", _RUN, tolerant=True, robot="kinematic"),
-        Kind("passes", _RUN, rf"{_NUMBER} {_NUMBER} {_NUMBER}", tolerant=True, robot="kinematic"),
-        Kind("misses", _RUN, rf"{_NUMBER} {_NUMBER} {_NUMBER} by {_NUMBER}", robot="kinematic"),
-        Kind("leaves", _RUN, rf"{_NUMBER}", tolerant=True, robot="kinematic"),
-        Kind("joins", _RUN, rf"{_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("path", _RUN, _SHAPE, tolerant=True, robot="kinematic"),
+        Kind("passes", _RUN, _POINT, tolerant=True, robot="kinematic"),
+        Kind("misses", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("leaves", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("joins", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
         Kind("pose", _RUN, _MANY, timed=True, tolerant=True, robot="kinematic"),
         Kind("axes", _RUN, _MANY, timed=True, tolerant=True, robot="kinematic"),
-        Kind("speed", _RUN, rf"(?:most|least|reaches) {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("speed", _RUN, rf"(?:most|reaches|drops below) {_NUMBER}", robot="kinematic"),
         Kind("smooth", _RUN, robot="kinematic"),
         Kind("limits", _RUN, robot="kinematic"),
         Kind("tracks", _RUN, tolerant=True, robot="mujoco"),
@@ -164,9 +168,7 @@ class Expectation:
 
 _WORDS: Final = re.compile(r'"[^"]*"|[^\s"]+')
 _WITHIN: Final = re.compile(rf"(?:^| )within ({_NUMBER})$")
-_EVENT: Final = (
-    r"(?:(?:start|end|apex|blend-start|blend-end|planned) \d+|mark \w+|(?:out|in) \d+)"
-)
+_EVENT: Final = r"(?:(?:start|end|apex|blend-start|blend-end|planned) \d+|mark \w+|(?:out|in) \d+)"
 _MOMENT: Final = rf"(?:{_EVENT}(?: [-+] {_NUMBER})?|{_NUMBER})"
 _WHEN: Final = re.compile(
     rf"(?:^| )(?:(?P<relation>at|before|after) (?P<one>{_MOMENT})(?P<exactly> exactly)?"
@@ -216,5 +218,3 @@ def _anchor(text: str) -> Anchor:
         return Anchor("", "", float(parts["at"]))
     more = float((parts["sign"] or "") + (parts["more"] or "0"))
     return Anchor(parts["event"], parts["of"], more)
-
-

@@ -14,7 +14,7 @@ from typing import Literal
 from conformance.case import Case
 from conformance.expectations import Expectation
 from conformance.judging_path import judge_path
-from conformance.judging_trace import Marks, judge_trace
+from conformance.judging_trace import Marks, judge_trace, unwatched
 from conformance.observation import Finding, Observation
 
 __all__ = ["Check", "judge"]
@@ -46,6 +46,10 @@ def judge(case: Case, seen: Observation) -> list[Check]:
         if _ROBOTS.index(one.needs) > _ROBOTS.index(seen.robot):
             found.append(_check(one, "open", f"needs the robot {one.needs}"))
             continue
+        lacking = unwatched(one, seen)
+        if lacking:
+            found.append(_check(one, "open", f"{lacking} was not watched"))
+            continue
         judge_one = judge_trace if one.needs == "none" else judge_path
         judged = judge_one(one, seen, marks)
         found.append(_check(one, *judged))
@@ -68,6 +72,8 @@ def _check(one: Expectation, state: State, actual: str = "") -> Check:
 
 
 def _said(one: Expectation, seen: Observation) -> Check:
+    if seen.watched is not None:
+        return _recorded(one, seen)
     there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
     told = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
     match one.kind:
@@ -82,6 +88,20 @@ def _said(one: Expectation, seen: Observation) -> Check:
             is_met = all(found.code != one.arguments[0] for found in there)
             return _check(one, "met" if is_met else "unmet", told)
     is_met = any((f.severity, f.code) == (one.kind, one.arguments[0]) for f in there)
+    return _check(one, "met" if is_met else "unmet", told)
+
+
+def _recorded(one: Expectation, seen: Observation) -> Check:
+    """What a controller says has its own numbers: ours are a line where it complains."""
+    there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
+    told = _list(seen.findings) or "accepted"
+    code = one.arguments[0] if one.arguments else ""
+    if one.kind in ("note", "silent") or code.startswith("KRL6"):
+        return _check(one, "open", "only our checker tells this")
+    if one.kind == "accepted":
+        return _check(one, "unmet" if seen.findings else "met", told)
+    codes = {found.code for found in there}
+    is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
     return _check(one, "met" if is_met else "unmet", told)
 
 
@@ -102,6 +122,8 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
 
 def _ended(case: Case, seen: Observation) -> Iterator[Check]:
     """A program ends by itself, where nothing else is expected of it."""
+    if not seen.ending:  # nobody watched
+        return
     kinds = {one.kind: one for one in case.expectations}
     last = seen.events[-1] if seen.events else None
     file, line = (last.file, last.line) if last else (case.main, 0)
@@ -110,7 +132,9 @@ def _ended(case: Case, seen: Observation) -> Iterator[Check]:
         return
     runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in case.expectations)
     wanted = "fault" if "fault" in kinds else "running" if runs_on else "end"
-    if seen.ending != wanted and not (wanted == "end" and "halt" in kinds and seen.ending == "halt"):
+    if seen.ending != wanted and not (
+        wanted == "end" and "halt" in kinds and seen.ending == "halt"
+    ):
         faults = [event for event in seen.events if event.kind == "fault"]
         told = f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
         yield Check(file, line, f"the program ends with: {wanted}", "unmet", told)

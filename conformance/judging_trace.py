@@ -11,11 +11,10 @@ from typing import Any, Final, Literal
 from conformance.expectations import Anchor, Expectation, When
 from conformance.observation import Event, Observation
 
-__all__ = ["Judged", "Marks", "judge_trace", "time_of"]
+__all__ = ["Judged", "Marks", "judge_trace", "time_of", "unwatched"]
 
 #: Whether it is met, and what was seen.
 Judged = tuple[Literal["met", "unmet", "open"], str]
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +43,31 @@ _EVENTS: Final[Mapping[str, str]] = {
 _REAL: Final = 1e-6
 #: What "exactly" means where times are whole microseconds that were rounded once or twice, in µs.
 _EXACTLY: Final = 2
+
+
+#: What has to be watched for the rest, besides `_EVENTS`.
+_NEEDS: Final[Mapping[str, str]] = {
+    "value": "assign",
+    "values": "assign",
+    "runs": "line",
+    "never": "line",
+    "order": "line",
+    "mark": "line",
+    "stops": "advance_stop",
+    "runs-ahead": "advance_stop",
+    "blends": "blend_start",
+    "exact": "blend_start",
+    "lasts": "motion_end",
+    "interrupt": "interrupt_enter",
+}
+
+
+def unwatched(one: Expectation, seen: Observation) -> str:
+    """The kind of event that a recording would have to have and has not; empty where it has."""
+    if seen.watched is None or one.arguments == ("on",):
+        return ""
+    kind = _NEEDS.get(one.kind) or _EVENTS.get(one.kind) or one.kind
+    return "" if kind in seen.watched or one.needs != "none" else kind
 
 
 def judge_trace(one: Expectation, seen: Observation, marks: Marks) -> Judged:
@@ -82,7 +106,7 @@ def _steps(name: str) -> list[str | int]:
 
 def _assigned(event: Event, steps: Sequence[str | int]) -> list[Any]:
     """The value that the event gave it, if it did."""
-    path = list(event.fields.get("path", ()))
+    path = _steps(str(event.fields.get("name", "")))
     if path != list(steps[: len(path)]):
         return []
     value = event.fields.get("value")
@@ -230,7 +254,7 @@ def _events(one: Expectation, seen: Observation) -> list[Event]:
 
 
 def _is_output(one: Expectation, event: Event) -> bool:
-    number, value = one.arguments
+    number, value = one.arguments[:2]
     if event.fields.get("number") != int(number):
         return False
     return value == "never" or event.fields.get("value") is (value == "TRUE")
@@ -248,15 +272,21 @@ def _has_number(one: Expectation, event: Event) -> bool:
     return event.fields.get("number") == int(one.arguments[0])
 
 
+def _has_priority(one: Expectation, event: Event) -> bool:
+    return event.fields.get("priority") == int(one.arguments[0])
+
+
 _FITS: Final[Mapping[str, tuple[str, Callable[[Expectation, Event], bool]]]] = {
     "out": ("out", _is_output),
     "anout": ("anout", _is_analog),
     "message": ("message", _has_number),
-    "interrupt": ("interrupt_enter", _has_number),
+    "interrupt": ("interrupt_enter", _has_priority),
 }
 
 
-def _is_then(event: Event, when: When, tolerance: float | None, seen: Observation, marks: Marks) -> bool:
+def _is_then(
+    event: Event, when: When, tolerance: float | None, seen: Observation, marks: Marks
+) -> bool:
     assert event.time is not None, "the caller looked"
     margin = _EXACTLY if when.exactly and seen.is_exact else seen.cycle
     if tolerance is not None:

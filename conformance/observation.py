@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
+from interp.robot.following import PathRecord
+from interp.robot.machine import Machine
 
-__all__ = ["Event", "Finding", "Observation", "PathRecord"]
+__all__ = ["Event", "Finding", "Observation"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,37 +57,15 @@ class Event:
             kind, at = rest.pop("kind"), rest.pop("at", None) or ""
             file, _, line = str(at).rpartition(":")
             return Event(
-                None if time is None else round(time), str(task), str(kind), file, int(line or 0), rest
+                None if time is None else round(time),
+                str(task),
+                str(kind),
+                file,
+                int(line or 0),
+                rest,
             )
         except (KeyError, TypeError) as error:
             raise ValueError(f"no event of a trace: {record!r}") from error
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PathRecord:
-    """Where the arm was, at rising times.
-
-    ``times`` in µs, shape (n,); ``axes`` in degrees, shape (n, 6); ``poses`` X, Y, Z, A, B, C of
-    the tool in the base in mm and degrees, shape (n, 6). ``measured`` are axes of a simulated or
-    real arm, ``measured_poses`` its poses, both of the same shapes, or ``None``.
-    """
-
-    times: npt.NDArray[np.int64]
-    axes: npt.NDArray[np.float64]
-    poses: npt.NDArray[np.float64]
-    measured: npt.NDArray[np.float64] | None = None
-    measured_poses: npt.NDArray[np.float64] | None = None
-
-    def between(self, start: int, end: int) -> PathRecord:
-        """The part from one time to another, both included."""
-        kept = (self.times >= start) & (self.times <= end)
-        return PathRecord(
-            self.times[kept],
-            self.axes[kept],
-            self.poses[kept],
-            None if self.measured is None else self.measured[kept],
-            None if self.measured_poses is None else self.measured_poses[kept],
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +75,8 @@ class Observation:
     ``findings`` where it was read or checked only. ``ending`` tells how a run ended: ``end``,
     ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
     ``cycle`` is the interpolation cycle in µs. ``is_exact`` tells whether times are known to the µs.
+    ``watched`` are the kinds of events that a recording says it has, ``None`` where all were told.
+    ``machine`` is the arm whose limits the path has to keep, where it is known.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -107,6 +87,8 @@ class Observation:
     cycle: int = 12_000
     is_exact: bool = True
     robot: str = "none"
+    machine: Machine | None = None
+    watched: frozenset[str] | None = None
 
     def of_kind(self, *kinds: str) -> Iterable[Event]:
         """The events of some kinds, in their order."""

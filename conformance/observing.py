@@ -6,11 +6,11 @@ told as such (`missing`), never silently left out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from importlib.util import find_spec
-from typing import Any, Final
+from typing import Final
 
 from conformance.case import Case
 from conformance.observation import Event, Finding, Observation
@@ -24,21 +24,23 @@ from grammar.link import File, Project, link
 from grammar.predefined import System
 from grammar.scopes import Module
 from grammar.source import Source
-from interp.events import Recorder, Sink
-from interp.executor import Executor
-from interp.faults import Fault, LinkError
-from interp.program import CheckedProgram, Limits, load
-from interp.rendering import to_json
-from interp.requests import Crash, Fail
-from interp.stub import StubWorld, run
-from interp.tree import TreeExecutor, system_values
+from interp import session
+from interp.controller.profile import Profile
+from interp.controller.script import Script, ScriptError
+from interp.controller.trace import TraceEvent
+from interp.executors import EXECUTORS, Prepared, available
+from interp.faults import LinkError
+from interp.program import Limits, load
+from interp.robot.robots import ROBOTS, RobotName
 
 __all__ = ["EXECUTORS", "FRONT", "ROBOTS", "Setup", "missing", "observe"]
 
 #: Who reads and checks cases: there is one front end.
 FRONT: Final = "grammar"
-EXECUTORS: Final = ("tree", "vm", "native")
-ROBOTS: Final = ("none", "kinematic", "mujoco")
+#: So many statements a case may execute.
+_STATEMENTS: Final = 1_000_000
+#: Endings of a run in the words of expectations.
+_ENDINGS: Final[Mapping[str, str]] = {"time": "running"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,7 @@ class Setup:
     """An executor and a robot, by name."""
 
     executor: str
-    robot: str
+    robot: RobotName
 
 
 def observe(case: Case, setup: Setup) -> Observation:
@@ -104,54 +106,70 @@ def _finding(found: Diagnostic) -> Finding:
 
 def missing(setup: Setup) -> str:
     """Why a setup cannot be used on this machine; empty where it can."""
-    if setup.executor != "tree":
-        return f"the executor {setup.executor} is not built here"
-    if setup.robot != "none":
-        return f"the robot {setup.robot} is not built here"
+    if setup.executor not in available():
+        return f"there is no executor {setup.executor} on this machine"
+    if setup.robot == "mujoco" and find_spec("mujoco") is None:
+        return "MuJoCo is not installed"
     return ""
 
 
 def _run(case: Case, setup: Setup) -> Observation:
+    """Run it; a program that cannot begin is a fault without a line."""
+    program = _prepared(case)
+    if isinstance(program, LinkError):
+        return _refused(program)
+    wanted = session.Setup(
+        executor=setup.executor,
+        robot=setup.robot,
+        profile=Profile.load(case.profile),
+        script=Script.read("\n".join(case.io), case.name),
+        submit=_submit(case),
+        is_full=True,
+        until=round(case.seconds * 1e6),
+        limits=Limits(statements=_STATEMENTS, per_slice=Profile.load(case.profile).statements),
+    )
     try:
-        program = load(case.sources, case.main)
-        recorder = Recorder()
-        executor = TreeExecutor(program, limits=Limits(100_000, 1000, 64), sink=recorder)
+        return _observed(session.run_program(program, wanted), wanted)
     except LinkError as error:
-        return Observation(ending="fault", note=str(error))
-    world = StubWorld(values=system_values(program))
-    events: list[Event] = []
-    reply: Any = None
-    ending, note = "running", ""
-    for _ in range(20_000):
-        request = executor.advance(reply)
-        events += map(_told, recorder.events)
-        recorder.events.clear()
-        at = request.at
-        name = type(request).__name__
-        if name in ("End", "Fail", "Crash"):
-            ending = {"End": "end", "Fail": "fault", "Crash": "crash"}[name]
-            if isinstance(request, Fail):
-                error = request.fault
-                slug = error.slug if isinstance(error, Fault) else "link"
-                number = error.number if isinstance(error, Fault) else None
-                fields = {"slug": slug, "number": number, "text": str(error)}
-                events.append(Event(None, "robot", "fault", at.file, at.line, fields))
-            if isinstance(request, Crash):
-                note = request.reason
-            break
-        if name == "Write" and request.path[0] == "$OUT" and len(request.path) == 2:
-            fields = {"number": request.path[1], "value": request.value}
-            events.append(Event(None, "robot", "out", at.file, at.line, fields))
-        reply = world.reply(request)
-    return Observation(events=tuple(events), ending=ending, note=note, is_exact=False)
+        return _refused(error)
+    except ScriptError as error:
+        return Observation(ending="crash", note=f"the script of inputs: {error}")
 
 
-def _told(event: Any) -> Event:
-    fields: dict[str, Any] = {}
-    if event.kind == "assign":
-        fields = {"path": list(event.path), "value": to_json(event.value)}
-    elif event.kind in ("call", "return"):
-        fields = {"name": event.name}
-    elif event.kind == "branch":
-        fields = {"way": event.way}
-    return Event(None, "robot", event.kind, event.at.file, event.at.line, fields)
+@lru_cache(maxsize=16)
+def _prepared(case: Case) -> Prepared | LinkError:
+    """A case checked and compiled once for all executors and robots that run it."""
+    try:
+        return Prepared(load(case.sources, case.main, strict=False))
+    except LinkError as error:
+        return error
+
+
+def _refused(error: LinkError) -> Observation:
+    fields = {"slug": "link", "number": None, "text": str(error)}
+    return Observation(events=(Event(0, "robot", "fault", "", 0, fields),), ending="fault")
+
+
+def _submit(case: Case) -> str | None:
+    """The submit program is the first companion that ends in .sub."""
+    names = [one.path for one in case.sources[1:] if one.path.lower().endswith(".sub")]
+    return names[0][: -len(".sub")] if names else None
+
+
+def _observed(done: session.Run, wanted: session.Setup) -> Observation:
+    outcome = done.outcome
+    return Observation(
+        events=tuple(
+            Event(one.time, one.task, one.kind, *_place(one), one.fields) for one in done.events
+        ),
+        ending=_ENDINGS.get(outcome.ending, outcome.ending),
+        note="" if outcome.error is None else str(outcome.error),
+        path=done.path,
+        cycle=wanted.profile.cycle,
+        robot=wanted.robot,
+        machine=done.machine,
+    )
+
+
+def _place(event: TraceEvent) -> tuple[str, int]:
+    return ("", 0) if event.at is None else (event.at.file, event.at.line)

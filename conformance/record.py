@@ -12,10 +12,11 @@ from typing import Any, Final
 
 from conformance.case import Case
 from conformance.lint import SUITES, coverage
-from conformance.observation import Observation, PathRecord
+from conformance.observation import Observation
 from conformance.registry import registry
 from conformance.runner import CaseResult, Result
 from conformance.verdicts import VERDICTS
+from interp.robot.following import PathRecord
 
 __all__ = ["record_of"]
 
@@ -177,7 +178,11 @@ def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
             }
             for one in seen.findings
         ]
-    if seen.path is not None and len(seen.path.times) and (is_whole or seen.path.measured is not None):
+    if (
+        seen.path is not None
+        and len(seen.path.times)
+        and (is_whole or seen.path.axes_measured is not None)
+    ):
         told["path"] = _path(seen.path)
     return told
 
@@ -188,10 +193,10 @@ def _path(path: PathRecord) -> dict[str, Any]:
     told: dict[str, Any] = {
         "t": path.times[::every].tolist(),
         "axes": path.axes[::every].round(5).tolist(),
-        "poses": path.poses[::every].round(4).tolist(),
+        "poses": path.points[::every].round(4).tolist(),
     }
-    if path.measured is not None:
-        told["axes_meas"] = path.measured[::every].round(5).tolist()
-    if path.measured_poses is not None:
-        told["poses_meas"] = path.measured_poses[::every].round(4).tolist()
+    if path.axes_measured is not None:
+        told["axes_meas"] = path.axes_measured[::every].round(5).tolist()
+    if path.points_measured is not None:
+        told["poses_meas"] = path.points_measured[::every].round(4).tolist()
     return told

@@ -75,14 +75,32 @@ def run_case(
             results.append(Result(setup.executor, setup.robot, "skipped", lacking, (), 0.0))
             continue
         begun = time.perf_counter()
-        seen = see(case, setup)
-        checks = tuple(judge(case, seen))
+        seen = _seen(see, case, setup)
+        checks = _judged(case, seen)
         reason = known.reason(case.name, setup.executor, setup.robot)
         verdict, told = verdict_of(case, checks, reason)
         took = time.perf_counter() - begun
         result = Result(setup.executor, setup.robot, verdict, told, checks, took, None, seen)
         results.append(_compared(result, results))
     return CaseResult(case, tuple(results))
+
+
+def _seen(see: Observe, case: Case, setup: Setup) -> Observation:
+    """What was seen; an exception is a defect of ours and no reason to lose the other cases."""
+    try:
+        return see(case, setup)
+    except Exception as error:
+        told = f"{type(error).__name__}: {error}"
+        return Observation(ending="crash", note=told, robot=setup.robot)
+
+
+def _judged(case: Case, seen: Observation) -> tuple[Check, ...]:
+    """The checks; an exception is a defect of the judge, and told as one."""
+    try:
+        return tuple(judge(case, seen))
+    except Exception as error:
+        told = f"the judge has failed: {type(error).__name__}: {error}"
+        return (Check(case.main, 0, "the case can be judged", "unmet", told),)
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:

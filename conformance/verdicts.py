@@ -56,7 +56,11 @@ class KnownFailures:
     def reason(self, case: str, executor: str, robot: str) -> str:
         """Why it is known to fail there; empty where it is not."""
         for one in self.entries:
-            if one.case == case and fnmatchcase(executor, one.executor) and fnmatchcase(robot, one.robot):
+            if (
+                one.case == case
+                and fnmatchcase(executor, one.executor)
+                and fnmatchcase(robot, one.robot)
+            ):
                 return one.reason
         return ""
 

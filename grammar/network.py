@@ -9,13 +9,20 @@ that a candidate edit costs one rule.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from grammar.lexer import Lexer, lexer_of
 from grammar.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 
-__all__ = ["Network", "RuleAutomaton", "is_left_recursive", "network_of", "with_rule"]
+__all__ = [
+    "Network",
+    "RuleAutomaton",
+    "is_left_recursive",
+    "may_be_empty",
+    "network_of",
+    "with_rule",
+]
 
 Symbol = str  # the name of a token or a rule
 
@@ -353,39 +360,64 @@ def _minimal(
     )
 
 
-def is_left_recursive(network: Network) -> bool:
-    """Whether a rule can call itself before it has read a token: no simulation would end."""
-    rule, calls, final = network.rule, network.calls, network.final
-    nullable: set[str] = set()
+def may_be_empty(network: Network) -> frozenset[str]:
+    """Rules that may end without a token."""
+    return _emptied(network, frozenset(), network.entry)
+
+
+def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> frozenset[str]:
+    """The ``known`` rules that may be empty, and those of ``rules`` that may be for that reason."""
+    found = set(known)
+    while True:
+        more = {r for r in rules if r not in found and _opening(network, r, found)[1]}
+        if not more:
+            return frozenset(found)
+        found |= more
+
+
+def _opening(
+    network: Network, name: str, empty: Collection[str]
+) -> tuple[set[str], list[int]]:
+    """The rules that a rule may call before it has read a token, and where it may then end."""
+    entry = network.entry[name]
+    callees: set[str] = set()
+    steps = [entry]
+    for position in steps:  # grows while it is walked
+        for callee, back in network.calls[position]:
+            called = network.rule[callee]
+            callees.add(called)
+            if called in empty and back not in steps:
+                steps.append(back)
+    return callees, [p for p in steps if network.final[p]]
+
+
+def is_left_recursive(
+    network: Network, changed: Iterable[str] | None = None, empty: frozenset[str] = frozenset()
+) -> bool:
+    """Whether a rule can call itself before it has read a token: no simulation would end.
+
+    Where only the rules ``changed`` are other than in a network without such a rule, whose
+    `may_be_empty` is ``empty``, the others are looked at as far as these lead to them.
+    """
+    rules: Collection[str] = network.entry if changed is None else frozenset(changed)
+    known = _emptied(network, empty.difference(rules), rules)
+    if changed is not None and known != empty:
+        rules, known = network.entry, may_be_empty(network)
     leading: dict[str, set[str]] = {}
-    grown = True
-    while grown:  # what may be empty decides what comes first, and the other way round
-        grown = False
-        for name, entry in network.entry.items():
-            callees: set[str] = set()
-            seen, todo = {entry}, [entry]
-            empty = False
-            while todo:
-                position = todo.pop()
-                empty = empty or final[position]
-                for callee, back in calls[position]:
-                    callees.add(rule[callee])
-                    if rule[callee] in nullable and back not in seen:
-                        seen.add(back)
-                        todo.append(back)
-            if empty and name not in nullable:
-                nullable.add(name)
-                grown = True
-            leading[name] = callees
-    return any(_reaches(leading, name) for name in leading)
+    return any(_reaches(network, leading, known, name) for name in rules)
 
 
-def _reaches(leading: Mapping[str, set[str]], name: str) -> bool:
+def _reaches(
+    network: Network, leading: dict[str, set[str]], empty: frozenset[str], name: str
+) -> bool:
     """Whether a name leads back to itself."""
     seen: set[str] = set()
     todo = [name]
     while todo:
-        for callee in leading[todo.pop()]:
+        here = todo.pop()
+        if here not in leading:
+            leading[here] = _opening(network, here, empty)[0]
+        for callee in leading[here]:
             if callee == name:
                 return True
             if callee not in seen:

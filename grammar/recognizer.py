@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from operator import length_hint
 
 from grammar.cores import Automaton, Configuration, Core, Stack, Tail
 from grammar.lexer import EOF, SKIPPED
 from grammar.model import Grammar
-from grammar.network import Network, Reach, network_of
+from grammar.network import Network, Reach, may_be_empty, network_of
 
 __all__ = ["Configuration", "Core", "Frames", "Recognizer", "State", "Tail"]
 
@@ -44,6 +45,11 @@ class Recognizer(Automaton):
         self.start = State(
             self._core(frozenset([(self.network.start, self._bottom)])), self._no_tail
         )
+
+    @cached_property
+    def empty_rules(self) -> frozenset[str]:
+        """Rules that may end without a token."""
+        return may_be_empty(self.network)
 
     # ------------------------------------------------------------------------ reading
 

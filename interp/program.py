@@ -22,7 +22,7 @@ from grammar.predefined import System
 from grammar.scopes import Found, Module, Scope
 from grammar.source import Source
 from grammar.symbols import ImportSymbol, Kind, RoutineTable, Symbol
-from grammar.types import Type
+from grammar.types import Array, Structure, Type
 from interp.faults import LinkError
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
@@ -79,11 +79,12 @@ class Routine:
 
 @dataclass(frozen=True, eq=False)
 class CheckedProgram:
-    """A project without errors, and the file that it begins with."""
+    """A project, and the file that it begins with; without errors if it ``is_strict``."""
 
     project: Project
     main: Unit
     units: Mapping[Module, Unit]
+    is_strict: bool = True
 
     @cached_property
     def routines(self) -> Mapping[Symbol, Routine]:
@@ -119,10 +120,15 @@ class CheckedProgram:
         ]
         if not found:
             raise LinkError(f"there is no routine {name or 'in ' + self.main.module.path}")
-        if found[0].node.parameters:
-            text = f"{found[0].name} has parameters, so a program cannot begin with it"
-            raise LinkError(text)
+        if not self.can_begin(found[0]):
+            has = "parameters" if found[0].node.parameters else "a structure or array as its result"
+            raise LinkError(f"{found[0].name} has {has}, so a program cannot begin with it")
         return found[0]
+
+    def can_begin(self, routine: Routine) -> bool:
+        """Whether a program can begin with a routine, as there is nobody to give or take values."""
+        result = self.result_of(routine)
+        return not routine.node.parameters and not isinstance(result, Structure | Array)
 
     def type_of(self, found: Found) -> Type:
         """The type of a variable, or of what a function gives; `UNKNOWN` where it is not known."""
@@ -213,7 +219,7 @@ def _checked(
         if strict and one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)
-    return CheckedProgram(project, first, units)
+    return CheckedProgram(project, first, units, strict)
 
 
 def _read(source: Source) -> ast.Module:

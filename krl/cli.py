@@ -13,7 +13,9 @@ from krl.commands.conform import conform
 from krl.commands.format import format_programs
 from krl.commands.fuzz import fuzz
 from krl.commands.lsp import lsp
-from krl.commands.machine import assemble_file, disassemble_image
+from krl.commands.machine import assemble_file, compile_file, disassemble_image
+from krl.commands.nightly import nightly
+from krl.commands.run import run
 
 __all__ = ["app", "main"]
 
@@ -32,10 +34,13 @@ app.command("fuzz")(fuzz)
 app.command("growth")(growth.growth)
 app.add_typer(corpus.app, name="corpus")
 app.add_typer(bench.app, name="bench")
+app.command("compile")(compile_file)
 app.command("asm")(assemble_file)
 app.command("disasm")(disassemble_image)
 app.add_typer(robot.app, name="robot")
+app.command("run")(run)
 app.command("lsp")(lsp)
+app.command("nightly")(nightly)
 
 
 def _print_version(wanted: bool) -> None:

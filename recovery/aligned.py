@@ -8,7 +8,7 @@ a choice: from ``LIN A`` and ``LIN {X 1} C_DIS`` comes ``LIN target C_DIS?``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from recovery.phrases import Phraser, Word
@@ -52,7 +52,7 @@ def common_phrases(
     rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:_MOST_ROWS]
     if not rows:
         return
-    columns = _columns(rows)
+    columns = _columns(phraser, rows)
     shared = sum(len(column.cells) == len(rows) for column in columns)
     if len(columns) > _MOST_COLUMNS or 2 * shared < len(columns):
         return
@@ -89,13 +89,21 @@ def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
     return out
 
 
-def _columns(rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
+def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
     """The rows beside one another; the longest gives the order."""
+
+    def fits(column: _Column, part: _Part) -> bool:
+        """Whether a part may stand in a column: the same sign, or operands that one rule reads."""
+        if column.key or part.key:
+            return column.key == part.key
+        spans = {span for cell in column.cells.values() for span in cell.spans}
+        return bool(phraser.rules_for_all(sorted({*spans, *part.spans}, key=str)))
+
     columns: list[_Column] = []
     for number, row in enumerate(rows):
         merged: list[_Column] = []
         place = used = 0
-        for here, there in _matches([c.key for c in columns], [p.key for p in row]):
+        for here, there in _matches(columns, row, fits):
             merged += columns[used:here]
             merged += [_Column(p.key, {number: p}) for p in row[place:there]]
             columns[here].cells[number] = row[there]
@@ -107,18 +115,19 @@ def _columns(rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
     return columns
 
 
-def _matches(left: Sequence[str], right: Sequence[str]) -> list[tuple[int, int]]:
+def _matches(
+    columns: Sequence[_Column], row: Sequence[_Part], fits: Callable[[_Column, _Part], bool]
+) -> list[tuple[int, int]]:
     """Indices of a longest common subsequence."""
-    best = [[0] * (len(right) + 1) for _ in range(len(left) + 1)]
-    for i in range(len(left) - 1, -1, -1):
-        for j in range(len(right) - 1, -1, -1):
-            best[i][j] = max(
-                best[i + 1][j], best[i][j + 1], (left[i] == right[j]) + best[i + 1][j + 1]
-            )
+    same = [[fits(column, part) for part in row] for column in columns]
+    best = [[0] * (len(row) + 1) for _ in range(len(columns) + 1)]
+    for i in range(len(columns) - 1, -1, -1):
+        for j in range(len(row) - 1, -1, -1):
+            best[i][j] = max(best[i + 1][j], best[i][j + 1], same[i][j] + best[i + 1][j + 1])
     out = []
     i = j = 0
-    while i < len(left) and j < len(right):
-        if left[i] == right[j] and best[i][j] == 1 + best[i + 1][j + 1]:
+    while i < len(columns) and j < len(row):
+        if same[i][j] and best[i][j] == 1 + best[i + 1][j + 1]:
             out.append((i, j))
             i, j = i + 1, j + 1
         elif best[i][j] == best[i + 1][j]:

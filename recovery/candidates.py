@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from grammar.edits import AddAlternative, Address, Edit, Insert, Widen
 from grammar.recognizer import Recognizer
 from recovery.aligned import common_phrases
-from recovery.blocks import BlockFinder
+from recovery.blocks import Block, BlockFinder
 from recovery.layout import Layout
-from recovery.openings import Line, Opening, OpeningFinder, Ranked
+from recovery.openings import UNLIKELY, Line, Opening, OpeningFinder, Ranked
 from recovery.phrases import Phraser, Word, repeated
 
 __all__ = ["BREADTH_COSTS", "Candidate", "CandidateFinder", "Line"]
@@ -111,20 +111,18 @@ class CandidateFinder:
     ) -> list[Candidate]:
         """Candidates for the block that a line opens; ``texts`` are files with such lines."""
         blocks = self._blocks.find(opener, texts, meant)
+        rules = self._openings.block_rules(line) if blocks else ()
+        return self._ordered(self._as_block(rule, block) for rule in rules for block in blocks)
+
+    def _as_block(self, rule: str, block: Block) -> Ranked:
         known = self.layout.grammar.by_name
-        return self._ordered(
-            (
-                self.layout.width(rule)
-                + self.phraser.breadth(block.symbols)
-                + len(block.symbols)
-                + (0 if rule in self.layout.of_lines else _NO_LINES),
-                (
-                    *self.layout.reserve(k for k in block.keywords if k not in known),
-                    AddAlternative(rule, " ".join((*block.symbols, *self._closing(rule)))),
-                ),
-            )
-            for rule in (self._openings.block_rules(line) if blocks else ())
-            for block in blocks
+        rank = self.layout.width(rule) + self.phraser.breadth(block.symbols) + len(block.symbols)
+        if rule not in self.layout.of_lines:
+            rank += _NO_LINES
+        symbols = (*block.symbols, *self._closing(rule))
+        return rank + self.layout.unlike(rule, symbols), (
+            *self.layout.reserve(k for k in block.keywords if k not in known),
+            AddAlternative(rule, " ".join(symbols)),
         )
 
     def _closing(self, rule: str) -> tuple[str, ...]:
@@ -208,8 +206,11 @@ class CandidateFinder:
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
     ) -> Iterator[Ranked]:
         text = " ".join(symbols)
-        if text not in self.layout.alternatives(rule):
-            yield rank + self.layout.unlike(rule, symbols), (*tokens, AddAlternative(rule, text))
+        if text not in self.layout.alternatives(rule) and not self.layout.is_foreign(rule, symbols):
+            rank += self.layout.unlike(rule, symbols)
+            if self.layout.repeats_sibling(rule, symbols):
+                rank += 2 * UNLIKELY
+            yield rank, (*tokens, AddAlternative(rule, text))
 
 
 def _hope(lines: int, rank: int) -> float:

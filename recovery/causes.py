@@ -46,6 +46,8 @@ _LINE_COUNTS = 0.2
 # Causes that a later one is compared with: the first ones hold back most.
 _MOST_JOINED = 40
 _ROUNDS = 4
+# Symbols of an alternative that make it a form of its own, whatever word it begins with.
+_A_FORM = 4
 # What a mended line counts that is of another group than the one a cause is sought for.
 _OTHERS_COUNT = 0.3
 # What an edit gains that mends every line which fails at the same token: it leaves none to explain.
@@ -269,9 +271,10 @@ class Search:
 
     def _may_be_chosen(self, edit: Edit, place: int) -> bool:
         """Whether words there are a choice: those that begin alternatives name constructs."""
-        if not isinstance(edit, AddAlternative):
+        if not isinstance(edit, AddAlternative) or place > 0:
             return True
-        return place > 0 or self.finder.layout.is_set_of_words(edit.rule)
+        is_form = len(edit.text.split(" ")) >= _A_FORM
+        return is_form or self.finder.layout.is_set_of_words(edit.rule)
 
     def _alike(self, number: int) -> list[int]:
         """Other lines that fail at the same token, whatever else they look like."""

@@ -8,6 +8,7 @@ one, with the edits of both.
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 
@@ -18,6 +19,8 @@ from recovery.layout import Layout
 __all__ = ["one_choice", "reach_the_same", "together"]
 
 _MOST_TOGETHER = 3
+# Words of a text, a choice of words taken for one.
+_WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
 
 def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
@@ -69,7 +72,7 @@ def one_choice(
         edit = candidate.edits[-1]
         if not isinstance(edit, Insert | Widen | AddAlternative):
             continue
-        words = edit.text.strip("()?*").split(" ")
+        words = _WORDS.findall(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
         place = () if isinstance(edit, AddAlternative) else edit.at
         for i, word in enumerate(words):
             if allowed(edit, i):
@@ -83,10 +86,15 @@ def one_choice(
     ]
 
 
+def _choices(word: str) -> list[str]:
+    """The words of a choice, or the one word that is none."""
+    return word[1:-1].split(" | ") if word[0] == "(" and word[-1] == ")" else [word]
+
+
 def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:
     assert isinstance(left, tuple)
     assert isinstance(right, tuple)
-    choice = f"({' | '.join(sorted(members))})"
+    choice = f"({' | '.join(sorted({w for m in members for w in _choices(m)}))})"
     body = " ".join((*left, choice, *right))
     last = next(iter(members.values())).edits[-1]
     edit: Edit

@@ -12,6 +12,7 @@ from recovery.causes import Judge
 from recovery.invalid import generate
 from recovery.negatives import Negative, NegativeSet
 from recovery.trial import edited
+from recovery.usage import used_by
 
 __all__ = ["judge_of"]
 
@@ -34,7 +35,7 @@ def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
         key = tuple(edits)
         if key not in known:
             wider = edited(recognizer, edits)
-            known[key] = 0 if wider is None else len(rejected.accepted(wider))
+            known[key] = 0 if wider is None else len(rejected.accepted(wider, used_by(edits, wider)))
         return known[key]
 
     return judge

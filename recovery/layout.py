@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from functools import cached_property
@@ -23,7 +23,7 @@ from grammar.edits import (
     Widen,
     sequences,
 )
-from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
+from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.recognizer import Recognizer
 
 __all__ = ["Layout"]
@@ -34,6 +34,7 @@ _ALIKE = 0.6
 _NAMES = re.compile(r"\w+")
 _TOGETHER = 6
 _LIKE = 6
+_LOOSE = 2
 # Twice as many rules around a rule are so many steps in breadth.
 _WIDENS = 5
 
@@ -46,6 +47,7 @@ class Layout:
         self.grammar = recognizer.grammar
         self._sequences: dict[str, dict[Address, Alternative]] = {}
         self._classes: dict[str, list[list[str]]] = {}
+        self._leading_words: dict[str, frozenset[str]] = {}
 
     def sequence(self, rule: str, address: Address) -> Alternative:
         """The alternative at an address of a rule."""
@@ -60,10 +62,28 @@ class Layout:
         return frozenset(" ".join(found.source_of(a).split()) for a in found.alternatives)
 
     def closing(self, rule: str) -> str | None:
-        """What every alternative of a rule ends with, where that is a line end."""
-        found = self.grammar.by_name[rule]
-        ends = {found.source_of(a.elements[-1]) for a in found.alternatives if a.elements}
-        return self.line_end if ends == {self.line_end} else None
+        """What every alternative of a rule ends with, where that is a line end.
+
+        An alternative that is a rule which ends so ends so too.
+        """
+        return self.line_end if rule in self._closed else None
+
+    @cached_property
+    def _closed(self) -> frozenset[str]:
+        """Rules that end with a line end, and write it themselves."""
+        found: set[str] = set()
+        for _ in range(2):  # that a rule is another rule goes no deeper
+            for rule in self.grammar.rules:
+                ends = [] if rule.is_lexer else [self._last(rule, a) for a in rule.alternatives]
+                if self.line_end in ends and all(e == self.line_end or e in found for e in ends):
+                    found.add(rule.name)
+        return frozenset(found)
+
+    def _last(self, rule: Rule, alternative: Alternative) -> str:
+        """What an alternative ends with: a line end, or the one rule that it is."""
+        elements = alternative.elements
+        text = rule.source_of(elements[-1]) if elements else ""
+        return text if text == self.line_end or len(elements) == 1 else ""
 
     @cached_property
     def of_lines(self) -> frozenset[str]:
@@ -254,7 +274,12 @@ class Layout:
             yield self.recognizer.lexer.kind_of[self.grammar.token_of(element)]
 
     def is_keyword(self, element: Element) -> bool:
-        """Whether an element is a reserved word."""
+        """Whether an element is a reserved word, or a choice of such words."""
+        if isinstance(element, Group):
+            return all(
+                len(a.elements) == 1 and self.is_keyword(a.elements[0])
+                for a in element.alternatives
+            )
         lexer = self.recognizer.lexer
         return (
             isinstance(element, Reference)
@@ -284,25 +309,66 @@ class Layout:
             best = max(best, matcher.ratio())
         if self.only_passes_on(rule):
             return 0
+        if len(symbols) == 1 and self.has_choice(rule) and self.is_set_of_words(rule):
+            return -3 * _LIKE
         if self._gathers(rule):
-            return -3 * _LIKE if self._is_single(symbols) else _LIKE
-        leads = {self._lead(rule, a) for a in self.grammar.by_name[rule].alternatives}
+            if not self._is_single(symbols):
+                return _LOOSE
+            kinds = {old[0] for old in known if old}
+            return -3 * _LIKE if new[0] in kinds else -2 * _LIKE
+        leads = self._leads(rule)
         if len(leads) == 1 and "" not in leads:
             return -_LIKE if symbols[0] in leads else 2 * _LIKE
         if best >= _ALIKE and len(known) > 1:
             return -round(_LIKE * best)
         return 2 + max(0, _TOGETHER - len(known))
 
+    def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether the symbols begin with a rule that stands beside this one wherever it is called.
+
+        What may follow that rule is better said there.
+        """
+        return len(symbols) > 1 and bool(
+            self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
+        )
+
+    def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether a rule is one kind of statement, known by its words, and the symbols another."""
+        leads = self._leads(rule)
+        another_word = self.has_choice(rule) and self.is_set_of_words(rule) and len(symbols) == 1
+        known = "" in leads or symbols[0] in leads or len(leads) >= _HUB
+        return rule in self._gathered and not (known or another_word)
+
+    @cached_property
+    def _gathered(self) -> dict[str, frozenset[str]]:
+        """For each rule the rules that gather it."""
+        found: dict[str, set[str]] = defaultdict(set)
+        for rule in self.grammar.rules:
+            if not rule.is_lexer and self._gathers(rule.name):
+                for alternative in rule.alternatives:
+                    only = self._only(rule, alternative)
+                    if only is not None:
+                        found[only.name].add(rule.name)
+        return {name: frozenset(rules) for name, rules in found.items()}
+
     def _gathers(self, rule: str) -> bool:
         """Whether most alternatives of a rule are one rule or token each."""
-        alternatives = self.grammar.by_name[rule].alternatives
-        single = sum(
-            len(a.elements) == 1 and isinstance(a.elements[0], Reference) for a in alternatives
-        )
-        return len(alternatives) > 2 and 2 * single >= len(alternatives)
+        found = self.grammar.by_name[rule]
+        single = sum(self._only(found, a) is not None for a in found.alternatives)
+        return len(found.alternatives) > 2 and 2 * single >= len(found.alternatives)
+
+    def _only(self, rule: Rule, alternative: Alternative) -> Reference | None:
+        """The one rule or token that an alternative is, a line end behind it left aside."""
+        elements = alternative.elements
+        if len(elements) == 2 and rule.source_of(elements[1]) == self.line_end:
+            elements = elements[:1]
+        first = elements[0] if len(elements) == 1 else None
+        return first if isinstance(first, Reference) else None
 
     def _is_single(self, symbols: Sequence[str]) -> bool:
-        """Whether the symbols are one rule or one reserved word."""
+        """Whether the symbols are one rule or one reserved word, a line end left aside."""
+        if len(symbols) == 2 and symbols[1] == self.line_end:
+            symbols = symbols[:1]
         if len(symbols) != 1:
             return False
         known = self.grammar.by_name.get(symbols[0])
@@ -330,12 +396,22 @@ class Layout:
             edits += [AddAlternative(rule, word) for rule in self.word_lists]
         return tuple(edits)
 
-    def _lead(self, rule: str, alternative: Alternative) -> str:
-        """The reserved word an alternative begins with."""
-        first = alternative.elements[0] if alternative.elements else None
-        if first is None or not self.is_keyword(first):
-            return ""
-        return self.grammar.by_name[rule].source_of(first)
+    def _leads(self, rule: str) -> frozenset[str]:
+        """The reserved words that alternatives begin with; an empty one for those without."""
+        found = self._leading_words.get(rule)
+        if found is None:
+            alternatives = self.grammar.by_name[rule].alternatives
+            words = (self._words(a.elements[0]) if a.elements else [""] for a in alternatives)
+            found = self._leading_words[rule] = frozenset(word for some in words for word in some)
+        return found
+
+    def _words(self, element: Element) -> list[str]:
+        """A reserved word, or those of a choice; an empty one for anything else."""
+        if isinstance(element, Reference) and self.is_keyword(element):
+            return [element.name]
+        if isinstance(element, Group) and self.is_keyword(element):
+            return [w for a in element.alternatives for w in self._words(a.elements[0])]
+        return [""]
 
     def _class(self, rule: str, element: Element) -> str:
         return self._class_of(self.grammar.by_name[rule].source_of(element))

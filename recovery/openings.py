@@ -23,9 +23,12 @@ from recovery.phrases import Phraser, Word
 __all__ = ["Line", "Opening", "OpeningFinder", "Ranked"]
 
 _MOST_SKIPPED = 3
+# Elements of a sequence in which one word may well stand for another at its beginning.
+_SHARED = 4
 _LONGEST_RUN = 24
 _LONGEST_LINE = 1_000
-_UNLIKELY = 8
+#: What an opening loses in rank that is hardly ever meant.
+UNLIKELY = 8
 
 #: Edits that need no phrase, and how much they let in.
 Ranked = tuple[int, tuple[Edit, ...]]
@@ -201,7 +204,7 @@ class OpeningFinder:
                     continue
                 beyond = self.recognizer.at((back, stack), before)
                 if self.recognizer.run(beyond, end)[1] is None:
-                    rank = self.layout.width(rule) + 8 + _UNLIKELY
+                    rank = self.layout.width(rule) + 8 + UNLIKELY
                     yield Opening("alternative", rule, (1, 1), tuple(words[:last]), rank)
 
     # --------------------------------------------------------------------------- whole lines
@@ -230,11 +233,11 @@ class OpeningFinder:
                     continue
                 for reader in readers:
                     fits = reader in layout.loops or self.phraser.is_unused(reader)
-                    worth = rank + self.phraser.breadth([reader]) + (0 if fits else _UNLIKELY)
+                    worth = rank + self.phraser.breadth([reader]) + (0 if fits else UNLIKELY)
                     yield worth, (Insert(rule, place, f"{reader}*"),)
                 if not readers:
                     phrase = tuple(words[:-1])
-                    yield Opening("lines", rule, place, phrase, rank + 2 * _UNLIKELY)
+                    yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY)
 
     def _after_line_end(self, form: Form, words: list[Word]) -> Iterator[Ranked]:
         """What would let the line be read had the line end before it been taken otherwise."""
@@ -294,9 +297,16 @@ class OpeningFinder:
             number = place[-1]
             sequence = self.layout.sequence(rule, place[:-1])
             # inserting what is missing, to go on where we are
+            is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
+            begins_loop = number == 1 and len(place) > 2
+            begins_hub = position == base and self.layout.is_hub(rule)
             for end in ends:
-                # before the first element of a rule only where that element itself comes next
-                if position != base or words[end][0] in self.layout.first(sequence, number):
+                comes_next = words[end][0] in self.layout.first(sequence, number)
+                # behind all that may be left out, but for what the line has behind it; before the
+                # first element of a rule only where that element itself comes next
+                if (comes_next and not begins_hub) or (
+                    is_last and position != base and not begins_loop
+                ):
                     yield self._insertion(rule, place, words[start:end])
                 yield from self._repetitions(rule, place, words[start:end])
             yield from self._blocks(rule, place, words[start:])
@@ -335,13 +345,13 @@ class OpeningFinder:
         if isinstance(before, Reference) and not before.is_token:
             alone = self.layout.is_hub(rule) and len(elements) == 1
             if alone or (place[-1] > 1 and self.layout.is_hub(before.name)):
-                width += _UNLIKELY  # behind one of many statements rather than in it
+                width += UNLIKELY  # behind one of many statements rather than in it
         return Opening("insert", rule, place, tuple(words), width + 8)
 
     def _room(self, rule: str) -> int:
         """How wide an insertion into a rule is; one that has nothing of its own waits for it."""
         width = self.layout.width(rule)
-        return width - _UNLIKELY if self.layout.only_passes_on(rule) else width
+        return width - UNLIKELY if self.layout.only_passes_on(rule) else width
 
     def _repetitions(
         self, rule: str, place: Address, words: Sequence[Word]
@@ -357,7 +367,8 @@ class OpeningFinder:
             return
         if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
-            yield self._room(rule) + 4, (*self.reserved(words), Insert(rule, place, text))
+            rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
+            yield rank, (*self.reserved(words), Insert(rule, place, text))
 
     def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[Ranked]:
         """A rule of several lines that this line begins and that is not known at this place."""
@@ -372,12 +383,14 @@ class OpeningFinder:
                 hub = inner.name
                 if len(self.grammar.by_name[hub].alternatives) > 1:
                     end = self.layout.closing(hub)
-                    text = f"{block} {end}" if end else block
-                    yield self.layout.width(hub) + 8, (AddAlternative(hub, text),)
+                    symbols = (block, end) if end else (block,)
+                    if not self.layout.is_foreign(hub, symbols):
+                        worth = self.layout.width(hub) + 8 + self.layout.unlike(hub, symbols)
+                        yield worth, (AddAlternative(hub, " ".join(symbols)),)
             if rule != self.grammar.start and self.layout.is_at_start(rule, place):
                 continue
             for text in (f"{block}*", f"({block} NEWLINE*)*"):
-                yield rank + _UNLIKELY, (Insert(rule, place, text),)
+                yield rank + UNLIKELY, (Insert(rule, place, text),)
 
     def _replacements(
         self, rule: str, place: Address, element: Element, words: Sequence[Word]
@@ -402,9 +415,9 @@ class OpeningFinder:
             return  # the same as an alternative of the rule or of the one it calls
         rank = layout.width(rule) + (22 if leading else 12)
         if isinstance(element, Repeat):
-            rank += _UNLIKELY  # one more thing in a loop made for something else
+            rank += UNLIKELY  # one more thing in a loop made for something else
         if layout.is_keyword(element) and (len(words) > 1 or closing):
-            rank += _UNLIKELY
+            rank += UNLIKELY
         yield Opening("widen", rule, place, tuple(words), rank)
 
     def _omissions(
@@ -439,7 +452,7 @@ class OpeningFinder:
                         sequence.elements
                     )
                     if ends and any(map(self.layout.is_keyword, left_out)):
-                        rank += 2 * _UNLIKELY  # the words that begin and close a line or a block
+                        rank += 2 * UNLIKELY  # the words that begin and close a line or a block
                     yield rank, (MakeOptional(rule, place, count),)
                     break
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 
+from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer, State
 
 __all__ = ["Phraser", "Word"]
@@ -36,7 +37,7 @@ class Phraser:
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
         self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
-        self._opened: dict[tuple[int, ...], list[str]] = {}
+        self._begun: dict[tuple[int, ...], Mapping[str, State]] = {}
         self._spans: dict[tuple[int, ...], frozenset[str]] = {}
 
     @cached_property
@@ -102,19 +103,8 @@ class Phraser:
 
     def opened_by(self, kinds: Sequence[int]) -> list[str]:
         """Rules that go on over the end of a line which begins them so."""
-        key = tuple(kinds)
-        known = self._opened.get(key)
-        if known is not None:
-            return known
-        out = []
-        for rule, entry in self._entries.items():
-            state, failed = self.recognizer.run(entry, kinds)
-            if failed is None and not self.recognizer.ends(state):
-                out.append(rule)
-        if len(self._opened) >= _MOST_REMEMBERED:
-            self._opened.clear()
-        self._opened[key] = out
-        return out
+        ends = self.recognizer.ends
+        return [rule for rule, state in self._read(tuple(kinds)).items() if not ends(state)]
 
     def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
         """Rules of which these tokens are a whole sentence."""
@@ -122,14 +112,28 @@ class Phraser:
         if found is None:
             if len(self._spans) >= _MOST_REMEMBERED:
                 self._spans.clear()
-            run, ends = self.recognizer.run, self.recognizer.ends
-            names = set()
-            for rule, entry in self._entries.items():
-                state, failed = run(entry, kinds)
-                if failed is None and ends(state):
-                    names.add(rule)
-            found = self._spans[kinds] = frozenset(names)
+            ends = self.recognizer.ends
+            read = self._read(kinds).items()
+            found = self._spans[kinds] = frozenset(rule for rule, state in read if ends(state))
         return found
+
+    def _read(self, kinds: tuple[int, ...]) -> Mapping[str, State]:
+        """Rules that can begin with these tokens, with the state behind them.
+
+        Phrases are asked for with all that they begin with, so each is read one token further.
+        """
+        known = len(kinds)
+        while known and kinds[:known] not in self._begun:
+            known -= 1
+        states = self._begun[kinds[:known]] if known else self._entries
+        for count in range(known, len(kinds)):
+            following = {rule: self.recognizer.step(s, kinds[count]) for rule, s in states.items()}
+            states = {rule: state for rule, state in following.items() if state is not None}
+            if count < _LONGEST_PHRASE:
+                if len(self._begun) >= _MOST_REMEMBERED:
+                    self._begun.clear()
+                self._begun[kinds[: count + 1]] = states
+        return states
 
     def breadth(self, symbols: Sequence[str]) -> int:
         """How much a phrase lets in: nothing for tokens, more for rules that stand for more."""
@@ -150,8 +154,16 @@ class Phraser:
         """
         if any(keyword is not None for _, keyword in span):
             return False
-        rules = self.rules_for(tuple(kind for kind, _ in span))
-        return bool(rules if is_listed else rules - self._careless)
+        kinds = tuple(kind for kind, _ in span)
+        return bool(self.rules_for(kinds)) if is_listed else self._means_more(kinds)
+
+    def _means_more(self, kinds: tuple[int, ...]) -> bool:
+        """Whether some rule reads the tokens that would not with any name for the first of them."""
+        rules = self.rules_for(kinds) - self._careless
+        lexer = self.recognizer.lexer
+        if rules and lexer.is_keyword(kinds[0]):
+            rules -= self.rules_for((lexer.kind_of.get("NAME", ERROR), *kinds[1:]))
+        return bool(rules)
 
     @cached_property
     def _careless(self) -> frozenset[str]:
@@ -229,13 +241,20 @@ class Phraser:
         """Where a part could fall into operands: at commas outside of brackets, between values."""
         depth = seams = 0
         was_value = False
+        if self.recognizer.lexer.is_keyword(part[0][0]):  # what follows a word belongs to it
+            return int(not self._means_more(tuple(kind for kind, _ in part)))
         for kind, _ in part:
             text = self.recognizer.lexer.display[kind]
             depth += (text in _OPENING) - (text in _CLOSING)
-            is_value = depth == 0 and self._is_operand(kind)
+            is_value = depth == 0 and (self._is_operand(kind) or self._may_be_a_name(kind))
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value
         return seams
+
+    def _may_be_a_name(self, kind: int) -> bool:
+        """Whether a token is a reserved word that some rules read as any other name."""
+        is_word = self.recognizer.lexer.is_keyword(kind)
+        return is_word and bool(self.rules_for((kind,)) - self._careless)
 
     def _can_be_written(self, part: tuple[Word, ...]) -> bool:
         """Whether a part is one token, or what some rule reads."""
@@ -251,8 +270,14 @@ class Phraser:
         """What can stand for a part: its token, or rules from the narrowest to the widest."""
         if len(part) == 1:
             token = self._token(part[0])
-            if token is None or part[0][1] is not None or not self._is_operand(part[0][0]):
+            if token is None or part[0][1] is not None:
                 return () if token is None else (token,)
+            if not self._is_operand(part[0][0]):
+                if not self.recognizer.lexer.is_keyword(part[0][0]):
+                    return (token,)
+                kinds = (part[0][0],)
+                rules = self.rules_for(kinds) - self._careless if self._means_more(kinds) else ()
+                return (token, *(self._levels_of(frozenset(rules), near) if rules else ()))
         elif any(keyword is not None or kind < 0 for kind, keyword in part):
             return ()
         rules = self.rules_for(tuple(kind for kind, _ in part))

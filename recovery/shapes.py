@@ -23,10 +23,12 @@ _ELLIPSIS = "…"
 # Signs that no plain name at the beginning of a line has behind it, but a keyword can.
 _BEGINS_OPERAND = frozenset("{-+")
 # A word is a would-be keyword when it stands so in so many files and beside so many different
-# words on one side (a declared name stands beside its type only), or this often with none …
+# words on one side (a declared name stands beside its type only; where lines begin two words are
+# enough), or this often with none, or where hardly any other name ever comes …
 _WORD_FILES = 2
 _WORD_NEIGHBOURS = 3
 _WORD_ALONE = 6
+_WORD_CHOICE = 2
 # … and in at least this share of its uses on failing lines.
 _WORD_SHARE = 0.8
 
@@ -75,15 +77,30 @@ class Shaper:
         files: dict[str, set[str]] = defaultdict(set)
         neighbours: dict[tuple[str, int], set[str]] = defaultdict(set)
         alone: Counter[str] = Counter()
+        led: dict[str, set[str]] = defaultdict(set)  # files with lines it leads
+        ends: dict[tuple[int, ...], Counter[str]] = defaultdict(Counter)
+        failures = list(failures)
+        for _, failed, form in failures:
+            if form.index < len(failed.words) and form.kinds[form.index] == self._name:
+                ends[form.kinds[: form.index]][failed.words[form.index]] += 1
+        self._sole = frozenset(
+            word
+            for words in ends.values()
+            if len(words) <= _WORD_CHOICE
+            for word, count in words.items()
+            if count >= _WORD_NEIGHBOURS
+        )
         for digest, failed, form in failures:
             for place, word in self._names(failed, form):
-                if not self._stands_alone(form.kinds, place):
+                if not self._stands_out(form, place, word):
                     plain[word] += 1
                     continue
                 beside[word] += 1
                 files[word].add(digest)
                 sides = [s for s in (-1, 1) if self._is_operand_at(form.kinds, place + s)]
                 alone[word] += not sides
+                if place == 0 and sides:
+                    led[word].add(digest)
                 for side in sides:
                     if place + side < len(failed.words):
                         neighbours[word, side].add(failed.words[place + side])
@@ -95,6 +112,8 @@ class Shaper:
             and (
                 max(len(neighbours[word, -1]), len(neighbours[word, 1])) >= _WORD_NEIGHBOURS
                 or alone[word] >= _WORD_ALONE
+                or (len(led[word]) >= _WORD_FILES and len(neighbours[word, 1]) > 1)
+                or word in self._sole
             )
             and count >= _WORD_SHARE * (count + plain[word])
         )
@@ -109,6 +128,11 @@ class Shaper:
                 depth -= 1
             elif kind == self._name and not depth:
                 yield place, word
+
+    def _stands_out(self, form: Form, place: int, word: str) -> bool:
+        """Whether a name stands as a keyword would: alone, or where no other name ever comes."""
+        is_sole = place == form.index and word in self._sole
+        return is_sole or self._stands_alone(form.kinds, place)
 
     def _stands_alone(self, kinds: tuple[int, ...], place: int) -> bool:
         """Whether the name has no sign on the side where a name in an expression has one.
@@ -139,7 +163,7 @@ class Shaper:
         return tuple(
             (place, word)
             for place, word in self._names(failed, form)
-            if word in self._keywords and self._stands_alone(form.kinds, place)
+            if word in self._keywords and self._stands_out(form, place, word)
         )
 
     def shape(self, failed: Failed, form: Form, context: Context) -> Shape:

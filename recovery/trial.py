@@ -44,17 +44,19 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
         for edit in edits:
             if isinstance(edit, AddToken):
                 lexer = lexer.with_keyword(edit.name)
+        changed = None
         if any(isinstance(e, AddRule | RemoveRule) for e in edits):
             network = network_of(grammar, lexer)
         else:
             network = recognizer.network
-            for name in sorted(changed_rules(edits)):
+            changed = changed_rules(edits)
+            for name in sorted(changed):
                 network = with_rule(network, grammar, grammar.by_name[name], lexer)
             if network.lexer is not lexer:  # words reserved, and no rule has changed
                 network = replace(network, lexer=lexer)
     except (GrammarError, KeyError):
         return None
-    if is_left_recursive(network):
+    if is_left_recursive(network, changed, recognizer.empty_rules):
         return None
     found = Recognizer(grammar, network)
     found.most_ways = _MOST_WAYS

@@ -7,6 +7,7 @@ from typing import Any
 from reports.embed import embedded_json, printable
 from reports.fields import Record, count, nested, number, records, text
 from reports.page import render, source, write_page
+from reports.plain import plain
 from reports.run_view import run_view
 from reports.spelling import clip
 
@@ -17,7 +18,6 @@ _MAX_EVENTS = 20_000
 _MAX_FILES = 40
 _MAX_LINES = 5_000
 _SCRIPTS = ("page", "run-cursor", "run-scene", "run-charts", "run-signals", "run-program")
-_KEPT = tuple("t task kind at name motion signal value number text priority".split())
 
 Json = dict[str, Any]
 
@@ -34,7 +34,7 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
     data = embedded_json(
         {
             "end": count(nested(record, "outcome"), "time"),
-            "events": [_event(one) for one in records(record, "events")[:_MAX_EVENTS]],
+            "events": [plain(one, 200) for one in records(record, "events")[:_MAX_EVENTS]],
             "files": [_file(one) for one in records(record, "files")[:_MAX_FILES]],
             "path": _path(nested(record, "path")),
             "limits": _limits(nested(record, "limits")),
@@ -50,19 +50,6 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
         view=run_view(record),
     )
     return write_page(page, target)
-
-
-def _event(event: Record) -> Json:
-    """An event with its fields as plain figures and short texts."""
-    return {name: _plain(event[name]) for name in _KEPT if event.get(name) is not None}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, bool | int):
-        return value
-    if isinstance(value, float):
-        return value if abs(value) < float("inf") else str(value)
-    return printable(clip(str(value), 200))
 
 
 def _file(file: Record) -> Json:

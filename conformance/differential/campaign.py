@@ -19,6 +19,9 @@ from interp.faults import LinkError
 __all__ = ["Finding", "Findings", "fuzz", "record_of"]
 
 _SHARD: Final = 50
+#: After so many shards a process makes way for a new one: what the front end remembers of programs
+#: would fill the memory.
+_LIFE: Final = 20
 #: When a world interferes, a smaller program may need another seed for it to do so again.
 _SEEDS: Final = 4
 #: So many are reduced; of the others only their numbers are told.
@@ -106,10 +109,11 @@ def fuzz(
 
 
 def _outcomes(shards: Sequence[_Shard], jobs: int) -> Iterator[_Outcome]:
-    if jobs <= 1 or len(shards) <= 1:
+    if len(shards) <= (1 if jobs > 1 else _LIFE):
         yield from map(_run, shards)
         return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(jobs, mp_context=context, max_tasks_per_child=_LIFE) as pool:
         yield from pool.map(_run, shards)
 
 
@@ -133,7 +137,7 @@ def _run(shard: _Shard) -> _Outcome:
 
 
 def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
-    """The same difference, or another of the same executor, in a program as small as can be."""
+    """A difference of the same kind on the same executor, in a program as small as can be."""
     attempts = range(_SEEDS if finding.difference.is_disturbed else 1)
     last = [finding.difference]
 
@@ -146,7 +150,7 @@ def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
             expected = trace_of(program, EXECUTORS[reference], world)
             name = finding.difference.executor
             parted = difference(name, expected, trace_of(program, EXECUTORS[name], world))
-            if parted is not None:
+            if parted is not None and parted.kind == finding.difference.kind:
                 last[0] = parted
                 return True
         return False

@@ -77,6 +77,10 @@ def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
     return counts
 
 
+#: What has no line of its own in a trace: it counts where its routine was executed.
+_UNTOLD: Final = (
+    ast.Definition | ast.Label | ast.CaseBranch | ast.TimeBlock | ast.ConstantVelocity
+)  # fmt: skip
 _SLUGS: Final = {kind.text: slug for slug, kind in FAULTS.items()}
 
 
@@ -98,7 +102,7 @@ def _nodes(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[tuple[
             ):
                 continue
             for node in walk(routine):
-                if isinstance(node, ast.Definition) or (path, unit.line(node)) in executed:
+                if isinstance(node, _UNTOLD) or (path, unit.line(node)) in executed:
                     yield from _of(node)
 
 

@@ -30,6 +30,11 @@ class Difference:
     is_disturbed: bool
 
     @property
+    def kind(self) -> tuple[str, str]:
+        """What each side did, without its values; a program that cannot run is something else."""
+        return _kind(self.expected), _kind(self.actual)
+
+    @property
     def expected_text(self) -> str:
         """What the reference did, with its line."""
         return shown(self.expected)
@@ -40,12 +45,21 @@ class Difference:
         return shown(self.actual)
 
 
+def _kind(fact: Fact | None) -> str:
+    if fact is None:
+        return "nothing"
+    is_unlinked = fact[0] in ("Fail", "raised") and "LinkError" in str(fact[2])
+    return f"{fact[0]} unlinked" if is_unlinked else str(fact[0])
+
+
 def prepared(files: Files) -> Prepared:
     """A program ready for executors; raises `interp.faults.LinkError`."""
     return Prepared(load([Source(text, path) for path, text in files], files[0][0]))
 
 
-def difference(executor: str, expected: Sequence[Fact], actual: Sequence[Fact]) -> Difference | None:
+def difference(
+    executor: str, expected: Sequence[Fact], actual: Sequence[Fact]
+) -> Difference | None:
     """The first difference, ``None`` where there is none."""
     if expected == actual:
         return None

@@ -56,10 +56,8 @@ class Expressions(Functions):
 
     def written(self, place: Place) -> str:
         """A place as text, with indices drawn for it."""
-        found = [place.variable.name]
-        for piece in place.pieces:
-            found.append(self.index(piece) if isinstance(piece, int) else piece)
-        return "".join(found)
+        way = (self.index(one) if isinstance(one, int) else one for one in place.pieces)
+        return "".join([place.variable.name, *way])
 
     def target(self, type_: Type, *, is_local: bool = True) -> str | None:
         """A place that can be assigned, ``None`` where there is none."""
@@ -188,7 +186,9 @@ class Expressions(Functions):
             return f"{left} / {self._divisor(INT)}"
         if way < 17:
             sign = choices.pick(("B_AND", "B_OR", "B_EXOR", "B_AND"))
-            return f"{left} {sign} {self._operand(choices.weighted(((5, INT), (1, CHAR))), depth - 1)}"
+            return (
+                f"{left} {sign} {self._operand(choices.weighted(((5, INT), (1, CHAR))), depth - 1)}"
+            )
         return f"B_NOT {left}" if way < 18 else f"{choices.pick('-+')}{left}"
 
     def _real(self, depth: int) -> str:
@@ -228,7 +228,7 @@ class Expressions(Functions):
             return choices.pick(("0", self.atom(type_)))
         if choices.chance(30):
             return f"(({self.atom(INT)} B_AND 7)+1)"
-        return choices.pick(("2", "3", "4", "7") if type_ == INT else ("2.0", "0.3", "4", "1.5"))
+        return choices.pick(("2", "3", "(-2)", "7") if type_ == INT else ("2.0", "0.3", "4", "1.5"))
 
     def _truth(self, depth: int) -> str:
         choices = self.choices
@@ -248,6 +248,8 @@ class Expressions(Functions):
         way = choices.below(10)
         if way >= 8:
             return self._of_constants(depth)
+        if way < 3:
+            return self._near(choices.pick((INT, INT, REAL)))
         if way < 6:
             left, right = choices.pick(((INT, INT), (REAL, REAL), (INT, REAL), (CHAR, CHAR)))
         elif way < 7:
@@ -256,6 +258,13 @@ class Expressions(Functions):
             left = right = BOOL
         sign = choices.pick(_EQUAL if left == BOOL else _ORDERS)
         return f"{self._operand(left, depth - 1)} {sign} {self._operand(right, depth - 1)}"
+
+    def _near(self, type_: Type) -> str:
+        """A comparison of numbers that are equal or nearly so."""
+        choices = self.choices
+        left = self.atom(type_)
+        others = (left, f"{left}+1", f"{left}-1", "0", "1", "2", f"{left}*1.0")
+        return f"{left} {choices.pick(_ORDERS)} {choices.pick(others)}"
 
     def _of_constants(self, depth: int) -> str:
         """A comparison of constants of an enumeration, the controller's own among them."""
@@ -273,7 +282,7 @@ class Expressions(Functions):
         return f"({found})" if depth > 1 and self.choices.chance(10) else found
 
     def _pose(self, type_: Structure, depth: int) -> str:
-        """A pose: frames composed by the geometric operator; the last one gives the type [ARI-08]."""
+        """Frames composed by the geometric operator; the last one gives the type [ARI-08]."""
         choices = self.choices
         if choices.chance(45):
             return self.atom(type_)

@@ -41,11 +41,17 @@ class Functions(Code):
 
     def _root(self, depth: int) -> str:
         inner = self.expression(REAL, depth)
-        return f"SQRT({inner})" if self.risks() else f"SQRT(ABS({inner}))"
+        if self.risks():
+            return f"SQRT({self.choices.pick(('-1.0', inner, '0.5-1'))})"
+        return f"SQRT(ABS({inner}))"
 
     def _arc(self, depth: int) -> str:
         inner = self.expression(REAL, depth)
-        return f"ACOS({inner})" if self.risks() else f"ACOS(SIN({inner}))"
+        return (
+            self.choices.pick(("ACOS(1.5)", f"ACOS({inner})"))
+            if self.risks()
+            else f"ACOS(SIN({inner}))"
+        )
 
     def _tangent(self, depth: int) -> str:
         if self.risks():
@@ -123,7 +129,8 @@ class Functions(Code):
         """Functions that only the world can answer, with a truth value."""
         way = self.choices.below(5)
         if way == 0:
-            return f"EXISTS_KRLDLG({self.expression(INT, 1)}, {self.place(INT)})"
+            handle = self.choices.pick(("", self.expression(INT, 1)))  # one may be left out
+            return f"EXISTS_KRLDLG({handle}, {self.place(INT)})"
         if way == 1:
             return f"IS_KEY_PRESSED({self.choices.below(9)})"
         if way == 2:
@@ -132,7 +139,7 @@ class Functions(Code):
             return f"GETSYSSTATE({self.text()}, {self.place(INT)}, {self.place(REAL)})"
         return f"TIMER_LIMIT({self.expression(REAL, 1)})"
 
-    def _counted(self, _depth: int) -> str:
+    def _number_asked(self, _depth: int) -> str:
         """Functions that only the world can answer, with a number."""
         return self.choices.pick(("GETVARSIZE(#FLAG)", "SYNC()", "CHECKPIDONRDC()"))
 
@@ -149,7 +156,7 @@ def _system(*texts: str) -> _Maker:
     return made
 
 
-_READERS: Final = (
+_READERS: Final[tuple[tuple[str, Type], ...]] = (
     ("STRTOINT", INT),
     ("STRTOREAL", REAL),
     ("STRTOBOOL", BOOL),
@@ -164,7 +171,7 @@ _POSE_TEXTS: Final = (
 )
 _AXIS_TEXTS: Final = ('"{A1 1.0,A2 -90,A3 90.0,A4 0,A5 0.5,A6 0}"', '"{A1 1.0,E1 100.0}"', '"A1"')
 _READABLE: Final[Mapping[Type, tuple[str, ...]]] = {
-    INT: ('"12"', '"-7"', '" 5"', '"2147483648"', '"1.5"', '"\'HFF\'"'),
+    INT: ('"12"', '"-7"', '" 5"', '"2147483648"', '"1.5"', "\"'HFF'\""),
     REAL: ('"1.5"', '"-2.5E2"', '"7"', '"1E99"', '"x"'),
     BOOL: ('"TRUE"', '"false"', '"1"'),
     **dict.fromkeys(POSES, _POSE_TEXTS),
@@ -178,7 +185,7 @@ _MAKERS: Final[Mapping[Type, tuple[tuple[int, _Maker], ...]]] = {
         (3, Functions._add),
         (3, Functions._find),
         (5, _system("$TIMER[?]", "$OV_PRO", "$ADVANCE", "$ERR.NUMBER", "$APO.CPTP", "$DATE.YEAR")),
-        (1, Functions._counted),
+        (1, Functions._number_asked),
     ),
     REAL: (
         (8, Functions._sine),

@@ -11,7 +11,21 @@ from grammar.types import INT, REAL
 
 __all__ = ["Motions"]
 
-_CRITERIA: Final = ("", "", "", " C_PTP", " C_DIS", " C_ORI", " C_VEL", " C_PTP C_DIS", " C_DIS C_ORI")
+_CRITERIA: Final = (
+    "",
+    "",
+    "",
+    " C_PTP",
+    " C_DIS",
+    " C_ORI",
+    " C_VEL",
+    " C_PTP C_DIS",
+    " C_DIS C_ORI",
+)
+_KINDS: Final = (
+    *((4, "PTP"), (4, "LIN"), (2, "CIRC"), (1, "PTP_REL"), (2, "LIN_REL"), (1, "CIRC_REL")),
+    (1, "ASYPTP"),
+)
 _PRIORITIES: Final = ("1", "4", "20", "39", "81", "-1")
 _NUMBERS: Final = (1, 2, 4, 5, 10, 39, 81, 128)
 _AXES_OF_ROBOT: Final = "A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 {0},A6 0.0"
@@ -40,8 +54,7 @@ class Motions(WorldStatements):
         """PTP, LIN, CIRC, and the relative ones."""
         choices = self.choices
         self.spend()
-        kind = choices.weighted(((4, "PTP"), (4, "LIN"), (2, "CIRC"), (1, "PTP_REL"), (2, "LIN_REL"),
-                                 (1, "CIRC_REL"), (1, "ASYPTP")))  # fmt: skip
+        kind = choices.weighted(_KINDS)
         if kind == "ASYPTP":
             self.write(f"ASYPTP {{E1 {constant(choices, REAL)}}}")
             return True
@@ -217,12 +230,18 @@ class Motions(WorldStatements):
         actions = [one for one in self.scope.routines if one.is_for_interrupts]
         number, word = choices.pick(_NUMBERS), ""
         condition = choices.pick(
-            (f"$IN[{choices.between(1, 16)}]", f"$FLAG[{choices.between(1, 16)}]==TRUE", self.truth())
+            (
+                f"$IN[{choices.between(1, 16)}]",
+                f"$FLAG[{choices.between(1, 16)}]==TRUE",
+                self.truth(),
+            )
         )
         if actions and choices.chance(85):
             action = self._action(choices.pick(actions))
         else:
-            action = choices.pick(("BRAKE", "BRAKE F", "BRAKE FF", "SYNC()", "PULSE($OUT[4],TRUE,1)"))
+            action = choices.pick(
+                ("BRAKE", "BRAKE F", "BRAKE FF", "SYNC()", "PULSE($OUT[4],TRUE,1)")
+            )
             word = choices.pick(("", "GLOBAL "))
         self.write(f"{word}INTERRUPT DECL {number} WHEN {condition} DO {action}")
         self.interrupts.append(number)
@@ -236,7 +255,7 @@ class Motions(WorldStatements):
         if not self.part.is_for_interrupts:
             return False
         self.spend()
-        self.write(self.choices.pick(("BRAKE", "BRAKE F", "BRAKE FF", "RESUME")))
+        self.write(
+            self.choices.pick(("BRAKE", "BRAKE F", "BRAKE FF", "RESUME", "RESUME", "RESUME"))
+        )
         return True
-
-

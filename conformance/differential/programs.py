@@ -97,25 +97,29 @@ class _Programs:
         if choices.chance(30):
             files += self._library(shared)
         own = shared.inner()
-        data = self._signals(own) if choices.chance(40) else []
+        data = ["INT COUNT=0", *(self._signals(own) if choices.chance(40) else [])]
+        if choices.chance(15):
+            data.append("CHANNEL :SER_1 :SER_1 $PSER_1")
         if choices.chance(25):
             data += self._imported(own, files)
         listed = self._data_list("PROG", own, data, is_public=False)
         program = self._source("PROG", own, choices.between(1, self.size.routines))
-        return Sample((("PROG.SRC", program), ("PROG.DAT", listed), ("$CONFIG.DAT", config), *files))
+        return Sample(
+            (("PROG.SRC", program), ("PROG.DAT", listed), ("$CONFIG.DAT", config), *files)
+        )
 
     def _types(self) -> list[str]:
         """The types of the user, for all to see."""
         choices = self.choices
-        found = []
-        for one in (COLOUR, MODE):
-            found.append(f"GLOBAL ENUM {one.name} {','.join(one.constants)}")
+        found = [f"GLOBAL ENUM {one.name} {','.join(one.constants)}" for one in (COLOUR, MODE)]
         for structure in (POINT, RECORD):
             groups: list[str] = []
             before = ""
             for member in structure.members:
                 name, written = declared(member.type, member.name)
-                groups.append(written if name == before and choices.chance(50) else f"{name} {written}")
+                groups.append(
+                    written if name == before and choices.chance(50) else f"{name} {written}"
+                )
                 before = name
             found.append(f"GLOBAL STRUC {structure.name} {','.join(groups)}")
         return found
@@ -139,13 +143,18 @@ class _Programs:
         scope.add(Variable("THEIRS", INT, is_local=False))
         return ["IMPORT INT THEIRS IS /R1/LIB..KEPT"]
 
-    def _data_list(self, name: str, scope: Scope, definitions: Sequence[str], *, is_public: bool) -> str:
+    def _data_list(
+        self, name: str, scope: Scope, definitions: Sequence[str], *, is_public: bool
+    ) -> str:
         choices = self.choices
         lines = [f"DEFDAT {name}{' PUBLIC' if is_public else ''}", *definitions]
         word = "GLOBAL " if is_public else ""
         for type_ in (*self._some(_PLAIN, 3), *self._some(_STRUCTURED, 1)):
             lines += self._datum(scope, type_, word)
-        for type_ in self._some(_TABLES, 1):
+        tables = self._some(_TABLES, 1)
+        if is_public and not scope.arrays(CHAR, 1):
+            tables.append(Array(CHAR, (12,)))
+        for type_ in tables:
             lines += self._datum(scope, type_, word)
         for type_ in self._some((INT, REAL, CHAR, COLOUR, BOOL), 2):
             constant_name = self._name("K")
@@ -207,7 +216,7 @@ class _Programs:
             way = self.choices.below(10)
             if way < 2:
                 text, routine = self._recursive(routine_name, scope, is_library=is_library)
-            elif way < 4 and not is_library:
+            elif way < 5 and not is_library:
                 text, routine = self._routine(routine_name, scope, is_for_interrupts=True)
             else:
                 text, routine = self._routine(routine_name, scope, is_global=is_library)
@@ -223,7 +232,10 @@ class _Programs:
     def _main(self, name: str, scope: Scope) -> str:
         code = self._code(scope, self.size.budget, Part(is_main=True))
         head = self._declare(code, [])
+        code.passes.append("COUNT")  # of the data list; no other routine counts with it
         self._begin(code)
+        if self.choices.chance(10):
+            code.channel()
         code.statements()
         code.statements()
         return "\n".join([f"DEF {name}()", *head, *code.lines, "END", ""])
@@ -239,9 +251,12 @@ class _Programs:
         part = Part(is_for_interrupts=is_for_interrupts, result=result)
         code = self._code(scope, self.size.others, part)
         head = self._declare(code, parameters)
-        self._begin(code)
-        code.statements(4)
-        if result is not None and not choices.chance(2):
+        if not choices.chance(4):
+            self._begin(code)
+            code.statements(4)
+        if is_for_interrupts and choices.chance(25):
+            code.write("RESUME")
+        if result is not None and not choices.chance(4):
             code.spend()
             code.returned()
         cost = code.spent + 2
@@ -282,7 +297,9 @@ class _Programs:
             else:
                 type_ = choices.pick((*_PLAIN, POINT, POSES[0], POSES[3], AXIS_TYPES[2]))
                 is_out = choices.chance(50)
-                found.append(Parameter(f"P{number}", type_, is_out, not is_out or choices.chance(60)))
+                found.append(
+                    Parameter(f"P{number}", type_, is_out, not is_out or choices.chance(60))
+                )
         return found
 
     def _code(self, scope: Scope, budget: int, part: Part) -> Statements:
@@ -296,9 +313,11 @@ class _Programs:
             type_name, declarator = declared(one.type, one.name, is_open=True)
             lines.append(f"  {self._decl(type_name)}{type_name} {declarator}")
             code.scope.add(Variable(one.name, one.type, is_writable=one.name != "N"))
-        count = 6 if code.part.is_main else 3
+        count = 5 if code.part.is_main else 3
         code.passes = [f"W{number}" for number in range(1, count + 1)]
         lines.append(f"  INT {','.join(code.passes)}")
+        if code.part.is_main and choices.chance(10):
+            lines.append("  EXTFCT REAL ELSEWHERE(INT:IN,CHAR[]:OUT)")
         wanted = [*self._some(_PLAIN, 2), *self._some(_STRUCTURED, 1), *self._some(_TABLES, 1)]
         if code.part.is_main:
             wanted += [INT, REAL, BOOL, CHAR]
@@ -311,7 +330,9 @@ class _Programs:
 
     def _local_name(self, code: Statements) -> str:
         """A new name, or now and then that of a datum, which is hidden then [SCO-05]."""
-        hidden = [one.name for one in code.scope.variables() if not one.is_local and one.name[0] == "D"]
+        hidden = [
+            one.name for one in code.scope.variables() if not one.is_local and one.name[0] == "D"
+        ]
         if hidden and self.choices.chance(5):
             return self.choices.pick(hidden)
         return self._name("V")
@@ -373,5 +394,3 @@ def _written(
     size = f"[{result.sizes[0]}]" if isinstance(result, Array) else ""
     head = f"{word}DEFFCT {type_name}{size} {name}({','.join(formal)})"
     return "\n".join([head, *lines, "ENDFCT", ""])
-
-

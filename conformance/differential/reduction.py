@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from conformance.differential.divergence import Files
 from grammar import ast
@@ -163,19 +164,17 @@ def _in_body(source: Source, body: Sequence[ast.Node]) -> Iterator[frozenset[int
 _BLOCKS = ast.If | ast.For | ast.While | ast.Repeat | ast.Loop | ast.Switch | ast.SplineBlock
 
 
-def _inner(node: ast.Node) -> list[ast.Node]:
+def _inner(node: ast.Node) -> Sequence[ast.Node]:
     """The statements within a block, of all its branches."""
     match node:
         case ast.If():
             return [*node.body, *(node.otherwise or ())]
         case ast.Switch():
-            return [one for branch in node.branches for one in branch.body] + [
-                *(node.default or ())
-            ]
+            return [*(one for way in node.branches for one in way.body), *(node.default or ())]
         case ast.For() | ast.While() | ast.Repeat() | ast.Loop():
-            return list(node.body)
+            return node.body
         case ast.SplineBlock():
-            return list(node.items)
+            return node.items
     return []
 
 
@@ -194,15 +193,13 @@ def _groups(source: Source, nodes: Sequence[ast.Node]) -> Iterator[frozenset[int
         size = size // 2 if size > 1 else 0
 
 
-def _frames(
-    source: Source, block: ast.Node, inner: Sequence[ast.Node]
-) -> Iterator[frozenset[int]]:
+def _frames(source: Source, block: ast.Node, inner: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
     """The lines of a block that hold it together, and each branch but the first."""
     whole = _lines(source, block)
     covered = frozenset().union(*(_lines(source, node) for node in inner))
     frame = sorted(whole - covered)
     yield frozenset(frame)
-    for first, end in zip(frame[1:], frame[2:], strict=False):
+    for first, end in pairwise(frame[1:]):
         yield frozenset(range(first, end))
 
 

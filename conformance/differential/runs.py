@@ -21,6 +21,7 @@ from interp.bytecode.vm import Machine
 from interp.events import Sink
 from interp.executor import Executor
 from interp.faults import LinkError, RuntimeFailure
+from interp.native import AVAILABLE
 from interp.program import CheckedProgram, Limits
 from interp.requests import (
     Code,
@@ -42,7 +43,7 @@ from interp.tree import TreeExecutor
 __all__ = ["EXECUTORS", "Factory", "Prepared", "available", "trace_of"]
 
 #: More statements than any generated program executes, and a slice short enough to come up.
-LIMITS: Final = Limits(statements=20_000, per_slice=60)
+LIMITS: Final = Limits(statements=20_000, per_slice=25)
 _MOST_REQUESTS: Final = 4_000
 _MOST_ENTERED: Final = 6
 #: One request of so many is a chance for something to be entered.
@@ -83,13 +84,19 @@ def _machine(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
     return Machine(prepared.verified, prepared.start, limits, sink)
 
 
+def _native(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
+    from interp.native.machine import Machine as MachineInC
+
+    return MachineInC(prepared.verified, prepared.start, limits, sink)
+
+
 #: The executors by name; the first one is the reference.
-EXECUTORS: Mapping[str, Factory] = {"tree": _tree, "vm": _machine}
+EXECUTORS: Mapping[str, Factory] = {"tree": _tree, "vm": _machine, "native": _native}
 
 
 def available() -> tuple[str, ...]:
-    """The executors that can run here."""
-    return tuple(EXECUTORS)
+    """The executors that can run here: the one in C only where it was built."""
+    return tuple(name for name in EXECUTORS if name != "native" or AVAILABLE)
 
 
 @dataclass(slots=True)

@@ -8,13 +8,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from conformance.differential.kinds import COLOUR, MODE, POINT, RECORD, constant
+from conformance.differential.kinds import COLOUR, MODE, POINT, RECORD
 from conformance.differential.motions import Motions
 from conformance.differential.scope import Variable
 from grammar.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Type
 
 __all__ = ["Statements"]
 
+#: What is too large for an INT, or for a REAL, or nearly so.
+_TOO_LARGE: Final = (
+    *("2147483647+?", "?-2147483647-2", "99999*99999+?", "-2147483647-1-?", "1.0E30*1.0E30+?"),
+    *("46341*46341+?", "3.0E38+3.0E38+?", "-(-2147483647-1)", "2147483647.0+?", "0.5E-30*1.0E-30"),
+)
 #: Blocks within blocks.
 _DEEPEST: Final = 5
 
@@ -52,19 +57,25 @@ class Statements(Motions):
         """A value for a variable of a type, converted now and then; numbers are kept small."""
         choices = self.choices
         depth = choices.between(1, self.size.depth)
+        if type_ in (INT, REAL) and self.risks():
+            return choices.pick(_TOO_LARGE).replace("?", self.atom(INT))
         if type_ == INT:
             way = choices.below(12)
             if way < 4:
                 return f"({self.expression(INT, depth)}) B_AND {choices.pick(('255', '4095'))}"
             if way < 6:
                 return f"({self.expression(INT, depth)})/{choices.pick(('10', '7', '100'))}"
-            if way < 8:
+            if way < 7:
                 return self.expression(REAL, depth)
+            if way == 7:
+                return f"{self._operand(INT, 1)}/{choices.pick(('2.0', '-2.0', '4.0'))}"
             if way == 8:
                 return self.read(CHAR) or self.expression(INT, 1)
             return self.expression(INT, depth)
         if type_ == REAL and choices.chance(25):
             return self.expression(INT, depth)
+        if type_ == CHAR and self.risks():
+            return '""'  # the checker lets it stand for a letter
         if type_ == CHAR and choices.chance(25):
             return self.expression(INT, 1) if self.risks() else f"{self._operand(INT, 1)} B_AND 127"
         return self.expression(type_, depth)
@@ -111,12 +122,14 @@ class Statements(Motions):
     def switch(self) -> bool:
         """SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
         choices = self.choices
-        type_ = choices.pick((INT, CHAR, COLOUR, MODE, INT))
+        type_ = choices.pick(_SELECTORS)
         labels = _labels(type_)
         selector = f"({self.expression(INT, 1)}) B_AND 3" if type_ == INT else self.read(type_)
         if selector is None:
             return False
-        names = [one.variable.name for one in self.scope.places(type_) if _is_constant(one.variable)]
+        names = [
+            one.variable.name for one in self.scope.places(type_) if _is_constant(one.variable)
+        ]
         self.spend()
         self.write(f"SWITCH {selector}")
         left = list(labels)
@@ -145,7 +158,7 @@ class Statements(Motions):
         return self.choices.between(1, min(5, room))
 
     def _spare(self) -> list[str]:
-        """Variables for counting that no loop around counts with."""
+        """Variables for counting that no loop around counts with; of a data list in one routine."""
         used = {one.name for one in self.counters}
         return [name for name in self.passes if name not in used]
 
@@ -157,7 +170,9 @@ class Statements(Motions):
             return False
         name = choices.pick(spare)
         first, step = choices.pick((1, 1, 1, 0, -2)), choices.pick((1, 1, 1, 2, -1, -3))
-        last = first + step * (times - 1) + choices.between(0, abs(step) - 1) * (1 if step > 0 else -1)
+        last = (
+            first + step * (times - 1) + choices.between(0, abs(step) - 1) * (1 if step > 0 else -1)
+        )
         low, high = min(first, first + step * (times - 1)), max(first, first + step * (times - 1))
         begin, end = str(first), str(last)
         way = choices.below(10)
@@ -392,6 +407,7 @@ _RISKY: Final[tuple[tuple[int, _Rule], ...]] = (
     (1, Statements.motion),
     (1, Statements.switch),
 )
+_SELECTORS: Final[tuple[Type, ...]] = (INT, CHAR, COLOUR, MODE, INT)
 _ASSIGNED: Final[tuple[tuple[int, Type], ...]] = (
     (8, INT),
     (6, REAL),

@@ -8,7 +8,6 @@ executor's own affair.
 from __future__ import annotations
 
 import dataclasses
-from functools import cache
 from typing import Any
 
 from interp.requests import At, Code, Path, Request, Value
@@ -90,9 +89,14 @@ class Trace:
         return plain(value)
 
 
-@cache
-def _fields(type_: Any) -> tuple[str, ...]:
-    return tuple(field.name for field in dataclasses.fields(type_))
+_FIELDS: dict[Any, tuple[str, ...]] = {}
+
+
+def _fields(kind: Any) -> tuple[str, ...]:
+    """The names of the fields of a kind of request."""
+    if kind not in _FIELDS:
+        _FIELDS[kind] = tuple(field.name for field in dataclasses.fields(kind))
+    return _FIELDS[kind]
 
 
 def plain(value: Value | None) -> Any:

@@ -6,7 +6,7 @@ from typing import Final
 
 from conformance.differential.expressions import Expressions
 from conformance.differential.kinds import AXIS_TYPES, COLOUR, POSES, STATE, TEXT, constant
-from grammar.types import BOOL, CHAR, INT, REAL, Array
+from grammar.types import BOOL, CHAR, INT, REAL, Array, Type
 
 __all__ = ["WorldStatements"]
 
@@ -19,7 +19,7 @@ _WORDS: Final = (
     ("$CIRC_TYPE", "#BASE"),
     ("$IPO_MODE", "#TCP"),
 )
-_FORMATS: Final = (
+_FORMATS: Final[tuple[tuple[Type, tuple[str, ...]], ...]] = (
     (INT, ("%d", "%5d", "%x", "%-4d|", "%+d", "%03d", "%c", "%u", "%#x", "%.3i")),
     (REAL, ("%f", "%8.3f", "%.2f", "%e", "%g", "%+.1f", "%d")),
     (BOOL, ("%s", "%d")),
@@ -109,6 +109,17 @@ class WorldStatements(Expressions):
         error = choices.pick(("ERR_CLEAR($ERR)", "ROB_STOP_RELEASE()", "DELETE_BACKWARD_BUFFER()"))
         self.spend()
         self.write(choices.pick((error, f"WSPACEGIVE({choices.between(1, 4)})", "SYNC()")))
+        return True
+
+    def channel(self) -> bool:
+        """A channel is opened, written to, closed [FCT-08]."""
+        state, handle = self.target(STATE), self.target(INT)
+        if state is None or handle is None:
+            return False
+        self.spend(3)
+        self.write(f"COPEN(:SER_1, {handle})")
+        self.write(f'CWRITE({handle}, {state}, 1, "%d", {self.expression(INT, 1)})')
+        self.write(f"CCLOSE({handle}, {state})")
         return True
 
     # ----------------------------------------------------------------------- cyclic signals
@@ -208,13 +219,13 @@ class WorldStatements(Expressions):
             value = constant(choices, kind)
         else:
             family = POSES if kind in POSES else AXIS_TYPES
-            other = self.read(choices.pick(family)) if choices.chance(10) else None
+            other = self.read(choices.pick(family)) if choices.chance(20) else None
             value = other or self.expression(kind, 2)
         self.write(f"{found}={value}")
         return True
 
 
-_SCANNED: Final = (
+_SCANNED: Final[tuple[tuple[str, str, tuple[Type, ...]], ...]] = (
     ('"12 3.5"', '"%d %f"', (INT, REAL)),
     ('"x7"', '"x%d"', (INT,)),
     ('"A1"', '"%c%d"', (CHAR, INT)),
@@ -226,4 +237,3 @@ _SCANNED: Final = (
     ('"1.25E1 9"', '"%e %2d"', (REAL, INT)),
     ('"77"', '"%1d%1d"', (INT, INT)),
 )
-

@@ -8,7 +8,6 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain, size
-from interp.bytecode.isa import MAX_CELLS
 from interp.bytecode.kit import Here, Kit, Rule
 from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
 from interp.bytecode.state import Operation
@@ -83,7 +82,7 @@ class Control:
 
         def operation() -> Operation:
             first = state.fp + own
-            if len(calls) >= state.most_calls or first + frame > MAX_CELLS:
+            if len(calls) >= state.most_calls or first + frame > state.most_cells:
                 raise fault("stack")
             if is_told:
                 hooks.tell_call(number)

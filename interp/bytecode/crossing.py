@@ -43,6 +43,8 @@ ASKED: Mapping[str, str] = {
     "Read": "path",
     "Write": "path value",
     "Invoke": "word arguments",
+    "SetCyclicFlag": "integer condition",
+    "StopAdvance": "",
     "Wait": "number",
     "Poll": "flag",
     "Halt": "",
@@ -224,6 +226,10 @@ _PYTHON: Mapping[type, Type] = {bool: BOOL, int: INT, float: REAL}
 Part = Callable[[Sequence[Value | None], At], Any]
 
 
+def _nothing(_inputs: Sequence[Value | None], _at: At) -> None:
+    """What an argument has that is no system variable."""
+
+
 class Makers:
     """Makes the functions that make requests; ``handle_of`` gives a code object in this frame."""
 
@@ -234,6 +240,16 @@ class Makers:
     def parts(self, parts: Sequence[Argument]) -> Part:
         """A function that makes the parts as a tuple. They take the inputs in their order."""
         return self._together(parts, count())
+
+    def paths(self, arguments: Sequence[Argument]) -> Part:
+        """A function that makes the paths of those arguments that are system variables."""
+        makers: list[Part] = []
+        first = 0
+        for part in arguments:
+            path = part.path if isinstance(part, Changed) else None
+            makers.append(_nothing if path is None else self.path(path, first))
+            first += len(list(inputs_of((part,))))
+        return lambda inputs, at: tuple([make(inputs, at) for make in makers])
 
     def path(self, path: Items, first: int) -> Part:
         """A function that makes a path; ``first`` is the number of its first input."""

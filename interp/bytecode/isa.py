@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Final
 
 from interp.faults import FAULTS
+from interp.variables import MOST_CELLS
 
 __all__ = [
     "FORMAT",
@@ -49,7 +50,7 @@ __all__ = [
 MAGIC: Final = b"KRLI"
 FORMAT: Final = 1
 #: The data lists and all frames together have at most so many cells.
-MAX_CELLS: Final = 1 << 20
+MAX_CELLS: Final = MOST_CELLS
 
 #: What operands are.
 OPERAND_KINDS: Mapping[str, str] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -73,5 +73,5 @@ class Kit:
     state: State
     hooks: Hooks
     entries: list[Operation]
-    frames: list[int]
+    frames: Sequence[int]
     owners: frozenset[int | None]

@@ -18,7 +18,7 @@ from functools import cached_property
 
 from grammar.types import SCALARS, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import size
+from interp.bytecode.cells import Raw, kind_at, raw_of_word, size
 
 __all__ = [
     "BASIC_TYPES",
@@ -278,6 +278,22 @@ class Program:
         for variable in self.data:
             places.append(places[-1] + size(self.types[variable.type]))
         return tuple(places)
+
+    @cached_property
+    def cells(self) -> tuple[Raw | None, ...]:
+        """What is in the cells of the data lists at first."""
+        cells: list[Raw | None] = [None] * self.addresses[-1]
+        for address, word in self.initial:
+            number = self.data_at(address)
+            assert number is not None, "verified"
+            type_ = self.types[self.data[number].type]
+            cells[address] = raw_of_word(word, kind_at(type_, address - self.addresses[number]))
+        return tuple(cells)
+
+    @cached_property
+    def frames(self) -> tuple[int, ...]:
+        """How many cells a frame of each code object has."""
+        return tuple(self.frame_size(code) for code in self.codes)
 
     def data_at(self, address: int) -> int | None:
         """The number of the variable of the data lists that has a cell."""

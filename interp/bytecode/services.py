@@ -19,6 +19,7 @@ from interp.bytecode.telling import Names
 from interp.bytecode.transfer import Block, Change, Entry, arguments_of
 from interp.events import Sink
 from interp.faults import BudgetExhausted, LinkError
+from interp.inspection import Seen
 from interp.program import Limits
 from interp.requests import At, MoveEmily, Request, Slice, Value, Write
 from interp.requests import Code as HandedOver
@@ -82,6 +83,10 @@ class Services:
         serial = self._state.serial if captures else 0
         return HandedOver(number + serial * len(self._program.codes))
 
+    def look(self, text: str) -> Seen | None:
+        """A variable where the program is; see `interp.inspection`."""
+        return self._names.look(text)
+
     # ----------------------------------------------------------------------- statements
 
     def line(self, place: int, after: Operation) -> Operation:
@@ -141,12 +146,15 @@ class Services:
         arguments = arguments_of(ask.parts) if is_invoked else ()
         entry = Entry(self._program, state, ask.parts, arguments, ask.result)
         make = self._makers.parts(ask.parts)
+        make_paths = self._makers.paths(arguments)
         kind: Any = getattr(requests, ask.request)
 
         def operation() -> Operation | None:
             block = entry.take()
             values, at = entry.values(block), self.at()
             request: Any = kind(at, *make(values, at))
+            if is_invoked:
+                request = replace(request, paths=make_paths(values, at))
 
             def completion(reply: Any) -> Operation | None:
                 if is_invoked:
@@ -157,6 +165,8 @@ class Services:
                 return after
 
             if state.reader is not None:
+                if ask.request == "StopAdvance":
+                    return after
                 if ask.request != "Read":
                     raise LinkError(NOT_IN_CONDITIONS)
                 return completion(state.reader(request.path))

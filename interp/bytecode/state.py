@@ -28,7 +28,8 @@ class State:
     stack of operands when it began, ``statement`` the place of the LINE that began last, -1 before.
     ``serial`` tells activations apart whose actions and conditions may be handed over, else it is
     0. ``left`` is how many statements may begin before something has to be done, ``most_calls`` how
-    many calls may be open, ``last`` the cell that was written last through a reference.
+    many calls may be open, ``most_cells`` where the frames have to end, ``last`` the cell that was
+    written last through a reference.
 
     When the machine stops, ``request`` is why, and ``completion`` takes the reply. ``reader`` is
     there while a condition is evaluated, which does not stop.
@@ -44,6 +45,7 @@ class State:
         "last",
         "left",
         "most_calls",
+        "most_cells",
         "reader",
         "request",
         "serial",
@@ -52,15 +54,18 @@ class State:
         "statement",
     )
 
-    def __init__(self, cells: list[Raw | None], most_calls: int) -> None:
+    def __init__(
+        self, cells: list[Raw | None], most_calls: int, first: int, most_cells: int
+    ) -> None:
         self.cells = cells
         #: Values, references as addresses, views as an address and sizes; ``None`` is an argument
         #: that was left out.
         self.stack: list[Any] = []
         self.calls: list[Call] = []
         self.most_calls = most_calls
+        self.most_cells = most_cells
         self.code = 0
-        self.fp = 0
+        self.fp = first
         self.base = 0
         self.statement = -1
         self.serial = 0

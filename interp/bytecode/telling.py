@@ -10,6 +10,7 @@ from grammar.types import Array, Type
 from interp.bytecode.cells import array_at, offset_of, path_to, shown, value_at
 from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
 from interp.bytecode.state import State
+from interp.inspection import Seen
 from interp.requests import Path
 from interp.values import Value
 
@@ -112,18 +113,40 @@ class Names:
             return None
         return shown(part[1]), value_at(self._state.cells, place[1] + part[0], part[1])
 
+    def look(self, text: str) -> Seen | None:
+        """The same with what a debugger wants to know besides; see `interp.inspection`."""
+        found = self.find(text)
+        if found is None:
+            return None
+        root = str(_STEP.findall(text.upper())[0])
+        number = None if self._slot(root) else self._number(root)
+        if number is None:
+            return Seen(*found, "")
+        data = self._program.data[number]
+        return Seen(*found, f"{data.module.upper()}.{data.name.upper()}")
+
     def _variable(self, name: str) -> tuple[Type, int | None] | None:
-        for slot in self.slots(self._state.code):
-            if slot.variable.name.upper() == name:
-                return self.referred(slot)
+        slot = self._slot(name)
+        if slot is not None:
+            return self.referred(slot)
+        number = self._number(name)
+        if number is None:
+            return None
+        variable = self._program.data[number]
+        return self._program.types[variable.type], self._program.addresses[number]
+
+    def _slot(self, name: str) -> Slot | None:
+        """The parameter or local of a name."""
+        slots = self.slots(self._state.code)
+        return next((one for one in slots if one.variable.name.upper() == name), None)
+
+    def _number(self, name: str) -> int | None:
+        """The variable of the data lists that a name means here."""
         module = PurePosixPath(self._program.codes[self._state.code].file).stem.upper()
         numbers = self._by_name.get(name, ())
         own = [n for n in numbers if self._program.data[n].module.upper() == module]
         seen = own or [n for n in numbers if self._program.data[n].is_global]
-        if not seen:
-            return None
-        variable = self._program.data[seen[0]]
-        return self._program.types[variable.type], self._program.addresses[seen[0]]
+        return seen[0] if seen else None
 
     def _part(
         self, name: str, whole: Type, start: int, address: int, type_: Type, dimensions: int

@@ -33,7 +33,7 @@ class Threads:
         self._program = program
         self._hooks = hooks
         self._bodies: dict[int, list[Operation]] = {}
-        self.frames = [program.frame_size(code) for code in program.codes]
+        self.frames = program.frames
         self.entries: list[Operation] = [self._stub(n) for n in range(len(program.codes))]
         owners = frozenset(code.owner for code in program.codes if code.captures)
         kit = Kit(program, state, hooks, self.entries, self.frames, owners)

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from interp.builtins import Randomness
-from interp.bytecode.cells import Raw, kind_at, raw_of_word
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cells import Raw
 from interp.bytecode.counting import Guard
 from interp.bytecode.isa import MAX_CELLS
 from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
@@ -26,6 +27,7 @@ from interp.bytecode.verify import Verified
 from interp.events import Sink
 from interp.executor import Reader
 from interp.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.inspection import Seen
 from interp.program import Limits
 from interp.requests import Code, Crash, End, Fail, Request, Value, Write
 
@@ -47,39 +49,73 @@ class _Open:
 
 @dataclass(frozen=True, slots=True)
 class _Entered:
-    """What was interrupted by `Machine.enter`, and how many calls were open then."""
+    """What was interrupted by `Machine.enter`, and how many calls were open then.
+
+    ``final`` is the end of the program where it has ended: the arm may still be on its way.
+    """
 
     calls: int
     open: _Open
     guard: Guard
+    final: Request | None
 
 
 class Machine:
-    """Runs a verified program from a routine without parameters on."""
+    """Runs a verified program from a routine without parameters on.
+
+    It is told by its name, or by the number of its code object. ``beside`` is a machine of the same
+    program whose data lists it shares: their cells come first in one list, then the frames of each
+    machine in a range of their own. Raises `LinkError` where the program cannot begin with it.
+    """
 
     def __init__(
         self,
         verified: Verified,
-        routine: str,
+        routine: str | int,
         limits: Limits | None = None,
         sink: Sink | None = None,
         random: Callable[[], float] | None = None,
+        *,
+        beside: Machine | None = None,
     ) -> None:
         program = verified.program
-        limits = limits or Limits()
+        self._verified = verified
+        self._limits = limits = limits or Limits()
+        self._random = random or Randomness()
         self._program = program
-        self._state = State(_initial_cells(program), limits.depth)
-        self._services = Services(program, self._state, limits, sink, random or Randomness())
+        self._together: list[Machine] = [] if beside is None else beside._together
+        self._state = self._made_state(program, limits)
+        self._together.append(self)
+        self._services = Services(program, self._state, limits, sink, self._random)
         self._services.leave_action, self._services.finish = self._leave_action, self._finish
-        self._threads = Threads(program, self._state, self._services)
+        self._threads = self._made_ready(program)
         self._entered: list[_Entered] = []
         self._final: Request | None = None
-        number = _routine(program, routine)
-        state = self._state
-        state.code, state.fp = number, len(state.cells)
-        state.cells += [None] * self._threads.frames[number]
-        state.serials = state.serial = 1
+        number = _routine(program, routine.upper() if isinstance(routine, str) else routine)
+        self._begin(number)
         self._open = _Open(self._threads.entries[number])
+
+    # ----------------------------------------------------------------------- what it is made of
+
+    def _made_state(self, program: Program, limits: Limits) -> State:
+        """The cells; ``self._together`` are the machines that have the data lists already."""
+        count, data = len(self._together), program.addresses[-1]
+        if count == 0:
+            return State(list(program.cells), limits.depth, data, MAX_CELLS)
+        cells = self._together[0]._state.cells
+        first = count * MAX_CELLS
+        cells += [None] * (first - len(cells))
+        return State(cells, limits.depth, first, first + MAX_CELLS - data)
+
+    def _made_ready(self, program: Program) -> Threads:
+        return Threads(program, self._state, self._services)
+
+    def _begin(self, number: int) -> None:
+        """Make the first frame."""
+        state = self._state
+        state.code, first, frame = number, state.fp, self._threads.frames[number]
+        state.cells[first : first + frame] = [None] * frame
+        state.serials = state.serial = 1
 
     # ----------------------------------------------------------------------- the port
 
@@ -124,7 +160,8 @@ class Machine:
             before = _Open(None, before.request, before.completion)
         number, serial = self._parts_of(code, CodeKind.ACTION)
         self._push_frame(number, serial, self._threads.entries[number])
-        self._entered.append(_Entered(len(state.calls), before, counter.guard))
+        self._entered.append(_Entered(len(state.calls), before, counter.guard, self._final))
+        self._final = None
         self._services.entered += 1
         state.most_calls += 1
         counter.guard = Guard.OFF
@@ -157,12 +194,34 @@ class Machine:
             while len(state.calls) > calls:
                 self._pop_frame()
 
+    def companion(self, routine: str, sink: Sink | None = None) -> Machine:
+        """Another machine over the same data lists; see `interp.executor.Executor`."""
+        return type(self)(
+            self._verified, routine, self._limits, sink, self._random, beside=self._together[0]
+        )
+
     def unwind(self, depth: int) -> None:
         """Leave all routines deeper than ``depth``, and what was entered there [INT-10]."""
         while self.depth > depth or self._is_in_action():
             self._leave_frame()
         self._services.counter.guard = Guard.OFF
         self._open = _Open(self._behind_statement())
+
+    def look(self, text: str) -> Seen | None:
+        """A variable where the program is; see `interp.inspection`."""
+        return self._services.look(text)
+
+    def select(self, line: int) -> None:
+        """Go on at a line of the routine that runs; see `interp.inspection`."""
+        state = self._state
+        instructions = self._program.codes[state.code].instructions
+        for place, one in enumerate(instructions):
+            if one.op is Op.LINE and one.operands[0] == line:
+                del state.stack[state.base :]
+                self._services.counter.guard = Guard.OFF
+                self._open = _Open(self._threads.body(state.code)[place])
+                return
+        raise ValueError(f"no statement begins in line {line}")
 
     # ----------------------------------------------------------------------- running
 
@@ -221,7 +280,7 @@ class Machine:
         self._pop_frame()
         entered = self._forget_entered()
         self._services.counter.guard = entered.guard
-        self._open = entered.open
+        self._open, self._final = entered.open, entered.final
 
     def _finish(self) -> None:
         """The routine that the program began with has ended."""
@@ -236,20 +295,27 @@ class Machine:
 
     def _push_frame(self, number: int, serial: int, after: Operation) -> None:
         """Make a frame for an action or a condition; faults `stack`."""
-        state, frames, code = self._state, self._threads.frames, self._program.codes[number]
+        state, frames = self._state, self._threads.frames
         first = state.fp + frames[state.code]
-        if first + frames[number] > MAX_CELLS:
+        if first + frames[number] > state.most_cells:
             raise fault("stack")
-        found: list[Any] = []
-        owner = self._frame_of(serial) if code.captures else None
-        if owner is not None:
-            for parameter, place in zip(code.parameters, code.captures, strict=True):
-                found += self._captured(number, parameter, owner, place)
+        found = self._captures(number, serial)
         found += [None] * (frames[number] - len(found))
         state.cells[first : first + frames[number]] = found
         state.calls.append((after, state.code, state.fp, state.base, state.statement, state.serial))
         state.code, state.fp, state.base = number, first, len(state.stack)
         state.statement, state.serial = -1, 0
+
+    def _captures(self, number: int, serial: int) -> list[Any]:
+        """The parameters of an action or condition; none where the owner's frame has gone."""
+        code = self._program.codes[number]
+        owner = self._frame_of(serial) if code.captures else None
+        if owner is None:
+            return []
+        found: list[Any] = []
+        for parameter, place in zip(code.parameters, code.captures, strict=True):
+            found += self._captured(number, parameter, owner, place)
+        return found
 
     def _captured(self, number: int, parameter: Parameter, owner: int, place: int) -> list[Any]:
         """The reference or view that a parameter is, from the variable of the owner's frame."""
@@ -284,21 +350,12 @@ def _given(completion: Completion, reply: Value | Fault | None) -> Operation:
     return operation
 
 
-def _routine(program: Program, name: str) -> int:
+def _routine(program: Program, routine: str | int) -> int:
     """The number of the first routine of a name; raises `LinkError` where it cannot begin."""
     for number, code in enumerate(program.codes):
-        if code.kind is CodeKind.ROUTINE and code.name.upper() == name.upper():
-            if code.parameters:
-                raise LinkError(f"{name} has parameters, so a program cannot begin with it")
-            return number
-    raise LinkError(f"there is no routine {name}")
-
-
-def _initial_cells(program: Program) -> list[Raw | None]:
-    cells: list[Raw | None] = [None] * program.addresses[-1]
-    for address, word in program.initial:
-        number = program.data_at(address)
-        assert number is not None, "verified"
-        type_ = program.types[program.data[number].type]
-        cells[address] = raw_of_word(word, kind_at(type_, address - program.addresses[number]))
-    return cells
+        if routine not in (number, code.name.upper()) or code.kind is not CodeKind.ROUTINE:
+            continue
+        if code.parameters:
+            raise LinkError(f"{code.name} has parameters, so a program cannot begin with it")
+        return number
+    raise LinkError(f"there is no routine {routine}")

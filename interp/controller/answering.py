@@ -12,9 +12,10 @@ from typing import Any
 
 from interp.controller.clock import microseconds
 from interp.controller.entering import Entering
-from interp.controller.messages import message_fault, own_fault
+from interp.controller.messages import own_fault
 from interp.controller.routines import Routines
 from interp.controller.tasks import Blocked, Task
+from interp.controller.world import Setup
 from interp.faults import Fault, fault
 from interp.requests import (
     BrakeArm,
@@ -26,7 +27,6 @@ from interp.requests import (
     Move,
     MoveEmily,
     MoveSpline,
-    Path,
     Poll,
     Read,
     Request,
@@ -37,10 +37,10 @@ from interp.requests import (
     StopAdvance,
     SwitchInterrupt,
     SwitchSignal,
-    Value,
     Wait,
     Write,
 )
+from interp.robot.core import ControlCore
 from interp.values import StructureValue, set_text
 
 __all__ = ["Answering"]
@@ -49,8 +49,8 @@ __all__ = ["Answering"]
 class Answering(Entering):
     """A controller that answers."""
 
-    def __init__(self, core: Any, **given: Any) -> None:
-        super().__init__(core, **given)
+    def __init__(self, core: ControlCore, setup: Setup) -> None:
+        super().__init__(core, setup)
         self.routines = Routines(self)
 
     def answer(self, task: Task, request: Request) -> Any:
@@ -58,6 +58,7 @@ class Answering(Entering):
         spared = task.spared
         if spared is not None and (request.at.file, request.at.line) != spared:
             task.spared = None
+        task.last_at = request.at
         self.acting = task.name, request.at
         try:
             return _ANSWERS[type(request)](self, task, request)
@@ -175,11 +176,12 @@ class Answering(Entering):
 
     def _poll(self, task: Task, request: Poll) -> Any:
         if request.is_first:
+            task.polling = None
             return self.when_reached(task, request, lambda: None)
-        if not task.is_polling:
-            task.is_polling = True
+        if task.polling != request.at:
+            task.polling = request.at
             self.trace.tell(task.name, "wait", request.at)
-        return self.wait_until(request, self.clock.next_tick, lambda: None)
+        return self.wait_until(request, self.next_slice(task), lambda: None)
 
     def _slice(self, task: Task, request: Slice) -> Any:
         return self.wait_until(request, self.next_slice(task), lambda: None)
@@ -204,7 +206,7 @@ class Answering(Entering):
                 self.submit_state = "P_STOP"
             return Blocked(request, lambda: not task.is_halted, lambda: None)
 
-        if task.name == "submit" or task.spared is not None:
+        if task.name == "submit":
             return halt()
         self.core.release(self.clock.now)
         self.hold_up()

@@ -12,6 +12,7 @@ from interp.controller.interrupts import Interrupt
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.moving import Call, Moving
 from interp.controller.tasks import ALWAYS, Blocked, Level, LevelKind, Task
+from interp.controller.world import Setup
 from interp.faults import Fault
 from interp.requests import (
     BrakeArm,
@@ -26,6 +27,7 @@ from interp.requests import (
     Value,
 )
 from interp.robot.commands import CallCommand
+from interp.robot.core import ControlCore
 
 __all__ = ["Entering"]
 
@@ -41,8 +43,8 @@ _SIGNAL_LIMITS: Final = {
 class Entering(Moving):
     """A controller that interrupts programs."""
 
-    def __init__(self, core: Any, **given: Any) -> None:
-        super().__init__(core, **given)
+    def __init__(self, core: ControlCore, setup: Setup) -> None:
+        super().__init__(core, setup)
         self._cyclic_flags: dict[int, tuple[Task, Code]] = {}
 
     # ---------------------------------------------------------------------- levels
@@ -189,7 +191,10 @@ class Entering(Moving):
         level.stand = self.where()[0]
 
     def resume(self, task: Task, request: Resume) -> Any:
-        """RESUME: back to the declaring level, behind its call [INT-10, INT-11]. Raises `Fault`."""
+        """RESUME: back to the declaring level, behind its call [INT-10, INT-11]. Raises `Fault`.
+
+        Motions of the routine itself are travelled first (unconfirmed).
+        """
         level = task.level
         if level is None or level.interrupt is None:
             raise own_fault("resume_place")
@@ -198,6 +203,16 @@ class Entering(Moving):
         target = level.interrupt.depth
         if level.depth <= target:
             raise own_fault("resume_level")
+        self.core.release(self.clock.now)
+        if not level.motions:
+            return self._resume(task, request, target)
+        self.trace.tell(task.name, "advance_stop", request.at)
+        self.hold_up()
+        return Blocked(
+            request, lambda: not level.motions, lambda: self._resume(task, request, target)
+        )
+
+    def _resume(self, task: Task, request: Resume, target: int) -> Any:
         self.trace.tell(task.name, "resume", request.at, depth=target)
         while task.levels and task.levels[-1].depth >= target:
             self._pop(task)
@@ -210,7 +225,6 @@ class Entering(Moving):
         self.has_stopped = False
         self.core.discard(self.clock.now)
         self.fired.clear()
-        self.is_resumed = True
         return Blocked(request, lambda: not is_moving or self._stands, lambda: None)
 
     # ---------------------------------------------------------------------- what is cyclic

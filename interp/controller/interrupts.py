@@ -95,7 +95,12 @@ class Interrupts:
                     one.state, one.has_come = "off", False
 
     def forget(self, depth: int) -> None:
-        """A routine of this depth has ended: what it declared is gone, unless global [INT-04]."""
+        """A routine of this depth has ended: what it declared is gone, unless global [INT-04].
+
+        Not so for the first one: the arm is still on its way when the advance run is at its end.
+        """
+        if depth == 0:
+            return
         self._by_number = {
             number: one
             for number, one in self._by_number.items()

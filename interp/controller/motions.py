@@ -49,9 +49,12 @@ def target_of(value: Value) -> Target:
     """The components of a position that have a value."""
     if not isinstance(value, StructureValue):
         raise own_fault("motion_kind")
-    numbers: list[Any] = value.members
-    pairs = zip(value.type.members, numbers, strict=True)
-    return {member.name.upper(): float(one) for member, one in pairs if one is not None}
+    members: list[Any] = value.members
+    return {
+        member.name.upper(): float(number)
+        for member, number in zip(value.type.members, members, strict=True)
+        if number is not None
+    }
 
 
 def is_complete(target: Target) -> bool:
@@ -75,12 +78,18 @@ def _word(value: Any) -> str:
 
 
 def _numbers(value: Any, default: float) -> tuple[float, ...]:
-    found = list(value) if isinstance(value, ArrayValue) else []
+    found: list[Any] = list(value) if isinstance(value, ArrayValue) else []
     return tuple(float(default if one is None else one) for one in found)
 
 
 def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
     return float(velocity.get(name) or 0.0), float(acceleration.get(name) or 0.0)
+
+
+def _begins_completely(block: MoveSpline) -> bool:
+    """Whether a block may be the first motion: its first segment is a complete SPTP."""
+    first = next((item for item in block.items if isinstance(item, Move)), None)
+    return first is not None and first.kind == "SPTP" and is_complete(target_of(first.target))
 
 
 class MotionBuilder:
@@ -133,7 +142,7 @@ class MotionBuilder:
 
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> Built:
         """A spline block. Raises `Fault`."""
-        if self._number == 0:
+        if self._number == 0 and not _begins_completely(request):
             raise message_fault(1443)
         snapshot = self._variables.snapshot(request.values)
         built = Built(Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot)
@@ -225,6 +234,7 @@ class MotionBuilder:
             _word(values["$ORI_TYPE"]),
             _word(values["$CIRC_TYPE"]),
             self._is_reduced(),
+            _word(self._variables.read(("$CP_VEL_TYPE",))),
         )
 
     def _places(self, built: Built, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:

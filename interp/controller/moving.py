@@ -10,17 +10,17 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Protocol, runtime_checkable
 
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.motions import Built, MotionBuilder
 from interp.controller.tasks import Task
 from interp.controller.trace import path_text
-from interp.controller.world import World
+from interp.controller.world import Setup, World
 from interp.faults import Fault
-from interp.requests import At, Code, Move, MoveSpline, Path, SetTrigger, Value
 from interp.rendering import to_json
-from interp.robot.arm import Place
+from interp.requests import At, Code, Move, MoveSpline, Path, SetTrigger, Value
+from interp.robot.arm import Place, Position
 from interp.robot.commands import (
     CallCommand,
     CoreEvent,
@@ -28,8 +28,9 @@ from interp.robot.commands import (
     OutputCommand,
     Transaction,
 )
+from interp.robot.core import ControlCore
 
-__all__ = ["Call", "Moving"]
+__all__ = ["Call", "Moving", "PlannedPoint"]
 
 #: What triggers that call a routine may have as PRIO [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
@@ -52,19 +53,40 @@ class Call:
 
 @dataclass(slots=True, eq=False)
 class _Way:
-    """A motion on its way. ``is_held_up`` once something has stopped the advance run behind it."""
+    """A motion on its way, and where it leads, if the arm tells that.
+
+    ``is_held_up`` once something has stopped the advance run behind it.
+    """
 
     built: Built
     task: Task
+    target: Position | None
     is_held_up: bool = False
-    is_coinciding: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedPoint:
+    """A motion as it was planned, and where it leads, if the arm tells that."""
+
+    number: int
+    kind: str
+    at: At
+    position: Position | None
+    is_blended: bool
+
+
+@runtime_checkable
+class _Aiming(Protocol):
+    """An arm that knows where the motion planned last leads."""
+
+    def target(self) -> Position: ...
 
 
 class Moving(World):
     """A controller's motions."""
 
-    def __init__(self, core: Any, **given: Any) -> None:
-        super().__init__(core, **given)
+    def __init__(self, core: ControlCore, setup: Setup) -> None:
+        super().__init__(core, setup)
         self.builder = MotionBuilder(self.variables, self.robroot, lambda: self.mode == "T1")
         self._ways: dict[int, _Way] = {}
         self._outputs: dict[OutputCommand, SetTrigger] = {}
@@ -77,7 +99,12 @@ class Moving(World):
         #: Calls of triggers that have fired and were not entered yet.
         self.fired: list[CallCommand] = []
         self.has_stopped = False
-        self.is_resumed = False
+        #: Every motion that was planned, in order.
+        self.points: list[PlannedPoint] = []
+        #: Where the motion stands in the program that started last.
+        self.running: At | None = None
+        #: How much has happened, so that one can see whether anything did.
+        self.count = 0
         self.stops: list[tuple[Task, Any]] = []
 
     # ---------------------------------------------------------------------------- planning
@@ -90,15 +117,8 @@ class Moving(World):
                 raise own_fault("spline_place")
             built = self.builder.block(request, triggers)
         else:
-            if self.is_resumed and request.kind == "CIRC":  # [INT-14]
-                request = Move(
-                    *(request.at, "LIN", request.target, None, None, request.values),
-                    request.criteria,
-                    request.reference,
-                )
             built = self.builder.build(request, triggers)
         self.load(task, built)
-        self.is_resumed = False
         return built
 
     def load(self, task: Task, built: Built) -> None:
@@ -115,7 +135,12 @@ class Moving(World):
             raise
         self._outputs |= outputs
         self._calls |= calls
-        self._ways[motion.number] = _Way(built, task)
+        arm = self.core.arm
+        target = arm.target() if isinstance(arm, _Aiming) else None
+        self._ways[motion.number] = _Way(built, task, target)
+        self.points.append(
+            PlannedPoint(motion.number, motion.kind, motion.at, target, bool(motion.criteria))
+        )
         if task.level is not None:
             task.level.motions.add(motion.number)
             task.level.has_moved = True
@@ -123,6 +148,9 @@ class Moving(World):
         self.trace.tell(
             task.name, "motion_planned", motion.at, motion=motion.number, motion_kind=kind
         )
+        for number in command.notices:
+            self.say_number(motion.at, number)
+        self.collect()
 
     def _link(
         self,
@@ -203,7 +231,13 @@ class Moving(World):
         else:
             super()._signal_changed(name, place, value)
 
-    def happened(self, event: CoreEvent) -> None:
+    def collect(self) -> None:
+        """Take what the arm and the core have done up to now."""
+        for event in self.core.run_until(self.clock.now):
+            self.count += 1
+            self._happened(event)
+
+    def _happened(self, event: CoreEvent) -> None:
         """Something that the core tells."""
         command = event.command
         if isinstance(command, MotionCommand):
@@ -229,14 +263,22 @@ class Moving(World):
             self.trace.tell(task.name, _KINDS[event.what], motion.at, **fields)
         match event.what:
             case "started":
-                self.variables.main = way.built.snapshot
-                self.positions.keep("BACK")
+                self._begins(way)
             case "reached" if event.key in way.built.stops:
                 self.stops.append((task, way.built.stops[event.key]))
             case "ended":
                 self._ended(event, way)
             case "cancelled" | "failed":
                 self._gone(number, task)
+
+    def _begins(self, way: _Way) -> None:
+        self.variables.main = way.built.snapshot
+        self.running = way.built.motion.at
+        self.positions.keep("BACK")
+        if way.target is not None:
+            self.positions.keep("FOR", (way.target.axes, way.target.flange))
+        if self.following is not None:
+            self.following.placed(self.clock.now, way.built.motion.settings.placement)
 
     def _ended(self, event: CoreEvent, way: _Way) -> None:
         motion, task = way.built.motion, way.task

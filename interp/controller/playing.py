@@ -43,7 +43,7 @@ class Stage(Protocol):
     def press(self, button: str, number: int | None) -> None:
         """The operator presses a button."""
 
-    def answer(self, button: int) -> None:
+    def choose(self, button: int) -> None:
         """The operator answers the oldest dialogue."""
 
     def receive(self, channel: str, text: str) -> None:
@@ -67,10 +67,11 @@ class Player:
         self._steps: dict[Cause, list[Step]] = defaultdict(list)
         self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
         self._held: dict[Becomes, bool] = {}
+        self._ahead: list[Step] = []
         for step in script.steps:
             self._check(step)
             if isinstance(step.cause, At):
-                agenda.add(step.cause.time + step.delay, partial(self._do, step))
+                self._coming(step.cause.time + step.delay, step)
             else:
                 self._steps[step.cause].append(step)
         for cause in self._steps:
@@ -109,11 +110,33 @@ class Player:
 
     def _happened(self, cause: Cause) -> None:
         for step in self._steps.get(cause, ()):
-            self._agenda.add(self._clock.now + step.delay, partial(self._do, step))
+            self._coming(self._clock.now + step.delay, step)
+
+    def _coming(self, time: int, step: Step) -> None:
+        self._ahead.append(step)
+        self._agenda.add(time, partial(self._do, step))
+
+    def awaits(self, button: str) -> bool:
+        """Whether a step that presses a button is still to come, or may come.
+
+        Once the program has halted, another HALT cannot be what causes it.
+        """
+        may_come = [
+            step
+            for cause, steps in self._steps.items()
+            if not isinstance(cause, Halted)
+            for step in steps
+        ]
+        return any(
+            isinstance(action, Press) and action.button == button
+            for step in (*self._ahead, *may_come)
+            for action in step.actions
+        )
 
     # ------------------------------------------------------------------------- what is done
 
     def _do(self, step: Step) -> None:
+        self._ahead.remove(step)
         for action in step.actions:
             match action:
                 case Assign(path, value):
@@ -124,7 +147,7 @@ class Player:
                 case Press(button, number):
                     self._stage.press(button, number)
                 case Answer(button):
-                    self._stage.answer(button)
+                    self._stage.choose(button)
                 case Send(channel, text):
                     self._stage.receive(channel, text)
 

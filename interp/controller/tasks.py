@@ -70,7 +70,8 @@ class Task:
     """One program with its interrupts, which are its own [INT-17].
 
     ``spared`` is the line whose requests do not stop the advance run, behind a CONTINUE. ``spent``
-    are the requests since the tick ``spent_at``. ``triggers`` wait for the next motion.
+    are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the next motion.
+    ``polling`` is where a WAIT FOR waits, ``last_at`` where the last request came from.
     """
 
     name: TaskName
@@ -82,7 +83,9 @@ class Task:
     reply: Any = None
     spared: tuple[str, int] | None = None
     spent: int = 0
-    spent_at: int = -1
+    slice_end: int = -1
+    polling: At | None = None
+    last_at: At = field(default_factory=lambda: At("", 0, 0))
     triggers: list[SetTrigger] = field(default_factory=list)
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
     is_over: bool = False
@@ -92,6 +95,11 @@ class Task:
     def level(self) -> Level | None:
         """What runs on top of the program, if anything does."""
         return self.levels[-1] if self.levels else None
+
+    @property
+    def routine(self) -> str:
+        """The name of the routine that runs; "" for the one the program began with."""
+        return "" if self.sink is None else self.sink.routine(self.executor.depth)
 
     @property
     def priority(self) -> int:

@@ -2,7 +2,8 @@
 
 A timer counts milliseconds in steps of the interpolation cycle [TIM-05]. At the start all of them
 stand at 0 with their flags FALSE [TIM-02]; a flag follows its timer from the moment on that this is
-started or given a value: TRUE at zero and above [TIM-03, TIM-04].
+started or given a value: TRUE at zero and above [TIM-03]. Programs write flags as well; that holds
+until the timer passes zero from below, or is given a value [TIM-04] (unconfirmed).
 """
 
 from __future__ import annotations
@@ -20,11 +21,16 @@ __all__ = ["Timers", "date_members"]
 
 @dataclass(slots=True)
 class _Timer:
-    """``base`` is its value in ms at ``since``, the tick in µs at which it was started or set."""
+    """``base`` is its value in ms at ``since``, the tick in µs at which it was started or set.
+
+    ``flag`` is what its flag was made, if it does not follow the value; ``was_below`` whether the
+    value was negative then.
+    """
 
     base: int = 0
     since: int | None = None
-    was_used: bool = False
+    flag: bool | None = False
+    was_below: bool = False
 
 
 class Timers:
@@ -42,25 +48,30 @@ class Timers:
                 return self._value(timer)
             case "$TIMER_STOP":
                 return timer.since is None
-        return timer.was_used and self._value(timer) >= 0
+        is_reached = self._value(timer) >= 0
+        if timer.flag is None or (timer.was_below and is_reached):
+            timer.flag = None
+            return is_reached
+        return timer.flag
 
     def write(self, path: Path, value: Value) -> None:
-        """Set, start or stop a timer; a flag cannot be written (`read_only`)."""
+        """Set, start or stop a timer, or set its flag; faults `index`, `inadmissible`."""
         timer = self._timer(path)
         tick = self._clock.tick
         match path[0], value:
-            case "$TIMER", int():
+            case "$TIMER", int() if not isinstance(value, bool):
                 timer.base = value
                 timer.since = None if timer.since is None else tick
+                timer.flag = None
             case "$TIMER_STOP", bool():
                 timer.base = self._value(timer)
                 timer.since = None if value else tick
-            case "$TIMER_FLAG", _:
-                raise fault("read_only")
+                if not value and timer.flag is False and timer.base == 0:
+                    timer.flag = None
+            case "$TIMER_FLAG", bool():
+                timer.flag, timer.was_below = value, self._value(timer) < 0
             case _:
                 raise fault("inadmissible")
-        if value is not True:
-            timer.was_used = True
 
     def _value(self, timer: _Timer) -> int:
         if timer.since is None:

@@ -103,6 +103,11 @@ class TaskSink:
         self.task: Task = task
         self.left: Callable[[int], None] | None = None
         self._trace = trace
+        self._names: dict[int, str] = {}
+
+    def routine(self, depth: int) -> str:
+        """The name of the routine called last to this depth."""
+        return self._names.get(depth, "")
 
     def line(self, at: At) -> None:
         """A statement begins."""
@@ -116,6 +121,7 @@ class TaskSink:
 
     def call(self, at: At, name: str) -> None:
         """A routine is called."""
+        self._names[at.depth + 1] = name
         self._trace.tell(self.task, "call", at, name=name)
 
     def leave(self, at: At, name: str) -> None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from math import prod
 from typing import Any, Final, Protocol
 
 from grammar.predefined import System, Variable
@@ -117,6 +118,11 @@ class Variables:
         if name in _SIZES:
             sizes = (self._profile.sizes[_SIZES[name]],)
         return Array(type_.element, sizes)
+
+    def size(self, name: str) -> int:
+        """How many elements a variable has, 1 where it is no array."""
+        type_ = self.type_of(name)
+        return prod(size or 1 for size in type_.sizes) if isinstance(type_, Array) else 1
 
     # ------------------------------------------------------------------------------- the values
 

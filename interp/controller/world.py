@@ -6,6 +6,7 @@ It is the stage on which a script plays, and it tells the trace what changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from grammar.predefined import System
@@ -25,46 +26,49 @@ from interp.controller.trace import Trace
 from interp.controller.variables import Computed, Variables
 from interp.requests import At, Path, Value
 from interp.robot.core import ControlCore
+from interp.robot.following import Following
 from interp.robot.frames import IDENTITY, Pose
 from interp.robot.machine import Machine
 from interp.robot.placement import Placement
 from interp.values import EnumValue, StructureValue, constant, empty, single
 
-__all__ = ["World"]
+__all__ = ["Setup", "World"]
 
 _SIGNAL_KINDS: Final = {"$IN": "in", "$ANIN": "in", "$OUT": "out", "$ANOUT": "anout"}
 
 
-class World:
-    """The state around programs.
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What a controller is set up with.
 
     ``machine`` is that of the arm, for Status and Turn; ``values`` are those that data lists give
-    system variables at first; ``measured`` gives where the arm really is, by default where it
-    should be.
+    system variables at first; ``following`` sends the set-points to a robot, and knows where that
+    really is.
     """
 
-    def __init__(
-        self,
-        core: ControlCore,
-        *,
-        profile: Profile,
-        script: Script,
-        trace: Trace,
-        machine: Machine | None = None,
-        values: Mapping[str, Value] | None = None,
-        measured: Callable[[], tuple[float, ...]] | None = None,
-    ) -> None:
+    profile: Profile
+    script: Script
+    trace: Trace
+    machine: Machine | None = None
+    values: Mapping[str, Value] = field(default_factory=dict)
+    following: Following | None = None
+
+
+class World:
+    """The state around programs; ``core`` moves the arm. Raises `ScriptError`."""
+
+    def __init__(self, core: ControlCore, setup: Setup) -> None:
         self.core = core
-        self.profile = profile
-        self.trace = trace
-        self.machine = machine
+        self.profile = profile = setup.profile
+        self.trace = setup.trace
+        self.machine = setup.machine
         self.clock = Clock(profile.cycle)
         self.agenda = Agenda()
         self.board = Board()
-        self.variables = Variables(profile, values)
+        self.variables = Variables(profile, setup.values)
         self.signals = Signals(profile, self.clock, self.agenda, self._signal_changed)
         self.timers = Timers(self.clock, profile.sizes["timers"])
-        self._measured = measured
+        self.following = setup.following
         #: Whose doing it is what changes now.
         self.acting: tuple[TaskName, At | None] = ("robot", None)
         self.state = "P_RESET"
@@ -72,10 +76,10 @@ class World:
         self.is_coinciding = False
         self._connect()
         self.positions = Positions(
-            self.variables, machine, self.where, self._where_measured, self.placement
+            self.variables, setup.machine, self.where, self._where_measured, self.placement
         )
         self.channels = Channels(self.clock, self._sent)
-        self.player = Player(script, self.variables, self.clock, self.agenda, self)
+        self.player = Player(setup.script, self.variables, self.clock, self.agenda, self)
 
     # ------------------------------------------------------------------- computed variables
 
@@ -138,10 +142,9 @@ class World:
         return position.axes, position.flange
 
     def _where_measured(self) -> Where:
-        where = self.where()
-        if self._measured is None or self.machine is None:
-            return where
-        axes = self._measured()
+        if self.following is None or self.machine is None:
+            return self.where()
+        axes = self.following.measured(self.clock.now)
         return axes, self.positions.flange(axes)
 
     def robroot(self) -> Pose:
@@ -154,6 +157,10 @@ class World:
     def placement(self) -> Placement:
         """The frames of the motion in the main run."""
         return placement_of(self.variables.main, self.robroot())
+
+    def advance_placement(self) -> Placement:
+        """The frames as the advance run has them."""
+        return placement_of(self.variables.snapshot(), self.robroot())
 
     # ------------------------------------------------------------------------- what changes
 
@@ -208,7 +215,7 @@ class World:
         found = System.load().message(number)
         self.say("robot", at, number, "" if found is None else found.text, kind)
 
-    def answer(self, button: int) -> None:
+    def choose(self, button: int) -> None:
         """The operator answers the oldest dialogue."""
         dialogues = self.board.dialogues()
         if dialogues:

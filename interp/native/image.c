@@ -295,7 +295,7 @@ static int32_t add_input(struct reader *reader, struct krl_handed handed)
 
 static struct krl_part read_part(struct reader *reader, int depth)
 {
-    struct krl_part part = {KRL_PART_OTHER, 0, 0, {NULL, 0}, 0};
+    struct krl_part part = {KRL_PART_OTHER, 0, {KRL_BY_VALUE, 0, 0}, {NULL, 0}, 0};
     if (depth > DEEPEST) {
         wrong(reader, "the image is damaged: parts lie too deep");
         return part;
@@ -313,28 +313,25 @@ static struct krl_part read_part(struct reader *reader, int depth)
         break;
     case CHOICE:
         part.kind = KRL_PART_CHOICE;
-        part.type = type_number(reader);
+        part.handed.type = type_number(reader);
         part.place = (int32_t)choice(reader, KRL_MAX_CELLS);
         break;
-    case INPUT: {
-        struct krl_handed handed = handed_over(reader);
+    case INPUT:
         part.kind = KRL_PART_INPUT;
-        part.type = handed.type;
-        part.place = add_input(reader, handed);
+        part.handed = handed_over(reader);
+        part.place = add_input(reader, part.handed);
         break;
-    }
     case CHANGED: {
-        struct krl_handed handed = handed_over(reader);
+        part.handed = handed_over(reader);
         word(reader);
         int32_t count = list(reader);
         for (int32_t i = 0; i < count && !reader->is_wrong; i++)
             read_part(reader, depth + 1);
-        if (handed.mode == KRL_BY_VALUE)
+        if (part.handed.mode == KRL_BY_VALUE)
             wrong(reader, "what changes is handed over by reference");
         part.kind = KRL_PART_CHANGED;
-        part.type = handed.type;
         part.has_path = count > 0;
-        part.place = add_input(reader, handed);
+        part.place = add_input(reader, part.handed);
         break;
     }
     case ITEMS:
@@ -559,7 +556,7 @@ static void read_codes(struct reader *reader)
 
 /* ---------------------------------------------------------------------------- all of it */
 
-static uint32_t crc32(const uint8_t *bytes, size_t length)
+uint32_t krl_checksum(const uint8_t *bytes, size_t length)
 {
     uint32_t crc = 0xffffffff;
     for (size_t i = 0; i < length; i++) {
@@ -581,7 +578,7 @@ static int open_sections(struct section *sections, const uint8_t *image, size_t 
         return krl_refuse(why, "the image has a format that is not known");
     if (word_at(image + 8) != length || word_at(image + 16) != SECTIONS)
         return krl_refuse(why, "the image has another length than it says, or other sections");
-    if (word_at(image + 12) != crc32(image + 16, length - 16))
+    if (word_at(image + 12) != krl_checksum(image + 16, length - 16))
         return krl_refuse(why, "the image is damaged: its checksum is wrong");
     for (int i = 0; i < SECTIONS; i++) {
         const uint8_t *row = image + 20 + 8 * i;

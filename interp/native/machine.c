@@ -8,6 +8,7 @@ int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, i
 {
     memset(machine, 0, sizeof *machine);
     machine->is_told = is_told;
+    machine->left = 1;
     if (!krl_read_image(&machine->program, image, length, why))
         return 0;
     if (!krl_verify(&machine->program, why) || !krl_translate(machine, why)) {
@@ -76,7 +77,6 @@ void krl_begin(struct krl_machine *machine, int32_t code)
     machine->statement = -1;
     machine->serial = machine->serials = 1;
     machine->open = 0;
-    machine->left = 1;
     machine->last = 0;
     machine->top = machine->fp + machine->routines[code].frame;
 }
@@ -94,7 +94,8 @@ int krl_open(struct krl_machine *machine, int32_t code)
                           machine->extent,
                           machine->statement,
                           machine->serial,
-                          machine->fp + caller->whole};
+                          machine->fp + caller->whole,
+                          machine->top};
     machine->code = code;
     machine->fp += caller->whole;
     machine->extent = extent;
@@ -112,4 +113,5 @@ void krl_close(struct krl_machine *machine)
     machine->extent = call->extent;
     machine->statement = call->statement;
     machine->serial = call->serial;
+    machine->top = call->step < 0 ? call->top : machine->fp + machine->routines[machine->code].frame;
 }

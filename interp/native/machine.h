@@ -48,6 +48,7 @@ struct krl_call {
     int32_t statement;
     int32_t serial;
     int32_t result; /* the cell that takes the result */
+    int32_t top;    /* of a frame that Python has made: what it was before */
 };
 
 enum { KRL_MOST_CALLS = 1 << 20 };

@@ -60,7 +60,7 @@ enum krl_part_kind { KRL_PART_INPUT, KRL_PART_CHANGED, KRL_PART_STRING, KRL_PART
 struct krl_part {
     enum krl_part_kind kind;
     int32_t place; /* the first of its cells among the inputs, or the place of the constant */
-    int32_t type;
+    struct krl_handed handed;
     struct krl_letters letters;
     int has_path; /* changed, and a copy of a system variable */
 };
@@ -143,6 +143,9 @@ struct krl_refusal {
 /* Reads an image. It copies what it needs. 0 where the image is refused; then nothing is left. */
 int krl_read_image(struct krl_program *program, const uint8_t *image, size_t length,
                    struct krl_refusal *why);
+
+/* The CRC-32 that an image has of what follows its header. */
+uint32_t krl_checksum(const uint8_t *bytes, size_t length);
 
 /* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
 int krl_verify(struct krl_program *program, struct krl_refusal *why);

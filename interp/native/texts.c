@@ -20,18 +20,14 @@ static const struct known known[KRL_TEXT_FUNCTIONS] = {
 
 /* ---------------------------------------------------------------------------- which it is */
 
-/* Whether the part is an array of CHAR that lies on the stack as a view. */
-static int is_array(const struct krl_entry *entry, const struct krl_part *part)
+/* Whether the part is an array of CHAR with one dimension, by reference or as a view. */
+static int is_array(const struct krl_program *program, const struct krl_part *part)
 {
-    if (part->type != KRL_TYPE_CHAR)
-        return 0;
-    int32_t cells = 0;
-    for (int32_t i = 0; i < entry->input_count; i++) {
-        if (cells == part->place)
-            return entry->inputs[i].mode == KRL_BY_VIEW && entry->inputs[i].dimensions == 1;
-        cells += krl_stack_cells(&entry->inputs[i]);
-    }
-    return 0;
+    const struct krl_type *type = &program->types[part->handed.type];
+    if (part->handed.mode == KRL_BY_VIEW)
+        return part->handed.dimensions == 1 && part->handed.type == KRL_TYPE_CHAR;
+    return part->handed.mode == KRL_BY_REFERENCE && type->form == KRL_ARRAY && type->count == 1 &&
+           type->element == KRL_TYPE_CHAR;
 }
 
 /* The place of the constant that tells letters apart by their case; -1 where there is none. */
@@ -46,24 +42,22 @@ static int32_t sensitive(const struct krl_program *program, int32_t type)
     return -1;
 }
 
-static int fits(const struct krl_program *program, const struct krl_entry *entry,
-                const struct krl_part *part, char parameter)
+static int fits(const struct krl_program *program, const struct krl_part *part, char parameter)
 {
     switch (parameter) {
     case 'T':
-        return part->kind == KRL_PART_STRING || (part->kind == KRL_PART_INPUT && is_array(entry, part));
+        return part->kind == KRL_PART_STRING || (part->kind == KRL_PART_INPUT && is_array(program, part));
     case 'D':
-        return part->kind == KRL_PART_INPUT && is_array(entry, part);
+        return part->kind == KRL_PART_INPUT && is_array(program, part);
     case 'C':
-        return part->kind == KRL_PART_CHANGED && !part->has_path && is_array(entry, part);
+        return part->kind == KRL_PART_CHANGED && !part->has_path && is_array(program, part);
     case 'N':
-        return part->kind == KRL_PART_INPUT && part->type == KRL_TYPE_INT && part->place == 0 &&
-               entry->inputs[0].mode == KRL_BY_VALUE;
+        return part->kind == KRL_PART_INPUT && part->handed.mode == KRL_BY_VALUE &&
+               part->handed.type == KRL_TYPE_INT;
     default:
-        if (part->kind == KRL_PART_INPUT && entry->inputs[entry->input_count - 1].mode != KRL_BY_VALUE)
-            return 0;
-        return (part->kind == KRL_PART_CHOICE || part->kind == KRL_PART_INPUT) &&
-               sensitive(program, part->type) >= 0;
+        return (part->kind == KRL_PART_CHOICE ||
+                (part->kind == KRL_PART_INPUT && part->handed.mode == KRL_BY_VALUE)) &&
+               sensitive(program, part->handed.type) >= 0;
     }
 }
 
@@ -77,7 +71,7 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program, c
         if (entry->result != one->result || (size_t)entry->part_count != strlen(one->parameters))
             break;
         for (int32_t i = 0; i < entry->part_count; i++)
-            if (!fits(program, entry, &entry->parts[i], one->parameters[i]))
+            if (!fits(program, &entry->parts[i], one->parameters[i]))
                 return KRL_TEXT_FUNCTIONS;
         return (enum krl_text_function)function;
     }
@@ -87,23 +81,28 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program, c
 /* ---------------------------------------------------------------------------- what it does */
 
 /* The used part of a text: it ends before the first letter that is none, or has the code 0. */
-static struct krl_letters used(const struct krl_letters whole)
+static struct krl_letters used(struct krl_letters all)
 {
-    struct krl_letters found = {whole.cells, 0};
-    while (found.count < whole.count && (uint32_t)whole.cells[found.count] != 0)
+    struct krl_letters found = {all.cells, 0};
+    while (found.count < all.count && (uint32_t)all.cells[found.count] != 0)
         found.count++;
     return found;
 }
 
-static struct krl_letters array_of(const struct krl_machine *machine, const krl_cell *view)
+/* All of an array. */
+static struct krl_letters whole(const struct krl_machine *machine, const struct krl_part *part,
+                                const krl_cell *inputs)
 {
-    return (struct krl_letters){machine->cells + krl_int_in(view[0]), krl_int_in(view[1])};
+    const krl_cell *given = inputs + part->place;
+    const struct krl_type *type = &machine->program.types[part->handed.type];
+    int32_t count = part->handed.mode == KRL_BY_VIEW ? krl_int_in(given[1]) : type->sizes[0];
+    return (struct krl_letters){machine->cells + krl_int_in(given[0]), count};
 }
 
 static struct krl_letters text_of(const struct krl_machine *machine, const struct krl_part *part,
                                   const krl_cell *inputs)
 {
-    return used(part->kind == KRL_PART_STRING ? part->letters : array_of(machine, inputs + part->place));
+    return used(part->kind == KRL_PART_STRING ? part->letters : whole(machine, part, inputs));
 }
 
 /* The letter to compare: the case of A to Z only. */
@@ -132,49 +131,48 @@ static int32_t find(int32_t start, struct krl_letters text, struct krl_letters w
 }
 
 /* Puts a text behind the first letters of an array, whose rest has no value then; 0 where it does not fit. */
-static int put(struct krl_machine *machine, const krl_cell *view, int32_t behind, struct krl_letters text)
+static int put(struct krl_machine *machine, struct krl_letters array, int32_t behind, struct krl_letters text)
 {
-    krl_cell *target = machine->cells + krl_int_in(view[0]);
-    int32_t length = krl_int_in(view[1]), count = behind + text.count;
-    if (count > length)
+    krl_cell *target = machine->cells + (array.cells - machine->cells);
+    int32_t count = behind + text.count;
+    if (count > array.count)
         return 0;
     memmove(target + behind, text.cells, (size_t)text.count * sizeof *target);
-    memset(target + count, 0, (size_t)(length - count) * sizeof *target);
-    machine->last = krl_int_in(view[0]);
+    memset(target + count, 0, (size_t)(array.count - count) * sizeof *target);
     return 1;
 }
 
 static int is_sensitive(const struct krl_machine *machine, const struct krl_part *part, const krl_cell *inputs)
 {
     int32_t place = part->kind == KRL_PART_CHOICE ? part->place : krl_int_in(inputs[part->place]);
-    return place == sensitive(&machine->program, part->type);
+    return place == sensitive(&machine->program, part->handed.type);
 }
 
 void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
                    const struct krl_entry *entry, krl_cell *inputs)
 {
     const struct krl_part *parts = entry->parts;
-    const krl_cell *view = inputs + parts[0].place;
-    struct krl_letters text, other;
+    struct krl_letters array = {machine->cells, 0}, text, other;
     krl_cell result = KRL_NOTHING;
+    if (parts[0].handed.mode != KRL_BY_VALUE)
+        array = whole(machine, &parts[0], inputs);
     switch (function) {
     case KRL_STRLEN:
         result = krl_of_int(text_of(machine, &parts[0], inputs).count);
         break;
     case KRL_STRDECLLEN:
-        result = krl_of_int(krl_int_in(view[1]));
+        result = krl_of_int(array.count);
         break;
     case KRL_STRCLEAR:
-        put(machine, view, 0, (struct krl_letters){machine->cells, 0});
-        result = krl_of_bool(1);
+        result = krl_of_bool(put(machine, array, 0, (struct krl_letters){array.cells, 0}));
         break;
     case KRL_STRADD:
-        text = used(array_of(machine, view));
+        text = used(array);
         other = text_of(machine, &parts[1], inputs);
-        result = krl_of_int(put(machine, view, text.count, other) ? text.count + other.count : 0);
+        result = krl_of_int(put(machine, array, text.count, other) ? text.count + other.count : 0);
         break;
     case KRL_STRCOPY:
-        result = krl_of_bool(put(machine, view, 0, text_of(machine, &parts[1], inputs)));
+        result = krl_of_bool(put(machine, array, 0, text_of(machine, &parts[1], inputs)));
         break;
     case KRL_STRCOMP:
         text = text_of(machine, &parts[0], inputs);
@@ -185,7 +183,7 @@ void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
     case KRL_STRFIND:
         text = text_of(machine, &parts[1], inputs);
         other = text_of(machine, &parts[2], inputs);
-        result = krl_of_int(find(krl_int_in(inputs[0]), text, other, is_sensitive(machine, &parts[3], inputs)));
+        result = krl_of_int(find(krl_int_in(inputs[parts[0].place]), text, other, is_sensitive(machine, &parts[3], inputs)));
         break;
     case KRL_TEXT_FUNCTIONS:
         break;

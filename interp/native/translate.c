@@ -663,10 +663,10 @@ static void cross(struct translator *at, const struct krl_entry *entry, int32_t 
 static int all_reals(const struct krl_entry *entry)
 {
     for (int32_t i = 0; i < entry->part_count; i++)
-        if (entry->parts[i].kind != KRL_PART_INPUT || i >= entry->input_count ||
-            entry->inputs[i].mode != KRL_BY_VALUE || entry->inputs[i].type != KRL_TYPE_REAL)
+        if (entry->parts[i].kind != KRL_PART_INPUT ||
+            entry->parts[i].handed.mode != KRL_BY_VALUE || entry->parts[i].handed.type != KRL_TYPE_REAL)
             return 0;
-    return entry->part_count == entry->input_count && entry->result == KRL_TYPE_REAL;
+    return entry->result == KRL_TYPE_REAL;
 }
 
 /* INV_POS of a pose, into a pose: six cells. */
@@ -675,13 +675,13 @@ static int is_inversion(const struct translator *at, const struct krl_entry *ent
     static const char name[] = "INV_POS";
     if (entry->name.length != sizeof name - 1 || memcmp(entry->name.bytes, name, sizeof name - 1) != 0 ||
         entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||
-        entry->inputs[0].mode != KRL_BY_REFERENCE || entry->result < 0 ||
+        entry->parts[0].handed.mode != KRL_BY_REFERENCE || entry->result < 0 ||
         at->program->types[entry->result].size != 6)
         return 0;
     for (int32_t place = 0; place < 6; place++)
         if (krl_kind_at(at->program, entry->result, place) != KRL_TYPE_REAL ||
-            place >= at->program->types[entry->inputs[0].type].size ||
-            krl_kind_at(at->program, entry->inputs[0].type, place) != KRL_TYPE_REAL)
+            place >= at->program->types[entry->parts[0].handed.type].size ||
+            krl_kind_at(at->program, entry->parts[0].handed.type, place) != KRL_TYPE_REAL)
             return 0;
     return 1;
 }

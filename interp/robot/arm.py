@@ -105,7 +105,10 @@ class SplineRange:
 
 @dataclass(frozen=True, slots=True)
 class SplinePart:
-    """One segment of a spline block, with the ranges and places written before it."""
+    """One segment of a spline block, with the ranges and places written before it.
+
+    Places count from its end, or from its start. ``settings`` is ``None`` for those of the block.
+    """
 
     kind: str
     target: Target
@@ -114,6 +117,7 @@ class SplinePart:
     settings: Settings | None = None
     ranges: tuple[SplineRange, ...] = ()
     places: tuple[Place, ...] = ()
+    stop_places: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +145,7 @@ class Motion:
     parts: tuple[SplinePart, ...] = ()
     last_ranges: tuple[SplineRange, ...] = ()
     stop_places: tuple[Place, ...] = ()
+    ranges: tuple[SplineRange, ...] = ()
 
 
 EventKind = Literal[
@@ -193,8 +198,11 @@ class Samples:
 class Arm(Protocol):
     """Plans motions and knows where it is at any time from the first motion to the last."""
 
-    def plan(self, now: int, motion: Motion) -> None:
+    def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
         """Append a motion; it starts at once if the arm stands still with nothing before it.
+
+        Returns the numbers of messages that stop nothing, such as 3171 for a motion that goes
+        nowhere [MOT-11].
 
         Raises `interp.faults.Fault` (a point out of reach, a software limit, a degenerate circle
         and so on [MOT-10 to MOT-15]); then nothing is appended.

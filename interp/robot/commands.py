@@ -108,9 +108,13 @@ class Command:
 
 @dataclass(slots=True, eq=False)
 class MotionCommand(Command):
-    """Append a motion to the path. One that is not linked to an event is planned when loaded."""
+    """Append a motion to the path. One that is not linked to an event is planned when loaded.
+
+    ``notices`` are the numbers of messages that planning gave and that stop nothing.
+    """
 
     motion: Motion
+    notices: tuple[int, ...] = field(default=(), init=False)
 
     def reached(self, place: Place) -> Event:
         """The path passes one of the motion's places. Raises `CommandError` for any other."""
@@ -228,6 +232,33 @@ class Transaction:
         """The commands that no link starts."""
         started = {link.command for link in self.links if link.effect == "start"}
         return (command for command in self.commands if command not in started)
+
+    def check(self) -> None:
+        """Raise `CommandError` where it makes no sense whatever else is loaded.
+
+        A command stands in it once, and is started by the load or by something that can happen;
+        links start no command of another transaction.
+        """
+        mine = set(self.commands)
+        if len(mine) < len(self.commands):
+            raise CommandError(f"{self}: a command stands in it twice")
+        starts = [link for link in self.links if link.effect == "start"]
+        for link in starts:
+            if link.command not in mine:
+                raise CommandError(f"{link}: {link.command} is not of this transaction")
+        reached = set(self.unlinked())
+        while (
+            further := {
+                link.command
+                for link in starts
+                if link.event.command in reached or link.event.command not in mine
+            }
+            - reached
+        ):
+            reached |= further
+        for command in self.commands:
+            if command not in reached:
+                raise CommandError(f"{command}: what should start it waits for it")
 
     def __str__(self) -> str:
         return f"a transaction of {len(self.commands)} commands"

@@ -130,6 +130,12 @@ class ControlCore:
         told, self._told = self._told, []
         return told
 
+    def run_out(self) -> list[CoreEvent]:
+        """Go on until nothing more happens by itself; returns what happened, as `run_until`."""
+        while (time := self.next_time()) is not None:
+            self._advance(time)
+        return self.run_until(self.now)
+
     def complete(self, now: int, command: CallCommand) -> None:
         """The owner has done what it was called for; nothing if that was cancelled meanwhile."""
         self._advance(now)
@@ -185,9 +191,8 @@ class ControlCore:
     # ---------------------------------------------------------------------------------- the checks
 
     def _check(self, transaction: Transaction) -> None:
+        transaction.check()
         mine = frozenset(transaction.commands)
-        if len(mine) < len(transaction.commands):
-            raise CommandError(f"{transaction}: a command stands in it twice")
         number = self._last_number
         for command in transaction.commands:
             if command.state is not State.CREATED:
@@ -198,9 +203,6 @@ class ControlCore:
                 number = command.motion.number
         for link in transaction.links:
             self._check_link(link, mine)
-            if link.effect == "start" and link.command not in mine:
-                raise CommandError(f"{link}: it is not of this transaction")
-        self._check_reach(transaction)
 
     def _check_link(self, link: Link, mine: frozenset[Command]) -> None:
         for command in (link.event.command, link.command):
@@ -211,24 +213,6 @@ class ControlCore:
         is_ahead = cause in self._behind.values() and link.event.what in _BEHIND
         if is_past or (cause.state.is_over and not is_ahead):
             raise CommandError(f"{link}: that can no longer happen")
-
-    def _check_reach(self, transaction: Transaction) -> None:
-        """Each command is started by the load, or by something that can happen."""
-        mine = set(transaction.commands)
-        reached = set(transaction.unlinked())
-        starts = [link for link in transaction.links if link.effect == "start"]
-        while True:
-            further = {
-                link.command
-                for link in starts
-                if link.event.command in reached or link.event.command not in mine
-            } - reached
-            if not further:
-                break
-            reached |= further
-        for command in transaction.commands:
-            if command not in reached:
-                raise CommandError(f"{command}: what should start it waits for it")
 
     # ---------------------------------------------------------------------------- what time brings
 
@@ -310,15 +294,17 @@ class ControlCore:
         """Plan motions, all of them or none. Raises the `Fault` of the first that cannot be."""
         mark = self.arm.mark()
         planned: dict[int, MotionCommand] = {}
+        notices: list[tuple[int, ...]] = []
         try:
             for command in commands:
-                self.arm.plan(now, command.motion)
+                notices.append(self.arm.plan(now, command.motion))
                 planned[command.motion.number] = command
         except Fault:
             if planned:
                 self.arm.rewind(mark)
             raise
-        for number in planned:
+        for (number, command), words in zip(planned.items(), notices, strict=True):
+            command.notices = words
             self._before[number], self._newest = self._newest, number
         self._motions |= planned
 

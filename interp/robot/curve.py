@@ -21,7 +21,17 @@ from interp.robot.machine import ROBOT_AXES
 from interp.robot.placement import IpoMode, Placement
 from interp.robot.targets import check_limits, follow
 
-__all__ = ["BlendedAxes", "CourseCurve", "Curve", "JointLine", "tool_positions"]
+__all__ = [
+    "BlendedAxes",
+    "CourseCurve",
+    "Curve",
+    "InStep",
+    "JointLine",
+    "JointSpline",
+    "Others",
+    "Piecewise",
+    "tool_positions",
+]
 
 _FEWEST = 33
 _MOST = 1025
@@ -66,6 +76,79 @@ class Curve(Protocol):
     def rates(self, u: Array) -> tuple[Array, Array]:
         """First and second derivatives of the axes by u."""
         ...
+
+
+class Others(Protocol):
+    """What the external axes do along a path, over its u; arrays ``(n, axes)``."""
+
+    def at(self, u: Array) -> Array:
+        """Axes at parameters."""
+        ...
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First and second derivatives by u."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InStep:
+    """External axes that go in step with the path."""
+
+    start: Array
+    end: Array
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        return self.start + u[:, None] * (self.end - self.start)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        shape = (len(u), len(self.start))
+        return np.broadcast_to(self.end - self.start, shape), np.zeros(shape)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piecewise:
+    """A part of a spline that all knots share: from its parameter ``start`` over ``length``."""
+
+    spline: CubicSpline
+    start: float
+    length: float
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        axes: Array = self.spline(self.start + u * self.length)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        where = self.start + u * self.length
+        return self.spline(where, 1) * self.length, self.spline(where, 2) * self.length**2
+
+
+@dataclass(frozen=True, eq=False)
+class JointSpline:
+    """All axes along a part of a spline through several positions: PTP spline blocks."""
+
+    arm: Arm
+    placement: Placement
+    part: Piecewise
+
+    course = None
+    is_straight = False
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        return np.linspace(0.0, 1.0, _FEWEST)
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        return self.part.at(u)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        return self.part.rates(u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +206,8 @@ class BlendedAxes:
     @cached_property
     def corner(self) -> Array:
         """The axes at the point between."""
-        return self.first.axes(np.ones(1))[0]
+        axes: Array = self.first.axes(np.ones(1))[0]
+        return axes
 
     @property
     def grid(self) -> Array:
@@ -158,15 +242,15 @@ class BlendedAxes:
 class CourseCurve:
     """The axes along a course, unbroken from ``start`` on; Turn results from the path [POS-02].
 
-    External axes go from those of ``start`` to ``externals``. Raises `Fault`: 1366 or 1447 where
-    the course cannot be followed, 1102 where it leads through a singularity that would make an
-    axis jump.
+    ``start`` are the six axes of the robot; ``others`` what the external ones do. Raises `Fault`:
+    1366 or 1447 where the course cannot be followed, 1102 where it leads through a singularity that
+    would make an axis jump.
     """
 
     is_straight = False
 
     def __init__(
-        self, arm: Arm, placement: Placement, course: Course, start: Array, externals: Array
+        self, arm: Arm, placement: Placement, course: Course, start: Array, others: Others
     ) -> None:
         self.arm = arm
         self.placement = placement
@@ -174,25 +258,34 @@ class CourseCurve:
         self._course = course
         self._before = matrix_of(placement.before)
         self._after = matrix_of(placement.after)
-        self._externals = start[ROBOT_AXES:]
-        self._travel = externals - start[ROBOT_AXES:]
-        self.grid, axes = self._points(start[:ROBOT_AXES])
+        self._others = others
+        self.grid, axes = self._points(start)
         self._table = CubicSpline(self.grid, axes)
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
-        flanges = self._flanges(u)
-        robot = self.arm.inverse_near(flanges, self._table(u))
-        lost = np.isnan(robot).any(axis=1)
-        if lost.any():  # stretched out to the last nanometre
-            robot[lost] = self._table(u[lost])
-        return np.concatenate((robot, self._externals + u[:, None] * self._travel), axis=1)
+        robot = self._beside(u, self._table(u))
+        return np.concatenate((robot, self._others.at(u)), axis=1)
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Curve.rates`."""
-        others = np.broadcast_to(self._travel, (len(u), len(self._travel)))
-        first = np.concatenate((self._table(u, 1), others), axis=1)
-        return first, np.concatenate((self._table(u, 2), np.zeros_like(others)), axis=1)
+        first, second = self._others.rates(u)
+        return (
+            np.concatenate((self._table(u, 1), first), axis=1),
+            np.concatenate((self._table(u, 2), second), axis=1),
+        )
+
+    def _beside(self, u: Array, references: Array) -> Array:
+        """The six axes exactly, from some beside them."""
+        robot = self.arm.inverse_near(self._flanges(u), references)
+        lost = np.isnan(robot).any(axis=1)
+        if lost.any():  # stretched out to the last nanometre
+            robot[lost] = references[lost]
+        return robot
+
+    def _along(self, u: Array, start: Array) -> Array:
+        """The six axes at rising parameters, unbroken from the start on."""
+        return follow(self.arm, self._flanges(u), start.tolist())
 
     def _flanges(self, u: Array) -> Array:
         poses = poses_of(self._course, u)
@@ -206,7 +299,7 @@ class CourseCurve:
         count = _FEWEST
         while True:
             grid = np.linspace(0.0, 1.0, count)
-            axes = follow(self.arm, self._flanges(grid), start.tolist())
+            axes = self._along(grid, start)
             missed = np.abs(CubicSpline(grid[::2], axes[::2])(grid[1::2]) - axes[1::2]).max()
             if missed < _EXACT:
                 break

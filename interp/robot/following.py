@@ -30,15 +30,18 @@ class PathRecord:
     """``n`` rows, one each interpolation cycle.
 
     ``times`` (n,) in µs; ``axes`` (n, axes) in degrees or mm; ``points`` (n, 6) are X, Y, Z in mm
-    and A, B, C in degrees of the tool in the base, those that were in force at the time. The
-    measured ones are ``None`` where the robot measures nothing.
+    and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
+    (n, 3) are X, Y, Z of the tool in front of the robot's foot, whatever the base. The measured
+    ones are ``None`` where the robot measures nothing.
     """
 
     times: npt.NDArray[np.int64]
     axes: Array
     points: Array
+    tips: Array
     axes_measured: Array | None
     points_measured: Array | None
+    tips_measured: Array | None
 
     def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
         """The columns of a path file: t, q1…q6, e1…, x…c, and measured ones with ``_meas``."""
@@ -74,6 +77,11 @@ class Following:
         self._last: Array | None = None
         robot.stand(start)
 
+    @property
+    def chunk(self) -> int | None:
+        """µs from one `advance` to the next, at most; ``None`` where nothing is sent."""
+        return self._robot.chunk if self._robot.step else None
+
     def placed(self, time: int, placement: Placement) -> None:
         """From a time on, not before the last one told, points count in these frames."""
         if time == self._place_times[-1]:
@@ -103,12 +111,12 @@ class Following:
     def record(self) -> PathRecord:
         """All rows so far."""
         times, axes = np.concatenate(self._times), np.concatenate(self._axes)
-        points = self._points(times, axes)
+        points, tips = self._points(times, axes)
         rows = [axes[:1] if row is None else row for row in self._measured]
         if self._last is None:
-            return PathRecord(times, axes, points, None, None)
+            return PathRecord(times, axes, points, tips, None, None, None)
         measured = np.concatenate(rows)
-        return PathRecord(times, axes, points, measured, self._points(times, measured))
+        return PathRecord(times, axes, points, tips, measured, *self._points(times, measured))
 
     def _send(self, until: int) -> None:
         step = self._robot.step
@@ -134,16 +142,18 @@ class Following:
         else:
             self._measured.append(axes[rows])
 
-    def _points(self, times: npt.NDArray[np.int64], axes: Array) -> Array:
-        """X, Y, Z, A, B, C (n, 6) of the tool in the base in force."""
+    def _points(self, times: npt.NDArray[np.int64], axes: Array) -> tuple[Array, Array]:
+        """Of the tool, X, Y, Z, A, B, C (n, 6) in the base in force, and X, Y, Z (n, 3)."""
         flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
-        points = np.empty((len(times), 6))
+        points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
         for rows, placement in self._stretches(times):
             before = matrix_of(placement.before.inverse())
-            poses = before @ flanges[rows] @ matrix_of(placement.tool)
+            standing = flanges[rows] @ matrix_of(placement.tool)
+            poses = before @ standing
             points[rows, :3] = poses[:, :3, 3]
             points[rows, 3:] = _angles(poses)
-        return points
+            tips[rows] = standing[:, :3, 3]
+        return points, tips
 
     def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:
         """Rows during which a placement was in force."""

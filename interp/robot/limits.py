@@ -66,17 +66,19 @@ class AxisLimits:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PathLimits:
     """A length that u stands for, how fast it may grow, and how fast its speed may change.
 
     Millimetres or degrees: the path, the swivel and the rotation of the tool each have one
-    [ORI-06]. The slowest of them decides.
+    [ORI-06]. The slowest of them decides. Where ``jerk`` is infinite, acceleration builds up over
+    a fixed time.
     """
 
     length: float
     velocity: float
     acceleration: float
+    jerk: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +143,6 @@ def ceiling_of(
     machine: AxisLimits,
     programmed: AxisLimits,
     paths: Sequence[PathLimits],
-    jerk: float = math.inf,
 ) -> Ceiling:
     """The bounds of a curve.
 
@@ -151,43 +152,33 @@ def ceiling_of(
     """
     grid = curve.grid
     first, second = (np.abs(rates) for rates in curve.rates(grid))
-    bounds = programmed
-    per_axis = _least(bounds.acceleration / _positive(first))
-    wanted = min((p.acceleration / p.length for p in paths if p.length > 0.0), default=math.inf)
+    per_axis = _least(programmed.acceleration / _positive(first))
+    wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
     share = 1.0 if curve.is_straight else _SHARE
     acceleration = np.minimum(share * per_axis, wanted)
     velocity = _least(machine.velocity / _positive(first))
     if not curve.is_straight:
-        left = bounds.acceleration - first * acceleration[:, None]
+        left = programmed.acceleration - first * acceleration[:, None]
         velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
         acceleration = acceleration * _MARGIN
     slowest = np.minimum(
         _least(programmed.velocity / _positive(first)),
-        min((p.velocity / p.length for p in paths if p.length > 0.0), default=math.inf),
+        min((path.velocity / path.length for path in paths), default=math.inf),
     )
     used = np.minimum(velocity, slowest)
-    hardest = np.maximum(
-        _least((machine.acceleration - second * used[:, None] ** 2) / _positive(first)) * _MARGIN,
-        acceleration,
-    )
+    bent = second * used[:, None] ** 2
+    hardest = _least((machine.acceleration - bent) / _positive(first)) * _MARGIN
+    hardest = np.maximum(hardest, acceleration)
     sharpest = _least(machine.jerk / _positive(first))
-    smooth = np.minimum(_least(bounds.jerk / _positive(first)), sharpest)
-    if paths:
-        ramped = acceleration / _RAMP
-        longest = max((p.length for p in paths), default=0.0)
-        if math.isfinite(jerk) and longest > 0.0:
-            ramped = np.full_like(ramped, jerk / longest)
-        smooth = np.minimum(smooth, ramped)
-    size = max([*(p.length for p in paths), float(first.max(initial=0.0)), 1e-9])
+    smooth = np.minimum(_least(programmed.jerk / _positive(first)), sharpest)
+    for path in paths:
+        is_known = math.isfinite(path.jerk)
+        smooth = np.minimum(smooth, path.jerk / path.length if is_known else acceleration / _RAMP)
+    size = max([*(path.length for path in paths), float(first.max(initial=0.0)), 1e-9])
     columns = np.stack((velocity, slowest, acceleration, smooth, hardest, sharpest), axis=1)
     columns *= _ROUNDING
     cuts = _cuts(used, 0, len(grid) - 1)
-    return Ceiling(
-        tuple(
-            _stretch(grid, columns, low, high, size)
-            for low, high in pairwise(cuts)
-        )
-    )
+    return Ceiling(tuple(_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts)))
 
 
 def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:

@@ -7,8 +7,8 @@ arm's reach from an arm of the size of a KR 6 R900:
 - masses: 52 kg in all for a reach of 901.5 mm, as published; by the cube of the reach for others.
   How they are shared among the links is a guess, and so are the shapes, which are filled evenly.
 - rotors: they add inertia to an axis, and friction that grows with its speed.
-- the floor lies one reach below the foot, out of the way, since the data does not say what the arm
-  stands on. What else there is to touch are boxes.
+- the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
+  touches, since the data does not say what the arm stands on. What else there is are boxes.
 - there is no load on the flange.
 
 Links touch one another and the floor, except for links next to one another or next but one, whose
@@ -101,7 +101,7 @@ def mjcf_of(machine: Machine, boxes: Sequence[Box] = ()) -> str:
         '    <global offwidth="1920" offheight="1080" azimuth="130" elevation="-20"/>',
         '    <headlight ambient="0.4 0.4 0.4" diffuse="0.5 0.5 0.5"/>',
         "  </visual>",
-        f'  <statistic extent="{_number(2.2 * reach / 1000.0)}" '
+        f'  <statistic extent="{_number(1.6 * reach / 1000.0)}" '
         f'center="{_metres(_middle(machine, reach))}"/>',
         "  <asset>",
         '    <texture type="skybox" builtin="gradient" rgb1="0.9 0.93 0.96" rgb2="0.6 0.66 0.72" '
@@ -114,6 +114,7 @@ def mjcf_of(machine: Machine, boxes: Sequence[Box] = ()) -> str:
         f'    <light pos="0 0 {_number(4 * reach / 1000.0)}" dir="0 0 -1" diffuse="0.5 0.5 0.5"/>',
         f'    <geom name="floor" type="plane" size="0 0 0.05" material="tiles" '
         f'pos="0 0 {_number((machine.robroot.position[2] - reach) / 1000.0)}"/>',
+        _pedestal(machine),
         *(_box(box) for box in boxes),
         f'    <body name="foot" {_placed(machine.robroot)}>',
         *(f"      {_geom(shape, machine)}" for shape in _foot(machine)),
@@ -256,6 +257,15 @@ def _geom(shape: _Shape, machine: Machine) -> str:
     else:
         form = f'type="capsule" fromto="{_metres(shape.start)} {_metres(shape.end)}"'
     return f'<geom {form} size="{radius}" mass="{mass}" rgba="{shape.colour}"/>'
+
+
+def _pedestal(machine: Machine) -> str:
+    x, y, z = machine.robroot.position
+    reach = reach_of(machine)
+    return (
+        f'    <geom type="cylinder" fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
+        f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{_DARK}"/>'
+    )
 
 
 def _box(box: Box) -> str:

@@ -68,19 +68,14 @@ def schedule(
     for place, (step, bound) in enumerate(zip(steps, bounds, strict=True)):
         stretch = step.stretch
         length = stretch.end - state.u
-        reachable = _reachable(state, length, bound, stretch.size)
-        if reachable is None:
+        found = _out(state, length, allowed[place], bound, stretch.size)
+        if found is None or (is_strict and found > allowed[place] * (1.0 + 1e-9) + 1e-12):
             return None
-        lowest, highest = reachable
-        out = min(allowed[place], highest)
-        if out < lowest:
-            if is_strict and lowest > allowed[place] * (1.0 + 1e-9) + 1e-12:
-                return None
-            out = lowest
+        out = found
         if (
             place == 0
             and planned is not None
-            and lowest <= planned <= allowed[0] * (1.0 + 1e-9)
+            and planned <= allowed[0] * (1.0 + 1e-9)
             and abs(planned - out) <= _SAME * out
         ):
             profiles.append(None)
@@ -103,24 +98,20 @@ def braking(
     profiles = []
     for place, step in enumerate(steps):
         stretch = step.stretch
-        bound = _sized(stretch.bounds(override, is_hard), stretch.size)
-        length = stretch.end - state.u
-        size = stretch.size
-        if ramp(state.speed * size, state.acceleration * size, 0.0, bound).distance <= (
-            length * size
-        ):
-            profiles.append(stop(state.speed * size, state.acceleration * size, bound))
+        size, length = stretch.size, stretch.end - state.u
+        bound = stretch.bounds(override, is_hard)
+        sized = _sized(bound, size)
+        way = ramp(state.speed * size, state.acceleration * size, 0.0, sized).distance
+        if _fits(way, length * size):
+            profiles.append(stop(state.speed * size, state.acceleration * size, sized))
             return profiles
-        unsized = stretch.bounds(override, is_hard)
-        reachable = _reachable(state, length, unsized, size)
-        if reachable is None:
-            if place:
-                raise ArithmeticError("braking beyond a seam of the path")
+        out = _out(state, length, 0.0, bound, size)
+        if out is None:
             return None
-        profiles.append(_profile(state, length, reachable[0], unsized, size))
+        profiles.append(_profile(state, length, out, bound, size))
         if place + 1 < len(steps):
             following = steps[place + 1]
-            state = State(following.stretch.start, reachable[0] * following.gear, 0.0)
+            state = State(following.stretch.start, out * following.gear, 0.0)
     return profiles
 
 
@@ -137,39 +128,40 @@ def _allowed(steps: Sequence[Step], bounds: Sequence[Bounds]) -> list[float]:
     return allowed
 
 
-def _reachable(
-    state: State, length: float, bound: Bounds, size: float
-) -> tuple[float, float] | None:
-    """The lowest and the highest speed in which a stretch can end."""
-    length = length * _SPARE
-    if state.acceleration == 0.0:
-        lowest = _lowest(state.speed, length, bound)
-        highest = _other_end(state.speed, length, bound)
-        return lowest, max(min(highest, bound.velocity), min(state.speed, bound.velocity), lowest)
+def _out(state: State, length: float, allowed: float, bound: Bounds, size: float) -> float | None:
+    """The speed in which a stretch ends: at best the allowed one, else the nearest that can be.
+
+    Lower where that can be; ``None`` where not even the acceleration can be taken back.
+    """
     eased = state.speed + state.acceleration * abs(state.acceleration) / (2.0 * bound.jerk)
     sized = _sized(bound, size)
 
-    def way(target: float) -> float:
-        return ramp(state.speed * size, state.acceleration * size, target * size, sized).distance
+    def fits(target: float) -> bool:
+        way = ramp(state.speed * size, state.acceleration * size, target * size, sized).distance
+        return _fits(way, length * size)
 
-    if eased < 0.0 or way(eased) > length * size:
+    if fits(allowed):
+        return allowed
+    if state.acceleration == 0.0 and allowed > state.speed:
+        return max(_other_end(state.speed, length * _SPARE, bound), state.speed)
+    # Not every speed between two that can be reached can be reached: braking hard, it may take
+    # longer to ease off the brake at some speed than to stand still.
+    within = 0.0 if fits(0.0) else eased
+    if within < 0.0 or not fits(within):
         return None
-    lowest = 0.0 if way(0.0) <= length * size else _bisect(way, 0.0, eased, length * size)
-    top = max(bound.velocity, eased)
-    highest = top if way(top) <= length * size else _bisect(way, top, eased, length * size)
-    return lowest, max(min(highest, max(bound.velocity, lowest)), lowest)
-
-
-def _bisect(way: object, beyond: float, within: float, length: float) -> float:
-    """The target speed nearest to ``beyond`` whose ramp still fits in a length."""
-    assert callable(way)
+    beyond = allowed
     for _ in range(48):
         middle = (beyond + within) / 2.0
-        if way(middle) <= length:
+        if fits(middle):
             within = middle
         else:
             beyond = middle
     return within
+
+
+def _fits(way: float, length: float) -> bool:
+    """Whether a ramp is no longer than a length, but for rounding; both in mm or degrees."""
+    return way <= length * (1.0 + 1e-9) + 1e-9
 
 
 def _other_end(speed: float, length: float, bound: Bounds) -> float:
@@ -189,20 +181,6 @@ def _other_end(speed: float, length: float, bound: Bounds) -> float:
     b = speed / a + a / (2.0 * j)
     c = speed * a / j - length
     return speed + a * (math.sqrt(b * b - 2.0 * c / a) - b)
-
-
-def _lowest(speed: float, length: float, bound: Bounds) -> float:
-    """The lowest speed that can be braked down to within a length."""
-    if _other_end(0.0, length, bound) >= speed:
-        return 0.0
-    low, high = 0.0, speed
-    for _ in range(48):
-        middle = (low + high) / 2.0
-        if _other_end(middle, length, bound) >= speed:
-            high = middle
-        else:
-            low = middle
-    return high
 
 
 def _sized(bound: Bounds, size: float) -> Bounds:

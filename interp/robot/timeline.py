@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,9 +19,13 @@ from interp.robot.limits import Ceiling, Stretch
 from interp.robot.profile import Profile
 from interp.robot.schedule import State, Step
 
-__all__ = ["MICROSECOND", "Leg", "Section", "Timeline", "tool_tangents"]
+__all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros", "tool_tangents"]
 
 MICROSECOND = 1e-6
+#: The number of a motion, whether it is the blend behind it, and the part of a spline block.
+Key = tuple[int, bool, int]
+
+_NOTHING = 1e-9  # of u
 _NEAR = 1e-4  # of u: half the width of a difference
 
 
@@ -32,7 +37,7 @@ class Section:
     ``None``. ``start`` and ``end`` are the parameters of the curve between which it is travelled.
     ``gear`` times the speed in which the section before ends is that in which this one begins, both
     per unit of their own u; 0 where the arm stands between them. ``is_still`` is a motion of
-    length zero, which takes no time.
+    length zero, which takes no time. The segments of a spline block have a ``part`` from 0 on.
     """
 
     number: int
@@ -43,15 +48,21 @@ class Section:
     end: float = 1.0
     gear: float = 0.0
     is_still: bool = False
+    part: int = 0
 
     @property
-    def key(self) -> tuple[int, bool]:
-        """What stays the same when the section is cut anew: its number, and whether a blend."""
-        return self.number, self.following is not None
+    def key(self) -> Key:
+        """What stays the same when the section is cut anew; in the order of the path."""
+        return self.number, self.following is not None, self.part
+
+    @property
+    def is_used_up(self) -> bool:
+        """Whether the blends on either side have left nothing of a motion."""
+        return self.end - self.start <= _NOTHING and not self.is_still
 
     def steps(self, start: float) -> list[Step]:
         """The stretches from a parameter on; at the start of the section its gear counts."""
-        parts = self.ceiling.between(start, self.end)
+        parts = () if self.is_used_up else self.ceiling.between(start, self.end)
         return [Step(part, 1.0 if place else self.gear) for place, part in enumerate(parts)]
 
     @cached_property
@@ -87,6 +98,8 @@ class Leg:
     @property
     def last(self) -> float:
         """The parameter at which it ends."""
+        if self.section.is_still:
+            return self.section.end
         if self.ends >= self.begins + self.profile.duration:
             reached = self.profile.at(self.profile.times[-1:])[0][0] / self.stretch.size
             return min(self.stretch.start + float(reached), self.stretch.end)
@@ -144,7 +157,7 @@ class Timeline:
         place = bisect_right(self._begins, time)
         return self.legs[place - 1] if place else None
 
-    def of(self, key: tuple[int, bool]) -> Iterator[Leg]:
+    def of(self, key: Key) -> Iterator[Leg]:
         """The legs of a section, in their order."""
         return (leg for leg in self.legs if leg.section.key == key)
 
@@ -158,7 +171,7 @@ class Timeline:
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
         """Set-points at rising times in µs."""
-        seconds = times * MICROSECOND
+        seconds: Array = np.asarray(times, dtype=np.float64) * MICROSECOND
         axes = np.empty((len(times), len(self.start)))
         speeds, accelerations = np.zeros_like(axes), np.zeros_like(axes)
         places = np.searchsorted(np.array(self._begins), seconds, side="right") - 1
@@ -188,6 +201,11 @@ class Timeline:
                 parts.append((u, speed, acceleration))
                 first = behind
             yield curve, slice(start, first), parts
+
+
+def micros(seconds: float) -> int:
+    """The whole microsecond at which something has happened."""
+    return math.ceil(seconds / MICROSECOND - 1e-3)
 
 
 def tool_tangents(curve: Curve, u: Array) -> Array:

@@ -12,37 +12,61 @@ from interp.faults import Fault
 from interp.robot.arm import Motion, Settings, Target
 from interp.robot.circle import Circle, circle_through
 from interp.robot.course import Arc, Course, Line
-from interp.robot.curve import CourseCurve, Curve, JointLine, tool_positions
+from interp.robot.curve import CourseCurve, Curve, InStep, JointLine, Others, tool_positions
 from interp.robot.frames import Pose
 from interp.robot.kinematics import Arm, Array, matrix_of
 from interp.robot.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
-from interp.robot.machine import Machine
+from interp.robot.machine import ROBOT_AXES, Machine
 from interp.robot.orientation import Carried, Orientation, Turning, about, turning
+from interp.robot.placement import IpoMode
 from interp.robot.programmed import Programmed
+from interp.robot.wrist import WristCurve
 
-__all__ = ["Track", "Tracks"]
+__all__ = ["Piece", "Track", "Tracks"]
 
 _STILL = 1e-6  # mm or degrees: less is no motion
 _ZERO_LENGTH, _SINGULAR = 3171, 2868
 _METRE = 1000.0
+_SPLINE_JERKS = (500e3, 50e3)
+"""mm/s³ and deg/s³: as delivered [MOT-05]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """A part of a motion's path that is one curve: all of it, but for spline blocks.
+
+    ``paths`` are its limits along the path; none for PTP. ``gear`` times the speed in which the
+    piece before ends is that in which this one begins; 0 where the arm stands between them.
+    """
+
+    curve: Curve
+    ceiling: Ceiling
+    paths: tuple[PathLimits, ...] = ()
+    gear: float = 0.0
+    is_still: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
     """One motion's own path, from the target before it to its own.
 
-    ``axis_limits`` are what its percentages leave of the machine data. ``paths`` are its limits
-    along the path; none for PTP. ``is_still`` is a motion of length zero [MOT-11]. ``notices`` are
-    numbers of messages that stop nothing.
+    ``axis_limits`` are what its percentages leave of the machine data.
     """
 
     motion: Motion
-    curve: Curve
-    ceiling: Ceiling
+    pieces: tuple[Piece, ...]
     axis_limits: AxisLimits
-    paths: tuple[PathLimits, ...]
-    is_still: bool
-    notices: tuple[int, ...]
+    is_singular: bool = False
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it has a length of zero [MOT-11]."""
+        return all(piece.is_still for piece in self.pieces)
+
+    @property
+    def notices(self) -> tuple[int, ...]:
+        """Numbers of messages that stop nothing."""
+        return (_ZERO_LENGTH,) * self.is_still + (_SINGULAR,) * self.is_singular
 
     @property
     def is_cp(self) -> bool:
@@ -86,9 +110,9 @@ class Tracks:
         curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
         limits = self.programmed(settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
-        notices = (_ZERO_LENGTH,) * is_still + (_SINGULAR,) * goal.is_singular
-        ceiling = ceiling_of(curve, self.limits, limits, self._reduced(curve, settings))
-        track = Track(motion, curve, ceiling, limits, (), is_still, notices)
+        ceiling = ceiling_of(curve, self.limits, limits, self.reduced(curve, settings))
+        piece = Piece(curve, ceiling, is_still=is_still)
+        track = Track(motion, (piece,), limits, goal.is_singular)
         components = None
         if any(name in motion.target for name in "XYZABC"):
             components = before.pose(
@@ -122,21 +146,38 @@ class Tracks:
         """The track of a course; its last pose is the target, except for an angle of its own."""
         settings = motion.settings
         externals = before.externals(motion.target, motion.is_relative)
-        travel = np.abs(externals - before.axes[6:]).max(initial=0.0)
+        travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
         swivel, rotation = (math.degrees(angle) for angle in course.angles)
         if max(course.length, swivel, rotation, travel) < _STILL:
-            still = JointLine(self.arm, settings.placement, before.axes, before.axes)
-            ceiling = ceiling_of(still, self.limits, self.limits, ())
-            track = Track(motion, still, ceiling, self.limits, (), True, (_ZERO_LENGTH,))
+            track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
-        curve = CourseCurve(self.arm, settings.placement, course, before.axes, externals)
-        paths = self.paths(settings, course.length, swivel, rotation)
-        ceiling = ceiling_of(curve, self.limits, self.limits, paths)
-        self._check_speed(settings, curve, paths)
-        track = Track(motion, curve, ceiling, self.limits, paths, False, ())
-        axes = curve.axes(np.ones(1))[0]
+        others = InStep(before.axes[ROBOT_AXES:], externals)
+        piece = self.along(course, before.axes[:ROBOT_AXES], others, motion.kind, settings)
+        track = Track(motion, (piece,), self.limits)
+        axes = piece.curve.axes(np.ones(1))[0]
         reached = point if motion.angle is None and settings.orientation == "#VAR" else None
         return track, before.reached(axes, reached, settings.placement)
+
+    def along(
+        self, course: Course, start: Array, others: Others, kind: str, settings: Settings
+    ) -> Piece:
+        """The piece of a course from axes of the robot on. Raises `Fault`."""
+        curve: Curve
+        if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
+            curve = WristCurve(self.arm, settings.placement, course, start, others)
+            paths = self.paths(settings, course.length, 0.0, 0.0, is_spline=kind[0] == "S")
+            self.check_speed(settings, curve, paths)
+            return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+        curve = CourseCurve(self.arm, settings.placement, course, start, others)
+        swivel, rotation = (math.degrees(angle) for angle in course.angles)
+        paths = self.paths(settings, course.length, swivel, rotation, is_spline=kind[0] == "S")
+        self.check_speed(settings, curve, paths)
+        return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+
+    def still(self, axes: Array, settings: Settings) -> Piece:
+        """A piece of no length."""
+        curve = JointLine(self.arm, settings.placement, axes, axes)
+        return Piece(curve, ceiling_of(curve, self.limits, self.limits, ()), is_still=True)
 
     def _point(self, motion: Motion, target: Target, before: Programmed) -> Pose:
         placement = motion.settings.placement
@@ -153,31 +194,36 @@ class Tracks:
         return self.limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
 
     def paths(
-        self, settings: Settings, length: float, swivel: float, rotation: float
+        self,
+        settings: Settings,
+        length: float,
+        swivel: float,
+        rotation: float,
+        *,
+        is_spline: bool = False,
     ) -> tuple[PathLimits, ...]:
-        """The limits along a path of so many mm, degrees and degrees [MOT-04, MOT-05, MOT-07]."""
+        """The limits along a path of so many mm, degrees and degrees [MOT-04, MOT-05, MOT-07].
+
+        Spline motions have the jerk that controllers are delivered with.
+        """
         velocity, acceleration = self.machine.velocity, self.machine.acceleration
-        path = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
+        speed = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
         if settings.is_reduced:
-            path = min(path, self.machine.t1_speed)
-        ramp = min(_above(settings.acceleration, "$ACC.CP"), acceleration.path)
-        (swivel_speed, rotation_speed) = settings.swivel[0], settings.rotation[0]
-        limits = (
-            PathLimits(length, path * _METRE, ramp * _METRE),
-            PathLimits(
-                swivel,
-                min(_above(swivel_speed, "$VEL.ORI1"), velocity.swivel),
-                min(_above(settings.swivel[1], "$ACC.ORI1"), acceleration.swivel),
-            ),
-            PathLimits(
-                rotation,
-                min(_above(rotation_speed, "$VEL.ORI2"), velocity.rotation),
-                min(_above(settings.rotation[1], "$ACC.ORI2"), acceleration.rotation),
-            ),
+            speed = min(speed, self.machine.t1_speed)
+        gain = min(_above(settings.acceleration, "$ACC.CP"), acceleration.path)
+        jerks = _SPLINE_JERKS if is_spline else (math.inf, math.inf)
+        limits = [PathLimits(length, speed * _METRE, gain * _METRE, jerks[0])]
+        turns = (
+            (swivel, settings.swivel, velocity.swivel, acceleration.swivel, "ORI1"),
+            (rotation, settings.rotation, velocity.rotation, acceleration.rotation, "ORI2"),
         )
+        for angle, (fastest, steepest), most, most_gain, name in turns:
+            turn = min(_above(fastest, f"$VEL.{name}"), most)
+            turn_gain = min(_above(steepest, f"$ACC.{name}"), most_gain)
+            limits.append(PathLimits(angle, turn, turn_gain, jerks[1]))
         return tuple(limit for limit in limits if limit.length > _STILL)
 
-    def _reduced(self, curve: Curve, settings: Settings) -> tuple[PathLimits, ...]:
+    def reduced(self, curve: Curve, settings: Settings) -> tuple[PathLimits, ...]:
         """In T1 the tool is no faster than $VEL_CP_T1 in PTP either [MOT-07]."""
         if not settings.is_reduced:
             return ()
@@ -187,7 +233,7 @@ class Tracks:
             return ()
         return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
 
-    def _check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
+    def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
         """Raise `Fault` 1102 where an axis would be too fast and $CP_VEL_TYPE forbids to slow down.
 
         The speed looked at is the programmed one, or what can be reached from standstill at the

@@ -10,15 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from interp.blocks import routine_at, way_to
 from interp.events import Sink
 from interp.executor import Reader
 from interp.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.inspection import Seen
 from interp.program import CheckedProgram, Limits
 from interp.requests import At, Code, Crash, End, Fail, Read, Request, Slice, StopAdvance, Value
 from interp.tree.memory import fill_data
-from interp.tree.places import MOST_CELLS
 from interp.tree.run import Call, Frame, Guard, Run, Steps
-from interp.tree.statements import Resumed, Statements
+from interp.tree.statements import Resumed, Selected, Statements
+from interp.variables import MOST_CELLS, too_large
 
 __all__ = ["TreeExecutor"]
 
@@ -32,7 +34,7 @@ class _Interrupted:
     """
 
     request: Request | None
-    resumed: Resumed | None
+    resumed: Resumed | Selected | None
     guard: Guard
     final: Request | None
 
@@ -73,13 +75,12 @@ class TreeExecutor:
                 raise LinkError(f"the data lists cannot be filled: {error}") from None
         self._data_cells: int = self._run.cells
         start = program.start(routine)
-        if self._run.cells + self._run.size_of(start) > MOST_CELLS:
-            raise LinkError(f"the variables of {start.name} are too large")
+        is_large = self._run.cells + self._run.size_of(start) > MOST_CELLS
         self._stack = [self._active(Call(start, {}))]
         self._open: Request | None = None
         self._is_asked = False
-        self._resumed: Resumed | None = None
-        self._final: Request | None = None
+        self._resumed: Resumed | Selected | None = None
+        self._final: Request | None = Fail(self._at(), too_large(start)) if is_large else None
 
     # ----------------------------------------------------------------------- the port
 
@@ -161,6 +162,20 @@ class TreeExecutor:
             self._left(active)
         self._run.guard = Guard.OFF
         self._open, self._is_asked, self._resumed = None, False, Resumed()
+
+    def look(self, text: str) -> Seen | None:
+        """A variable where the program is; see `interp.inspection`."""
+        return Statements(self._run, self._stack[-1].frame).look(text)
+
+    def select(self, line: int) -> None:
+        """Go on at a line of the routine that runs; see `interp.inspection`."""
+        frame = self._stack[-1].frame
+        routine = routine_at(self._run.program, frame.unit.module.path, frame.name)
+        way = () if routine is None else way_to(routine, line)
+        if not way:
+            raise ValueError(f"no statement begins in line {line}")
+        self._run.guard = Guard.OFF
+        self._open, self._is_asked, self._resumed = None, False, Selected(way)
 
     # ----------------------------------------------------------------------- the stack
 

@@ -7,15 +7,26 @@ Everything is a generator, as any variable may be one of the world's, and any ca
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import PurePosixPath
 from typing import Any
 
 from grammar import ast
 from grammar.predefined import System
 from grammar.scopes import Found
 from grammar.symbols import Kind, SignalSymbol, Space
-from grammar.types import BOOL, INT, REAL, UNKNOWN, Aggregate, Enumeration, Structure, Type
+from grammar.types import (
+    BOOL,
+    INT,
+    REAL,
+    UNKNOWN,
+    Aggregate,
+    Enumeration,
+    Structure,
+    Type,
+)
 from interp.builtins import BUILTINS, WORLD, Surroundings, call
 from interp.faults import LinkError, fault
+from interp.inspection import Seen
 from interp.operators import apply, apply_unary
 from interp.requests import At, Invoke, Read, StopAdvance, Write
 from interp.tree.names import find_text
@@ -34,6 +45,16 @@ from interp.values import (
     letters,
     position_type,
     single,
+)
+from interp.variables import (
+    is_complete,
+    is_complete_parameter,
+    is_referable,
+    mismatched,
+    untyped,
+    untyped_parameter,
+    untyped_result,
+    untyped_value,
 )
 
 __all__ = ["Expressions"]
@@ -170,9 +191,11 @@ class Expressions:
         found = self.run.program.declaration(found)
         symbol = found.symbol
         if found.scope.routine is not None and not isinstance(symbol, SignalSymbol):
-            if symbol not in self.frame.variables:  # its routine has ended
-                raise fault("uninitialised")
-            return self.frame.variables[symbol]
+            if symbol in self.frame.variables:
+                return self.frame.variables[symbol]
+            if not is_complete_parameter(self.run.program.type_of(found)):
+                raise untyped(symbol.name)
+            raise fault("uninitialised")  # its routine has ended
         if found.module is None or symbol.key.startswith("$"):
             return Remote((symbol.key,), self.run.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
@@ -180,6 +203,8 @@ class Expressions:
                 raise LinkError(f"the signal {symbol.name} leads nowhere")
             return self._signal(symbol, found, signals)
         if symbol not in self.run.data:
+            if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
+                raise untyped(symbol.name)
             raise LinkError(f"{symbol.name} is no variable")
         return self.run.data[symbol]
 
@@ -215,6 +240,8 @@ class Expressions:
         """What a place has, if anything."""
         if isinstance(place, Local):
             return place.get()
+        if not is_complete(place.type):
+            raise untyped_value(place.path)
         found: Value | None = yield Read(self.at(), place.path)
         return found
 
@@ -229,25 +256,37 @@ class Expressions:
 
     # ----------------------------------------------------------------------- calls
 
-    def call(self, node: ast.Call, _wanted: Type = UNKNOWN) -> Steps[Value]:
-        """Call a routine; a procedure gives ``None``, which the checker lets nobody use."""
+    def _called(self, node: ast.Call, _wanted: Type) -> Steps[Value]:
+        """The value of a function."""
+        value = yield from self.call(node, is_value=True)
+        if value is None:
+            raise LinkError(f"{node.name.text} gives no value")
+        return value
+
+    def call(self, node: ast.Call, *, is_value: bool) -> Steps[Value | None]:
+        """Call a routine; a procedure gives ``None``."""
         found = self.frame.unit.found(node.name)
         if found is None:
             raise LinkError(f"{node.name.text} is declared nowhere")
         if found.module is None:
-            given: Value = yield from self._predefined(node)
+            given: Value | None = yield from self._predefined(node, is_value=is_value)
             return given
         routine = self.run.program.routines.get(found.symbol)
         if routine is None:
             raise LinkError(f"{node.name.text} is a routine that no file has")
+        result_type = self.run.program.result_of(routine)
+        if result_type is not None and not is_complete(result_type):
+            raise untyped_result(routine.name)
         variables = {}
         for number, parameter in enumerate(routine.node.parameters):
             argument = node.arguments[number] if number < len(node.arguments) else None
             means = routine.scope.own(Space.VALUE, parameter.name.key)
             assert means is not None, "a routine's table has its parameters"
+            if not is_complete_parameter(self.run.program.type_of(means)):
+                raise untyped_parameter(means.symbol.name, routine.name)
             is_in = parameter.mode == "IN"
             variables[means.symbol] = yield from self._passed(means, argument, is_in=is_in)
-        result: Value = yield Call(routine, variables)
+        result: Value | None = yield Call(routine, variables)
         return result
 
     def _passed(
@@ -261,6 +300,8 @@ class Expressions:
             place = yield from self.place(argument)
             if isinstance(place, Remote):
                 return place
+            if not is_referable(type_, place.type):
+                raise mismatched(type_)
             return Local(place.parts, place.at, place.type, (name,))
         value = yield from self.value(argument, type_)
         made = fresh(sized(type_, value), name)
@@ -276,7 +317,7 @@ class Expressions:
         found = self.frame.unit.found(node.name)
         return found is None or found.symbol.kind is not Kind.CONSTANT
 
-    def _predefined(self, node: ast.Call) -> Steps[Any]:
+    def _predefined(self, node: ast.Call, *, is_value: bool) -> Steps[Any]:
         """Call what the controller brings along; what is passed :OUT is assigned afterwards."""
         name = node.name.key
         parameters = System.load().functions[name].parameters
@@ -295,6 +336,8 @@ class Expressions:
                 value = yield from self.value(argument, type_)
             places.append(place)
             values.append(value)
+        if is_value and System.load().functions[name].result == UNKNOWN:
+            raise untyped_result(name)
         if name in BUILTINS:
             reply = call(name, values, Surroundings(self.run.random, self._find))
             result, after = reply.result, reply.arguments
@@ -306,6 +349,20 @@ class Expressions:
             if place is not None and value is not None and value is not before:
                 yield from self.store(place, value)
         return result
+
+    def look(self, text: str) -> Seen | None:
+        """A variable of the program or a part of one, as `interp.inspection` has it."""
+        found = self._find(text)
+        answer = self.frame.scope.find(
+            Space.VALUE, text.partition("[")[0].partition(".")[0].upper()
+        )
+        if found is None or not isinstance(answer, Found):
+            return None
+        whole = self.run.program.declaration(answer)
+        if whole.scope.routine is not None or whole.module is None:
+            return Seen(found[0], copied(found[1]), "")
+        module = PurePosixPath(whole.module.path).stem.upper()
+        return Seen(found[0], copied(found[1]), f"{module}.{whole.symbol.key}")
 
     def _find(self, text: str) -> tuple[Type, Value | None] | None:
         """A variable of the program by what it is called here [TYP-18]."""
@@ -337,5 +394,5 @@ _VALUES: Mapping[type[Any], _Rule] = {
     ast.Unary: Expressions._unary,
     ast.Binary: Expressions._binary,
     ast.Aggregate: Expressions._aggregate,
-    ast.Call: Expressions.call,
+    ast.Call: Expressions._called,
 }

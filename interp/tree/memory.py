@@ -6,18 +6,34 @@ They live as long as the program, unlike the data of routines.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
+from weakref import WeakKeyDictionary
 
 from grammar import ast
+from grammar.link import Project
 from grammar.scopes import Found
-from grammar.symbols import Kind, SignalSymbol, Space
+from grammar.symbols import Symbol
 from interp.faults import LinkError
 from interp.program import CheckedProgram, Unit
 from interp.tree.expressions import Expressions
-from interp.tree.places import MOST_CELLS, Local, Place, cells, fresh
+from interp.tree.places import Local, Place, fresh
 from interp.tree.run import Frame, Run, at_once
 from interp.values import Value, copied
+from interp.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
 
 __all__ = ["fill_data", "system_values"]
+
+
+@dataclass(slots=True)
+class _Data:
+    """The variables of all data lists, and how many scalars they can hold."""
+
+    places: dict[Symbol, Local] = field(default_factory=dict)
+    cells: int = 0
+
+
+#: What is in the data lists at first, which is worked out once for each project.
+_FILLED: WeakKeyDictionary[Project, _Data] = WeakKeyDictionary()
 
 
 def fill_data(run: Run) -> None:
@@ -26,18 +42,17 @@ def fill_data(run: Run) -> None:
     Raises `LinkError` and `Fault` where an initial value cannot be had. Those whose names begin
     with a dollar sign are made as well, but it is the world that has them when the program runs.
     """
-    lists = [(unit, content) for unit in run.program.units.values() if (content := _data(unit))]
-    for unit, _ in lists:
-        _declare(run, unit)
-    for unit, content in lists:
-        _initialise(run, unit, content)
+    filled = _filled(run.program)
+    run.cells = filled.cells
+    run.data = {
+        symbol: Local([copied(place.get())], 0, place.type, place.path)
+        for symbol, place in filled.places.items()
+    }
 
 
 def system_values(program: CheckedProgram) -> Mapping[str, Value]:
     """What the data lists give the controller's own variables at first, by name in upper case."""
-    run = Run(program)
-    fill_data(run)
-    found = {symbol.key: place.get() for symbol, place in run.data.items()}
+    found = {symbol.key: place.get() for symbol, place in _filled(program).places.items()}
     return {
         key: copied(value)
         for key, value in found.items()
@@ -45,43 +60,40 @@ def system_values(program: CheckedProgram) -> Mapping[str, Value]:
     }
 
 
-def _data(unit: Unit) -> ast.DataList | None:
-    syntax = unit.module.syntax
-    return syntax.content if syntax and isinstance(syntax.content, ast.DataList) else None
+def _filled(program: CheckedProgram) -> _Data:
+    data = _FILLED.get(program.project)
+    if data is None:
+        data = _Data()
+        lists = list(data_lists(program))
+        for unit, _ in lists:
+            _declare(data, program, unit)
+        run = Run(program)
+        run.data = data.places
+        for unit, content in lists:
+            _initialise(run, unit, content)
+        _FILLED[program.project] = data
+    return data
 
 
-def _declare(run: Run, unit: Unit) -> None:
-    scope = run.program.project.scope(unit.module)
-    assert unit.module.table is not None, "it was checked"
-    for space, symbol in unit.module.table.table.symbols():
-        is_variable = symbol.kind in (Kind.VARIABLE, Kind.CONSTANT)
-        if space is Space.VALUE and is_variable and not isinstance(symbol, SignalSymbol):
-            found = scope.own(space, symbol.key)
-            assert found is not None, "a scope has what its table has"
-            type_ = run.program.type_of(found)
-            run.cells += cells(type_)
-            if run.cells > MOST_CELLS:
-                raise LinkError(f"{unit.module.path}: the data lists hold too much")
-            run.data[symbol] = fresh(type_, symbol.key)
+def _declare(data: _Data, program: CheckedProgram, unit: Unit) -> None:
+    for found, type_ in data_variables(program, unit):
+        data.cells += cells(type_)
+        if data.cells > MOST_CELLS:
+            raise LinkError(f"{unit.module.path}: the data lists hold too much")
+        data.places[found.symbol] = fresh(type_, found.symbol.key)
 
 
 def _initialise(run: Run, unit: Unit, content: ast.DataList) -> None:
+    """Where errors are no obstacle, what cannot be had is left without a value."""
     scope = run.program.project.scope(unit.module)
     frame = Frame(unit, content.name.text, scope, {}, None, 0)
     inside = _DataList(run, frame)
-    for item in content.items:
-        frame.line = unit.line(item)
+    for line, target, value in first_values(unit, content):
         try:
-            match item:
-                case ast.VariableDeclaration():
-                    for declarator in item.declarators:
-                        if declarator.value is not None:
-                            variable = ast.Variable(declarator.span, declarator.name)
-                            inside.give(variable, declarator.value)
-                case ast.Assignment():
-                    inside.give(item.target, item.value)
+            inside.give(target, value)
         except LinkError as error:
-            raise LinkError(f"{unit.module.path}:{frame.line}: {error}") from None
+            if run.program.is_strict:
+                raise LinkError(f"{unit.module.path}:{line}: {error}") from None
 
 
 class _DataList(Expressions):

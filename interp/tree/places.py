@@ -7,11 +7,9 @@ the elements of an array. So a reference to a part is a place like any other, an
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, Final
+from typing import Any
 
 from grammar.types import UNKNOWN, Array, Structure, Type
 from interp.faults import LinkError, fault
@@ -28,21 +26,15 @@ from interp.values import (
 )
 
 __all__ = [
-    "MOST_CELLS",
     "Local",
     "Place",
     "Remote",
-    "cells",
     "element",
     "fresh",
     "member",
     "of_type",
     "sized",
 ]
-
-
-#: All variables of a program together hold at most so many scalars, as in the machines.
-MOST_CELLS: Final = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +54,8 @@ class Local:
     def set(self, value: Value) -> None:
         """Convert and copy a value into the place; faults `inadmissible`, `overflow`."""
         old = self.parts[self.at]
+        if isinstance(old, ArrayValue) and isinstance(value, ArrayValue):
+            _check_elements(old, value)
         if isinstance(old, StructureValue | ArrayValue):
             fill(old, value)
         else:
@@ -79,6 +73,13 @@ class Remote:
 Place = Local | Remote
 
 
+def _check_elements(target: ArrayValue, value: ArrayValue) -> None:
+    """Arrays are filled from such of the same elements: nothing is converted one by one."""
+    of, given = target.type.element, value.type.element
+    if of != given and len(target.sizes) == len(value.sizes):
+        raise LinkError(f"an array of {given} fills one of {of}")
+
+
 def of_type(type_: Type, value: Value) -> Value:
     """A copy of a value, converted as far as the type it is for is known."""
     if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
@@ -91,24 +92,6 @@ def fresh(type_: Type, name: str) -> Local:
     """A variable without a value."""
     is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
     return Local([None if is_open else empty(type_)], 0, type_, (name,))
-
-
-@cache
-def cells(type_: Type) -> int:
-    """How many scalars a variable holds; 1 where its type or size is not known.
-
-    Raises `LinkError` where there are more than a program may have.
-    """
-    match type_:
-        case Structure():
-            count = sum(cells(one.type) for one in type_.members)
-        case Array():
-            count = cells(type_.element) * math.prod(size or 1 for size in type_.sizes)
-        case _:
-            return 1
-    if count > MOST_CELLS:
-        raise LinkError(f"a variable of type {type_} is too large")
-    return count
 
 
 def sized(type_: Type, value: Value) -> Type:

@@ -13,14 +13,15 @@ from typing import Any, TypeVar
 
 from grammar import ast
 from grammar.scopes import Scope
-from grammar.symbols import Space, Symbol
+from grammar.symbols import Symbol
 from grammar.types import Type
 from interp.builtins import Randomness
 from interp.events import Sink
 from interp.faults import BudgetExhausted, LinkError
 from interp.program import CheckedProgram, Limits, Routine, Unit
 from interp.requests import At, Code, Request, Slice
-from interp.tree.places import Local, Place, cells
+from interp.tree.places import Local, Place
+from interp.variables import cells_of_routine
 
 __all__ = ["Call", "Frame", "Guard", "Handed", "Run", "Steps", "at_once"]
 
@@ -128,12 +129,7 @@ class Run:
         """How many cells the parameters and local data of a routine have."""
         size = self._sizes.get(routine)
         if size is None:
-            size = 0
-            for space, symbol in routine.table.table.symbols():
-                found = routine.scope.own(space, symbol.key)
-                if space is Space.VALUE and found is not None:
-                    size += cells(self.program.type_of(found))
-            self._sizes[routine] = size
+            size = self._sizes[routine] = cells_of_routine(self.program, routine)
         return size
 
     def hand(

@@ -21,8 +21,9 @@ from interp.tree.motions import Motions
 from interp.tree.places import Remote, fresh, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values import Value, known
+from interp.variables import is_complete
 
-__all__ = ["Resumed", "Statements"]
+__all__ = ["Resumed", "Selected", "Statements"]
 
 
 @dataclass(slots=True, eq=False)
@@ -47,8 +48,23 @@ class Resumed(Exception):
     """The program comes back here by RESUME, and goes on behind the statement [INT-10]."""
 
 
+@dataclass(slots=True, eq=False)
+class Selected(Exception):
+    """The program goes on elsewhere in the routine by block selection [ADV-14].
+
+    ``way`` are the blocks around the statement, and the statement.
+    """
+
+    way: tuple[ast.Statement, ...]
+
+
 class Statements(Motions):
-    """Executes the statements of one frame."""
+    """Executes the statements of one frame.
+
+    ``_way`` is empty but on the way to a statement that was selected.
+    """
+
+    _way: tuple[ast.Statement, ...] = ()
 
     def routine(self, node: ast.Routine) -> Steps[Value | None]:
         """Execute a routine to its end; gives its result."""
@@ -62,6 +78,8 @@ class Statements(Motions):
             value = returned.value
         except _Goto as jump:
             raise LinkError(f"the label {jump.label} is not there to go to") from None
+        except _Exit:
+            raise LinkError("EXIT outside of a loop") from None
         if self.run.sink is not None:
             self.run.sink.leave(self.at(), self.frame.name)
         return value
@@ -81,7 +99,10 @@ class Statements(Motions):
         found = self.frame.unit.found(declarator.name)
         if found is None or found.symbol in self.frame.variables:  # a parameter
             return
-        place = fresh(self.run.program.type_of(found), declarator.name.key)
+        type_ = self.run.program.type_of(found)
+        if not is_complete(type_):  # it fails where it is used
+            return
+        place = fresh(type_, declarator.name.key)
         self.frame.variables[found.symbol] = place
         if declarator.value is not None:
             place.set(at_once(self.value(declarator.value, place.type)))
@@ -89,7 +110,7 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- blocks
 
     def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
-        place = 0
+        place = max(self._place_on_way(body), 0)
         while place < len(body):
             try:
                 yield from self._statement(body[place])
@@ -98,6 +119,21 @@ class Statements(Motions):
                 place = _place_of(jump.label, body)
                 if place < 0:
                     raise
+            except Selected as selected:
+                self._way = selected.way
+                place = self._place_on_way(body)
+                if place < 0:
+                    raise
+
+    def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int:
+        """Which statement of a block leads to the one selected, or -1."""
+        return next((place for place, one in enumerate(body) if one in self._way), -1)
+
+    def _is_entered(self, node: ast.Statement) -> bool:
+        """Whether a block is only entered, on the way to what was selected in it."""
+        if self._way[-1:] == (node,):
+            self._way = ()
+        return node in self._way
 
     def _statement(self, node: ast.Statement) -> Steps[None]:
         rule = _RULES.get(type(node))
@@ -105,7 +141,8 @@ class Statements(Motions):
             return
         try:
             try:
-                yield from self._begin(node)
+                if not self._is_entered(node):
+                    yield from self._begin(node)
                 yield from rule(self, node)
             except Fault as error:
                 if self.run.guard is not Guard.NOW:
@@ -131,12 +168,17 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- control flow
 
     def _if(self, node: ast.If) -> Steps[None]:
-        if (yield from self._is_true(node.condition)):
+        is_entered = self._place_on_way(node.body) >= 0
+        if is_entered or (not self._way and (yield from self._is_true(node.condition))):
             yield from self._block(node.body)
         elif node.otherwise is not None:
             yield from self._block(node.otherwise)
 
     def _switch(self, node: ast.Switch) -> Steps[None]:
+        for block in (*(branch.body for branch in node.branches), node.default or ()):
+            if self._place_on_way(block) >= 0:
+                yield from self._block(block)
+                return
         selector = yield from self.value(node.selector)
         wanted = getattr(selector, "type", INT)
         for number, branch in enumerate(node.branches, start=1):
@@ -168,7 +210,7 @@ class Statements(Motions):
 
     def _while(self, node: ast.While) -> Steps[None]:
         try:
-            while (yield from self._is_true(node.condition)):
+            while self._way or (yield from self._is_true(node.condition)):
                 yield from self._block(node.body)
                 yield from self._begin(node)
         except _Exit:
@@ -202,6 +244,8 @@ class Statements(Motions):
 
     def _return(self, node: ast.Return) -> Steps[None]:
         type_ = self.frame.result
+        if node.value is None and type_ is not None:
+            raise LinkError("RETURN without a value")
         if node.value is None or type_ is None:
             raise _Return(None)
         value = yield from self.value(node.value, type_)
@@ -222,7 +266,7 @@ class Statements(Motions):
         yield from self.store(place, (yield from self.value(node.value, place.type)))
 
     def _call(self, node: ast.CallStatement) -> Steps[None]:
-        yield from self.call(node.call)
+        yield from self.call(node.call, is_value=False)
 
     def _halt(self, _node: ast.Halt) -> Steps[None]:
         yield requests.Halt(self.at())

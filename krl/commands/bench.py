@@ -11,6 +11,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from krl.commands.bench_arm import arm
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
 
@@ -36,6 +37,7 @@ _MB = 1_000_000
 _LARGEST = 2_000
 
 app = typer.Typer(help="Measure the tools themselves.")
+app.command("arm")(arm)
 
 
 @app.callback()

@@ -210,4 +210,33 @@ def _lint(words: Iterable[str]) -> int:
 
 
 def _import(words: Sequence[str], json_file: Path | None) -> int:
-    raise Unusable(f"import: not built yet {words} {json_file}")
+    """Judge a recording: what it fails, and what it says of rules that are unconfirmed."""
+    from conformance.case import CaseError, find_cases
+    from conformance.record import record_of
+    from conformance.recording import Recording, RecordingError, answers, judge_recording
+    from krl.writing import write_json
+
+    if len(words) != 1:
+        raise Unusable("krl conform import takes one file")
+    begun = time.perf_counter()
+    try:
+        recording = Recording.read(Path(words[0]))
+        results, wrong = judge_recording(recording, find_cases())
+    except (RecordingError, CaseError) as error:
+        raise Unusable(str(error)) from error
+    for text in wrong:
+        typer.echo(one_line(text), err=True)
+    if not results:
+        raise Unusable(f"{words[0]}: none of its cases can be judged")
+    seconds = time.perf_counter() - begun
+    if json_file is not None:
+        version = metadata.version("krl-workbench")
+        robots = sorted({result.robot for one in results for result in one.results})
+        names = [recording.controller]
+        write_json(record_of(results, names, robots, version=version, seconds=seconds), json_file)
+    typer.echo(one_line(f"recorded on {recording.controller}"))
+    for answer in answers(results):
+        told = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
+        typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {told}")
+    _tell(results, seconds)
+    return FINDINGS if wrong or any(one.verdict == "fail" for one in results) else FINE

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.syntax import Syntax
 
 from krl.door import FINDINGS, FINE, Unusable
 from krl.progress import progress_bar
@@ -112,4 +111,5 @@ def _show(console: Console, finding: "Finding", reference: str) -> None:
     console.print(f"{parted.executor}: {parted.actual_text}", markup=False, soft_wrap=True)
     for path, text in finding.files:
         console.print(f"{path}:", markup=False)
-        console.print(Syntax(text.rstrip(), "text", line_numbers=True, background_color="default"))
+        for number, row in enumerate(text.rstrip().split("\n"), start=1):
+            console.print(f"{number:4} {row}", markup=False, soft_wrap=True)

@@ -1,18 +1,63 @@
-"""`krl asm` and `krl disasm`: programs of the bytecode machine as text and as image."""
+"""`krl compile`, `krl asm` and `krl disasm`: programs of the bytecode machine."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import Unusable
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.programs import load_program
 
 if TYPE_CHECKING:
     from interp.bytecode.program import Program
 
-__all__ = ["assemble_file", "disassemble_image"]
+__all__ = ["assemble_file", "compile_file", "disassemble_image"]
 
 _LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large
+_MOST_TOLD = 20
+
+
+def compile_file(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="The program; archive.zip/path/name.src in an archive."
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
+    ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Write nothing while the checker finds an error.")
+    ] = False,
+) -> int:
+    """Compile a program with its whole project to bytecode, verify it, and write its image.
+
+    It can begin with any routine of the file that has no parameters, and has those of the submit
+    programs too. What ends the program when it is reached is told on stderr, with exit status 1: a
+    routine that no file has, a variable of no known type. The image is written all the same.
+    """
+    from interp.bytecode.compiler import compile_program
+    from interp.faults import LinkError
+
+    try:
+        program, left = load_program(file, strict=strict)
+        compiled = compile_program(program)
+    except LinkError as error:
+        raise Unusable(f"{file}: {error}") from error
+    target = output or file.with_suffix(".krlb")
+    write_image_of(compiled.program, file, target)
+    told = [f"left out: {why}" for why in left]
+    told += [f"{one.path}:{one.line}: {one.reason}" for one in compiled.refusals]
+    for line in told[:_MOST_TOLD]:
+        typer.echo(one_line(line), err=True)
+    if len(told) > _MOST_TOLD:
+        typer.echo(f"and {len(told) - _MOST_TOLD} more", err=True)
+    codes = compiled.program.codes
+    count = sum(len(code.instructions) for code in codes)
+    typer.echo(f"{target}: {len(codes):,} code objects, {count:,} instructions")
+    return FINDINGS if compiled.refusals else FINE
 
 
 def assemble_file(

@@ -1,5 +1,6 @@
 // A case's timing diagram: motions, inputs, outputs and marks over one time axis.
 
+const signalName = ({ signal, name, number: index, kind }) => (signal && index !== undefined ? `${signal}[${index}]` : String(signal ?? name ?? kind));
 const switching = new Set(["in", "out", "anout"]);
 const marking = new Set(["trigger", "interrupt_enter", "brake", "resume", "message", "fault", "advance_stop", "halt", "wait"]);
 const isOn = (value) => value === true || (typeof value === "number" && value !== 0);
@@ -12,7 +13,7 @@ function timing(events) {
   const marks = timed.filter((event) => marking.has(event.kind));
   for (const event of timed) {
     if (switching.has(event.kind)) {
-      const name = String(event.signal ?? event.name ?? event.kind);
+      const name = signalName(event);
       if (!signals.has(name)) signals.set(name, []);
       signals.get(name).push(event);
     }

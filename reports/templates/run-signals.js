@@ -31,13 +31,14 @@ function lineStrip() {
 }
 
 const isOn = (value) => value === true || (typeof value === "number" && value !== 0);
+const signalName = ({ signal, name, number: index, kind }) => (signal && index !== undefined ? `${signal}[${index}]` : String(signal ?? name ?? kind));
 const switching = new Set(["in", "out", "anout"]);
 
 function signalStrip() {
   const rows = new Map();
   for (const event of events) {
     if (!switching.has(event.kind)) continue;
-    const name = String(event.signal ?? event.name ?? event.kind);
+    const name = signalName(event);
     if (!rows.has(name)) rows.set(name, []);
     rows.get(name).push(event);
   }

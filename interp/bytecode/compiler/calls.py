@@ -49,6 +49,15 @@ from interp.bytecode.program import (
     Program,
 )
 from interp.program import Routine
+from interp.variables import (
+    MOST_CELLS,
+    cells_of_routine,
+    is_complete,
+    is_complete_parameter,
+    mismatched,
+    untyped_parameter,
+    untyped_result,
+)
 
 __all__ = ["Binding", "Calls", "Formals", "formals_of"]
 
@@ -85,7 +94,7 @@ class Calls(Expressions):
         """The value of a function."""
         value = self.called(node, is_value=True)
         if value is None:
-            raise self.refuse(f"{node.name.text} gives no value")
+            raise self.unlinked(f"{node.name.text} gives no value")
         return value
 
     def called(self, node: ast.Call, *, is_value: bool) -> Value | None:
@@ -107,6 +116,8 @@ class Calls(Expressions):
         formals = formals_of(routine, program.type_of)
         result = program.result_of(routine)
         kept: Cells | None = None
+        if result is not None and not is_complete(result):
+            raise self.refuse(str(untyped_result(routine.name)))
         if result is not None:
             result = self.closed(result)
             if not isinstance(result, Plain):
@@ -116,12 +127,12 @@ class Calls(Expressions):
         for place, type_ in enumerate(formals.types):
             argument = node.arguments[place] if place < len(node.arguments) else None
             later = node.arguments[place + 1 :]
-            if type_ == UNKNOWN:
+            if not is_complete_parameter(type_):
                 name = formals.found[place].symbol.name
-                raise self.refuse(
-                    f"the type of {name}, a parameter of {routine.name}, is not known"
-                )
+                raise self.refuse(str(untyped_parameter(name, routine.name)))
             bindings.append(self._passed(type_, argument, formals.is_in[place], later))
+        if self.context.tables.cells + cells_of_routine(program, routine) > MOST_CELLS:
+            raise self.fail("stack")
         self.emit(Op.CALL, self.context.project.code_of(routine, tuple(bindings)))
         if kept is not None:
             self.refer(kept)
@@ -189,7 +200,7 @@ class Calls(Expressions):
                 return
         elif given == Block(self.closed(type_)):
             return
-        raise self.refuse(f"an argument :OUT of another type than {type_}")
+        raise self.unlinked(str(mismatched(type_)))
 
     def _copied(self, type_: Type, argument: ast.Expression, is_copied_by_call: bool) -> None:
         """Push a reference to a value; the call copies it, unless something comes between."""
@@ -249,15 +260,15 @@ class Calls(Expressions):
         name = node.name.key
         function = System.load().functions[name]
         is_builtin = name in BUILTINS
-        if is_builtin and not _fits(node, function.parameters, function.has_more):
-            raise self.fail("argument")
         parts = [
             self._argument(name, argument, parameter, is_builtin=is_builtin)
             for argument, parameter in _paired(node.arguments, function.parameters)
         ]
         result = function.result
         if result == UNKNOWN and is_value:
-            raise self.refuse(f"the type that {name} gives is not known")
+            raise self.refuse(str(untyped_result(name)))
+        if is_builtin and not _fits(node, function.parameters, function.has_more):
+            raise self.fail("argument")
         if result is None or result == UNKNOWN:
             self._cross(name, parts, None, is_builtin=is_builtin)
             return None

@@ -22,11 +22,15 @@ __all__ = ["Context", "Ended", "Refusal"]
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Something of a program that is not compiled, though it may be right; it ends the program."""
+    """Something that ends the program with a `LinkError` when it is reached.
+
+    It ``is_missing``: named and nowhere to be found; or it is not compiled, though it may be right.
+    """
 
     path: str
     line: int
     reason: str
+    is_missing: bool
 
 
 class Ended(Exception):
@@ -67,6 +71,7 @@ class Context:
         """The variables of the data lists."""
         return self.project.tables.places
 
-    def note(self, reason: str) -> None:
-        """Something is refused at the line at hand."""
-        self.project.refusals.append(Refusal(self.unit.module.path, self.line, reason))
+    def note(self, reason: str, *, is_missing: bool) -> None:
+        """Something at the line at hand ends the program."""
+        refusal = Refusal(self.unit.module.path, self.line, reason, is_missing)
+        self.project.refusals[refusal] = None

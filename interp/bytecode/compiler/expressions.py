@@ -50,6 +50,7 @@ from interp.bytecode.compiler.writer import Label
 from interp.faults import Fault, LinkError
 from interp.operators import Primitive, Selection, kind_of, select
 from interp.values import constant, letters, position_type, single
+from interp.variables import untyped
 
 __all__ = ["Expressions"]
 
@@ -192,7 +193,7 @@ class Expressions(Memory):
         if primitive.name == "compose":
             return self._composed(left, right, first)
         if primitive.operands[0] == "ENUM" and left.type != right.type:
-            raise self.refuse(f"{left.type} and {right.type} are compared")
+            return self.unlike(primitive)
         for step in reversed(selection.conversions[0]):
             self.writer.insert(between, Op[step.name.upper()])
         for step in selection.conversions[1]:
@@ -209,6 +210,13 @@ class Expressions(Memory):
         if selection is None:
             raise self.fail("operand")
         return selection
+
+    def unlike(self, primitive: Primitive) -> Value:
+        """Constants of two enumerations: they are never the same."""
+        self.emit(Op.DROP)
+        self.emit(Op.DROP)
+        self.emit(Op.PUSH_BOOL, int(primitive.name != "eq_enum"))
+        return Scalar(BOOL)
 
     def _apply(self, primitive: Primitive) -> None:
         """Carry a primitive out; adding a constant is an instruction of its own."""
@@ -273,6 +281,9 @@ class Expressions(Memory):
         """Where an expression has its value."""
         match node:
             case ast.Variable():
+                found = self.context.unit.found(node.name)
+                if found is not None and found.symbol.kind is Kind.IMPORT:
+                    self.ask("StopAdvance")
                 return self.variable(node.name)
             case ast.Parenthesised():
                 return self.place(node.inner)
@@ -306,7 +317,7 @@ class Expressions(Memory):
         if found.scope.routine is not None and not isinstance(symbol, SignalSymbol):
             if symbol in self.context.variables:
                 return self.context.variables[symbol]
-            raise self.refuse(f"the type of {symbol.name} is not known")
+            raise self.refuse(str(untyped(symbol.name)))
         if self._is_remote(found):
             return Remote((symbol.key,), self.context.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
@@ -316,7 +327,7 @@ class Expressions(Memory):
         if symbol in self.context.places:
             return DataCells(*self.context.places[symbol])
         if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
-            raise self.refuse(f"the type of {symbol.name} is not known")
+            raise self.refuse(str(untyped(symbol.name)))
         raise self.unlinked(f"{symbol.name} is no variable")
 
     def _is_remote(self, found: Found) -> bool:

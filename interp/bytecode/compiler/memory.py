@@ -28,6 +28,7 @@ from interp.bytecode.compiler.places import (
 from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
 from interp.faults import FAULTS, LinkError
 from interp.values import single
+from interp.variables import is_complete, untyped_value
 
 __all__ = ["Memory"]
 
@@ -57,14 +58,24 @@ class Memory:
 
     def unlinked(self, reason: str) -> Ended:
         """The program ends here with a `LinkError`, on every executor."""
+        self.context.note(reason, is_missing=True)
+        return self._ended(reason)
+
+    def _ended(self, reason: str) -> Ended:
         text = reason.encode("latin-1", errors="replace").decode("latin-1")
         self.emit(Op.UNLINKED, self.context.tables.text(text))
         return Ended()
 
     def refuse(self, reason: str) -> Ended:
         """The program ends here because it cannot be compiled."""
-        self.context.note(reason)
-        return self.unlinked(reason)
+        self.context.note(reason, is_missing=False)
+        return self._ended(reason)
+
+    # ----------------------------------------------------------------------- asking
+
+    def ask(self, request: str, *parts: Argument) -> None:
+        """Make a request of what lies on the stack."""
+        self.emit(Op.ASK, self.context.tables.ask(Ask(request, parts, None)))
 
     # ----------------------------------------------------------------------- types
 
@@ -139,8 +150,9 @@ class Memory:
     def read(self, place: Remote) -> Value:
         """Ask the world for a value."""
         type_ = place.type
-        if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
-            raise self.refuse(f"the type of {_written(place)} is not known")
+        if not is_complete(type_):
+            name, *rest = place.path
+            raise self.refuse(str(untyped_value([str(name), *("" for _ in rest)])))
         type_ = self.closed(type_)
         path = self.pushed_path(place)
         ask = self.context.tables.ask(Ask("Read", (path,), self.number(type_)))
@@ -306,7 +318,7 @@ class Memory:
         """Tell the world a value. The indices of the path come before the value."""
         path = self._path_below(place, behind)
         part = self.remote_value(place.type, value, behind + _pushes(place))
-        self.emit(Op.ASK, self.context.tables.ask(Ask("Write", (path, part), None)))
+        self.ask("Write", path, part)
 
     def _path_below(self, place: Remote, behind: int) -> Items:
         """The path as a part of a request; its indices are pushed below the value."""
@@ -379,7 +391,3 @@ def _pushes(place: Remote) -> int:
     """How many instructions push the indices of a path."""
     holes = [step for step in place.path if isinstance(step, Hole)]
     return sum(2 if hole.is_formal else 1 for hole in holes)
-
-
-def _written(place: Remote) -> str:
-    return ".".join("[]" if isinstance(step, int | Hole) else step for step in place.path)

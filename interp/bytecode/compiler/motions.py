@@ -8,11 +8,19 @@ from grammar.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
 from grammar.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.calls import Calls
-from interp.bytecode.compiler.places import Block, Cells, Remote, Scalar, Value
+from interp.bytecode.compiler.places import (
+    Block,
+    Cells,
+    Place,
+    Pushed,
+    PushedView,
+    Remote,
+    Scalar,
+    Value,
+)
 from interp.bytecode.compiler.writer import Label
 from interp.bytecode.program import (
     Argument,
-    Ask,
     Choice,
     CodeKind,
     Constant,
@@ -44,10 +52,6 @@ _CONSTANT = (
 
 class Motions(Calls):
     """Makes the code of statements that ask the world to do something."""
-
-    def ask(self, request: str, *parts: Argument) -> None:
-        """Make a request of what lies on the stack."""
-        self.emit(Op.ASK, self.context.tables.ask(Ask(request, parts, None)))
 
     # ----------------------------------------------------------------------- motions
 
@@ -160,7 +164,7 @@ class Motions(Calls):
                 value = self._optional(node.value)
                 return Record("SplineRange", 0, (*words, value, Constant(False)))
         place = self._optional(node.place)
-        condition = self._handed_over(node.condition, CodeKind.CONDITION)
+        condition = self.handed_over(node.condition, CodeKind.CONDITION)
         return Record("SplineStop", 0, (place, Constant(node.on_start), condition))
 
     # ----------------------------------------------------------------------- triggers
@@ -174,7 +178,7 @@ class Motions(Calls):
         delay = self._optional(node.delay)
         output = self._output(node.action)
         priority = self._optional_integer(node.priority)
-        action = self._handed_over(node.action, CodeKind.ACTION)
+        action = self.handed_over(node.action, CodeKind.ACTION)
         words = Constant(node.place_kind), place, Constant(node.on_start)
         return (*words, delay, action, output, priority)
 
@@ -184,11 +188,12 @@ class Motions(Calls):
         self.integer(node)
         return Input(Mode.IN, self.number(INT))
 
-    def _handed_over(
+    def handed_over(
         self,
         node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
         kind: CodeKind,
     ) -> Handle:
+        """An action or a condition, as a part of a request."""
         return Handle(self.context.project.handed_over(self.context, node, kind))
 
     def _output(self, action: ast.Assignment | ast.CallStatement) -> Argument:
@@ -201,12 +206,20 @@ class Motions(Calls):
         before = self.writer.here
         place = self.place(action.target)
         if not isinstance(place, Remote):
-            if self.writer.here != before:
-                raise self.refuse("an action on a part of a variable")
+            self._forget(place, before)
             return Constant(None)
         value = self._known(action.value, place.type)
         path = self.pushed_path(place)
         return Items((path, self._as_part(value)))
+
+    def _forget(self, place: Place, behind: int) -> None:
+        """Take a place from the stack that was only looked for; its index may be wrong."""
+        if isinstance(place, Pushed):
+            kept = Cells(self.writer.temporary(place.type), place.type)
+            self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(kept.type))
+            self.emit(Op.COPY, self.number(kept.type))
+        elif isinstance(place, PushedView):
+            self.writer.cut(behind)
 
     def _known(self, node: ast.Expression, type_: Type) -> Known:
         """The value of a literal as a system variable receives it."""
@@ -254,8 +267,8 @@ class Motions(Calls):
     def interrupt_declaration(self, node: ast.InterruptDeclaration) -> None:
         """INTERRUPT DECL [INT-01]."""
         number = self._optional_integer(node.number)
-        condition = self._handed_over(node.condition, CodeKind.CONDITION)
-        action = self._handed_over(node.action, CodeKind.ACTION)
+        condition = self.handed_over(node.condition, CodeKind.CONDITION)
+        action = self.handed_over(node.action, CodeKind.ACTION)
         self.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
 
     def interrupt_switch(self, node: ast.InterruptSwitch) -> None:
@@ -274,7 +287,7 @@ class Motions(Calls):
         source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
         name = self._signal_name(source)
         numbers = [self._optional(one) for one in (node.delay, node.minimum, node.maximum)]
-        cycle = self._handed_over(node.assignment, CodeKind.ACTION)
+        cycle = self.handed_over(node.assignment, CodeKind.ACTION)
         words = Constant(node.keyword), Constant(True), Constant(name)
         self.ask("SwitchSignal", *words, cycle, *numbers)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from grammar import ast
 from grammar.symbols import Symbol
-from grammar.types import BOOL, INT, UNKNOWN, Array, Type
+from grammar.types import BOOL, INT, Array, Type
 from grammar.walk import walk
+from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
 from interp.bytecode.compiler.calls import Binding, Formals, formals_of
 from interp.bytecode.compiler.context import Context, Refusal
@@ -31,24 +33,35 @@ from interp.bytecode.program import Code, CodeKind, Mode, Program
 from interp.bytecode.verify import measured
 from interp.faults import LinkError
 from interp.program import CheckedProgram, Routine
+from interp.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
 
 __all__ = ["Compiled", "Project", "compile_program"]
 
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A program, and what of it is not compiled though it may be right."""
+    """A program, and what ends it when it is reached.
+
+    ``starts`` are the code objects of the routines that it can begin with, by their symbols.
+    """
 
     program: Program
     refusals: tuple[Refusal, ...]
+    starts: Mapping[Symbol, int]
 
 
-def compile_program(program: CheckedProgram) -> Compiled:
+def compile_program(program: CheckedProgram, starts: Iterable[Routine] | None = None) -> Compiled:
     """Compile a program; raises `LinkError` where it cannot be run at all.
 
-    It can begin with any routine of its first file that has no parameters.
+    ``starts`` are the routines without parameters that it can begin with, by default all such of
+    its first file and of the submit programs. What none of them calls is not compiled.
     """
-    return Project(program).compiled()
+    if starts is None:
+        submits = (unit for unit in program.units.values() if unit.module.suffix == ".sub")
+        files = dict.fromkeys((program.main, *submits))
+        found = (routine for unit in files for routine in program.routines_of(unit))
+        starts = filter(program.can_begin, found)
+    return Project(program).compiled(tuple(starts))
 
 
 class Project:
@@ -57,22 +70,22 @@ class Project:
     def __init__(self, program: CheckedProgram) -> None:
         self.program = program
         self.tables = Tables()
-        self.refusals: list[Refusal] = []
+        self.refusals: dict[Refusal, None] = {}
         self._codes: list[Code | None] = []
         self._numbers: dict[tuple[Symbol, tuple[Binding, ...]], int] = {}
         self._todo: deque[tuple[int, Routine, tuple[Binding, ...]]] = deque()
 
-    def compiled(self) -> Compiled:
+    def compiled(self, starts: Sequence[Routine]) -> Compiled:
         """The whole program."""
         declare_data(self.program, self.tables)
         main = self.program.main
         scope = self.program.project.scope(main.module)
         writer = Writer(self.tables, "", CodeKind.ROUTINE, "", 0)
         initial = initial_values(Context(self, main, scope, writer), self.tables)
-        for routine in self.program.routines_of(main):
-            if not routine.node.parameters:
-                self.code_of(routine, ())
-        if not self._codes:
+        numbers: dict[Symbol, int] = {
+            routine.table.routine: self.code_of(routine, ()) for routine in starts
+        }
+        if not numbers:
             raise LinkError(f"{main.module.path} has no routine that a program can begin with")
         while self._todo:
             number, routine, bindings = self._todo.popleft()
@@ -88,7 +101,7 @@ class Project:
             initial,
             codes,
         )
-        return Compiled(measured(program), tuple(self.refusals))
+        return Compiled(measured(program), tuple(self.refusals), numbers)
 
     # ----------------------------------------------------------------------- routines
 
@@ -109,6 +122,9 @@ class Project:
         line = unit.line(routine.node)
         writer = Writer(self.tables, routine.name, CodeKind.ROUTINE, unit.module.path, line)
         context = Context(self, unit, routine.scope, writer, line=line, number=number)
+        if self.tables.cells + cells_of_routine(self.program, routine) > MOST_CELLS:
+            writer.emit(Op.UNLINKED, self.tables.text(str(too_large(routine))))
+            return writer.code()
         result = self.program.result_of(routine)
         if result is not None:
             self._give(context, result)
@@ -157,12 +173,9 @@ class Project:
                 if found is None or found.symbol in formals or found.symbol in context.variables:
                     continue
                 type_ = self.program.type_of(found)
-                if type_ == UNKNOWN:
+                if not is_complete(type_):
                     continue
-                try:
-                    closed = self.tables.closed(type_)
-                except LinkError:
-                    continue
+                closed = self.tables.closed(type_)
                 offset = context.writer.local(found.symbol.name, closed)
                 context.variables[found.symbol] = Cells(offset, closed)
 

@@ -16,9 +16,18 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.motions import Motions
-from interp.bytecode.compiler.places import Block, Cells, DataCells, Formal, Place, Scalar
+from interp.bytecode.compiler.places import (
+    Block,
+    Cells,
+    DataCells,
+    Formal,
+    Hole,
+    Place,
+    Remote,
+    Scalar,
+)
 from interp.bytecode.compiler.writer import Label
-from interp.bytecode.program import Constant, Input, Mode
+from interp.bytecode.program import CodeKind, Constant, Input, Mode
 from interp.faults import FAULTS
 from interp.values import letters
 
@@ -155,7 +164,7 @@ class Statements(Motions):
 
     def _exit(self, _node: ast.Exit, _end: Label) -> None:
         if not self._exits:
-            raise self.refuse("EXIT outside of a loop")
+            raise self.unlinked("EXIT outside of a loop")
         self.emit(Op.JUMP, self._exits[-1])
 
     def _goto(self, node: ast.Goto, _end: Label) -> None:
@@ -169,7 +178,7 @@ class Statements(Motions):
         type_ = self.context.result
         if node.value is None or type_ is None:
             if type_ is not None:
-                raise self.refuse("RETURN without a value")
+                raise self.unlinked("RETURN without a value")
             self.emit(Op.RETURN)
         elif isinstance(type_, Plain):
             self.convert(self.value(node.value, type_), type_)
@@ -245,8 +254,9 @@ class Statements(Motions):
             self.emit(Op[step.name.upper()])
         assert selection.primitive is not None, "relations do something"
         if selection.primitive.operands[0] == "ENUM" and kept.type != right.type:
-            raise self.refuse(f"{kept.type} and {right.type} are compared")
-        self.emit(Op[selection.primitive.name.upper()])
+            self.unlike(selection.primitive)
+        else:
+            self.emit(Op[selection.primitive.name.upper()])
         self.emit(Op.JUMP_IF, label)
 
     # ----------------------------------------------------------------------- FOR
@@ -356,7 +366,14 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- plain statements
 
     def _assignment(self, node: ast.Assignment, _end: Label) -> None:
-        self.tell(self.assign(self.place(node.target), node.value))
+        place = self.place(node.target)
+        match place:
+            case Remote(path=("$CYCFLAG", int() | Hole())):
+                number = self.pushed_path(place).parts[1]
+                condition = self.handed_over(node.value, CodeKind.CONDITION)
+                self.ask("SetCyclicFlag", number, condition)
+            case _:
+                self.tell(self.assign(place, node.value))
 
     def _call(self, node: ast.CallStatement, _end: Label) -> None:
         value = self.called(node.call, is_value=False)

@@ -11,6 +11,7 @@ from interp.bytecode.assembler import assemble
 from interp.bytecode.verify import verify
 from interp.bytecode.vm import Machine
 from interp.events import Recorder
+from interp.native import AVAILABLE
 from interp.program import Limits
 from interp.requests import Crash, End, Fail, Request
 
@@ -319,10 +320,27 @@ end
 """
 
 
-def machine(text: str, **options: Any) -> Machine:
-    """A machine that is to run the routine MAIN."""
-    sizes = {key: options.pop(key) for key in list(options) if key in Limits.__slots__}
-    return Machine(verify(assemble(text)), "MAIN", Limits(**sizes), **options)
+Starter = Callable[..., Machine]
+
+
+def _native() -> type[Machine]:
+    if not AVAILABLE:
+        pytest.skip("the machine in C was not built")
+    from interp.native.machine import Machine as InC
+
+    return InC
+
+
+@pytest.fixture(params=["python", "c"])
+def start(request: pytest.FixtureRequest) -> Starter:
+    """Makes a machine, in Python or in C, that is to run the routine MAIN of a text."""
+    kind = Machine if request.param == "python" else _native()
+
+    def starter(text: str, **options: Any) -> Machine:
+        sizes = {key: options.pop(key) for key in list(options) if key in Limits.__slots__}
+        return kind(verify(assemble(text)), "MAIN", Limits(**sizes), **options)
+
+    return starter
 
 
 def requests_of(running: Machine, replies: Sequence[Any] = ()) -> list[Request]:
@@ -338,11 +356,11 @@ Runner = Callable[..., list[Request]]
 
 
 @pytest.fixture
-def run() -> Runner:
+def run(start: Starter) -> Runner:
     """Runs a text with replies; gives all requests."""
 
     def runner(text: str, *replies: Any, **options: Any) -> list[Request]:
-        return requests_of(machine(text, **options), replies)
+        return requests_of(start(text, **options), replies)
 
     return runner
 
@@ -351,12 +369,6 @@ def run() -> Runner:
 def everything() -> str:
     """A valid program with something of everything."""
     return EVERYTHING
-
-
-@pytest.fixture
-def start() -> Callable[..., Machine]:
-    """Makes a machine of a text."""
-    return machine
 
 
 @pytest.fixture

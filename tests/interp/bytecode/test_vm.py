@@ -465,7 +465,7 @@ def test_arguments_come_back(run: Runner) -> None:
         "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 5\nREF_LOCAL X INT\nASK RAISE\nLOAD_LOCAL X\nASK SHOW"
     )
     requests = run(HEAD + routine(body, "local X INT"), (None, (5, 9)))
-    assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1)) == requests[0]
+    assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1), (None, None)) == requests[0]
     assert [9] == shown(requests)
 
 

@@ -91,6 +91,8 @@ def test_points_in_the_frames_in_force(arm: Any) -> None:
     assert Pose.from_matrix(flanges[1]).components == pytest.approx(points[1], abs=1e-9)
     expected = placement.point(Pose.from_matrix(flanges[2])).components
     assert expected == pytest.approx(points[2], abs=1e-9)
+    tip = (Pose.from_matrix(flanges[2]) @ placement.tool).position
+    assert tip == pytest.approx(following.record().tips[2], abs=1e-9)
 
 
 def test_measured_positions(arm: Any) -> None:

@@ -26,8 +26,8 @@ class PacedArm:
         self.standing: list[ArmEvent] = []
         self.free_from = 0
 
-    def plan(self, now: int, motion: Motion) -> None:
-        """Append a motion."""
+    def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
+        """Append a motion; one that takes no time is worth a message."""
         if motion.kind == "CIRC":
             raise Fault("circle", "start and end of a circle are equal", number=1456)
         start = max(now, self.free_from)
@@ -42,6 +42,7 @@ class PacedArm:
             events.append(ArmEvent(time, "place", motion.number, place.key))
         for event in events:
             insort(self.ahead, event, key=lambda one: one.time)
+        return () if duration else (3171,)
 
     def mark(self) -> object:
         """What is ahead."""

@@ -331,7 +331,7 @@ def nonsense(make: Make) -> dict[str, tuple[Transaction, str]]:
         "twice": (Transaction(one, one), "stands in it twice"),
         "number": (Transaction(make(2), make(1)), "its number is not above 2"),
         "stranger": (Transaction(one).link(two.ended, "start", one), "is not loaded"),
-        "foreign": (Transaction(one).link(one.ended, "start", two), "is not loaded"),
+        "foreign": (Transaction(one).link(one.ended, "start", two), "not of this transaction"),
         "circle": (
             Transaction(one, two, three)
             .link(one.ended, "start", two)
@@ -339,6 +339,13 @@ def nonsense(make: Make) -> dict[str, tuple[Transaction, str]]:
             "waits for it",
         ),
     }
+
+
+def test_messages_that_stop_nothing(core: ControlCore, make_motion: Make) -> None:
+    """What planning has to say of a motion is kept with its command."""
+    still, moving = make_motion(1, 0), make_motion(2)
+    core.load(0, Transaction(still, moving))
+    assert ((3171,), ()) == (still.notices, moving.notices)
 
 
 @pytest.mark.parametrize("name", ["twice", "number", "stranger", "foreign", "circle"])

@@ -1,0 +1,165 @@
+"""Recordings: what a real controller did with the cases, brought back as one JSON file.
+
+CASES.md tells how to make one, and what its fields are. A recording is judged as an executor is,
+except for what it says that it did not watch: such expectations stay open. It can confirm or refute
+rules that are unconfirmed, which is what it is for.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from conformance.case import Case
+from conformance.judging import judge
+from conformance.observation import Event, Finding, Observation
+from conformance.registry import registry
+from conformance.runner import CaseResult, Result
+from conformance.verdicts import verdict_of
+from interp.robot.following import PathRecord
+
+__all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "judge_recording"]
+
+FORMAT: Final = "krl-recording/1"
+#: Kinds of events that a recording may say it watched; docs/trace.md has all of them.
+_ENDINGS: Final = ("", "end", "fault", "halt", "running")
+
+
+class RecordingError(ValueError):
+    """A recording that is not in the format; the text says where, in one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A recording: whose it is, and what was seen of each case, with the digest it had then."""
+
+    controller: str
+    seen: Mapping[str, tuple[str, Observation]]
+
+    @staticmethod
+    def read(path: Path) -> Recording:
+        """Read a file. Raises `RecordingError`."""
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise RecordingError(f"{path}: cannot be read: {error}") from error
+        if not isinstance(data, dict) or data.get("format") != FORMAT:
+            raise RecordingError(f"{path}: its format is not {FORMAT}")
+        controller = data.get("controller")
+        if not isinstance(controller, dict) or not controller.get("name"):
+            raise RecordingError(f"{path}: it does not name its controller")
+        cycle = data.get("cycle", 12_000)
+        if not isinstance(cycle, int) or cycle < 1:
+            raise RecordingError(f"{path}: the cycle is in whole microseconds")
+        seen = {}
+        for number, entry in enumerate(data.get("cases", ()), start=1):
+            try:
+                seen[str(entry["case"])] = (str(entry["digest"]), _observation(entry, cycle))
+            except (KeyError, TypeError, ValueError) as error:
+                raise RecordingError(f"{path}: case {number}: {error!r}") from error
+        name = " ".join(
+            str(controller[key]) for key in ("name", "release", "machine") if controller.get(key)
+        )
+        return Recording(name, seen)
+
+
+def _observation(entry: Mapping[str, Any], cycle: int) -> Observation:
+    ending = str(entry.get("ending", ""))
+    if ending not in _ENDINGS:
+        raise ValueError(f"no ending: {ending}")
+    findings = [
+        Finding(
+            str(one["file"]),
+            int(one["line"]),
+            str(one.get("severity", "error")),
+            str(one.get("code", "")),
+            str(one.get("message", "")),
+        )
+        for one in entry.get("findings", ())
+    ]
+    path = entry.get("path")
+    return Observation(
+        findings=tuple(findings),
+        events=tuple(Event.of(one) for one in entry.get("events", ())),
+        ending=ending,
+        path=None if path is None else _path(path),
+        cycle=cycle,
+        is_exact=False,
+        robot="none" if path is None else "mujoco" if "points_meas" in path else "kinematic",
+        watched=frozenset(map(str, entry.get("watched", ()))),
+    )
+
+
+def _path(data: Mapping[str, Any]) -> PathRecord:
+    times = np.array(data["t"], dtype=np.int64)
+    axes, points = _rows(data, "axes", times), _rows(data, "points", times)
+    if axes is None or points is None:
+        raise ValueError("a path has axes and points")
+    if len(times) < 2 or not (np.diff(times) > 0).all():
+        raise ValueError("the times of a path rise")
+    axes_measured = _rows(data, "axes_meas", times)
+    return PathRecord(times, axes, points, axes_measured, _rows(data, "points_meas", times))
+
+
+def _rows(
+    data: Mapping[str, Any], key: str, times: npt.NDArray[np.int64]
+) -> npt.NDArray[np.float64] | None:
+    if key not in data:
+        return None
+    rows = np.array(data[key], dtype=np.float64)
+    if rows.shape != (len(times), 6):
+        raise ValueError(f"{key} has six columns and a row for each time")
+    return rows
+
+
+def judge_recording(
+    recording: Recording, cases: Sequence[Case]
+) -> tuple[list[CaseResult], list[str]]:
+    """The results of a recording, and what is wrong with it: cases that are unknown or changed."""
+    known = {case.name: case for case in cases}
+    results, wrong = [], []
+    for name, (digest, seen) in sorted(recording.seen.items()):
+        case = known.get(name)
+        if case is None:
+            wrong.append(f"{name}: there is no such case")
+            continue
+        if digest != case.digest:
+            wrong.append(f"{name}: the case has changed since it was recorded")
+            continue
+        checks = tuple(judge(case, seen))
+        verdict, reason = verdict_of(case, checks)
+        result = Result(recording.controller, seen.robot, verdict, reason, checks, 0.0, None, seen)
+        results.append(CaseResult(case, (result,)))
+    return results, wrong
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a recording says of an unconfirmed rule: how many cases it met, and which it did not."""
+
+    rule: str
+    met: int
+    against: tuple[str, ...]
+
+
+def answers(results: Iterable[CaseResult]) -> list[Answer]:
+    """What a recording answers of what was open, by rule; only where something was judged."""
+    met: dict[str, int] = {}
+    against: dict[str, list[str]] = {}
+    for one in results:
+        rule = one.case.rules[0]
+        if one.case.may_fail or one.verdict == "skipped":
+            continue
+        met.setdefault(rule, 0)
+        against.setdefault(rule, [])
+        if one.verdict == "pass":
+            met[rule] += 1
+        else:
+            against[rule].append(one.case.name)
+    return [Answer(rule, met[rule], tuple(against[rule])) for rule in registry() if rule in met]

@@ -1,0 +1,40 @@
+"""Debugging, the same on every executor: stops, steps, watches, block selection, going backwards.
+
+=============== ====================================================================================
+module          what it is
+=============== ====================================================================================
+`client`        who decides: what a debugger tells, and what it can be told to do
+`debugger`      an executor around another one, which stops between statements
+`conditions`    expressions over what is visible where a program has stopped
+`selection`     which lines a program can go on at
+`backward`      motions travelled so far, and how each of them is undone
+=============== ====================================================================================
+"""
+
+from interp.debugging.client import (
+    Backward,
+    Breakpoint,
+    Client,
+    Command,
+    Frame,
+    Go,
+    Select,
+    Step,
+    Stop,
+    Watch,
+)
+from interp.debugging.debugger import Debugger
+
+__all__ = [
+    "Backward",
+    "Breakpoint",
+    "Client",
+    "Command",
+    "Debugger",
+    "Frame",
+    "Go",
+    "Select",
+    "Step",
+    "Stop",
+    "Watch",
+]

@@ -1,0 +1,142 @@
+"""Expressions over what is visible where a program has stopped: conditions and watches.
+
+They are read as the language has them and evaluated with its operators. They call nothing, so that
+looking changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+from grammar import ast
+from grammar.build import read_module
+from grammar.types import Enumeration
+from interp.executor import Reader
+from interp.faults import LinkError
+from interp.inspection import Seen
+from interp.operators import apply, apply_unary
+from interp.requests import Path
+from interp.values import (
+    EnumValue,
+    Value,
+    constant,
+    index,
+    integer,
+    known,
+    letters,
+    single,
+)
+
+__all__ = ["evaluated", "parsed", "root_of"]
+
+_Look = Callable[[str], Seen | None]
+
+
+@cache
+def parsed(text: str) -> ast.Expression:
+    """An expression; raises `LinkError` for what is none."""
+    module = read_module(f"DEF A()\nA={text}\nEND\n")
+    if isinstance(module, ast.Module) and isinstance(module.content, ast.Program):
+        match module.content.routines[0].body:
+            case (ast.Assignment(value=value),) if len(module.content.routines) == 1:
+                return value
+    raise LinkError(f"{text}: this is no expression")
+
+
+def root_of(node: ast.Expression) -> str | None:
+    """The variable that a path begins with, in upper case; ``None`` for what is no path."""
+    while isinstance(node, ast.Subscript | ast.Member | ast.Parenthesised):
+        node = node.inner if isinstance(node, ast.Parenthesised) else node.base
+    return node.name.key if isinstance(node, ast.Variable) else None
+
+
+def evaluated(node: ast.Expression, look: _Look, read: Reader | None = None) -> Value:
+    """The value; ``read`` is for variables of the controller.
+
+    Raises `interp.faults.Fault` as the program would, and `LinkError` for what is not known here.
+    """
+    return _Evaluation(look, read).value(node)
+
+
+class _Evaluation:
+    def __init__(self, look: _Look, read: Reader | None) -> None:
+        self._look = look
+        self._read = read
+
+    def value(self, node: ast.Expression, wanted: object = None) -> Value:
+        match node:
+            case ast.IntegerLiteral():
+                return integer(node.value)
+            case ast.BitLiteral():
+                return integer(node.value - 2**32 if node.value >= 2**31 else node.value)
+            case ast.RealLiteral():
+                return single(node.value)
+            case ast.BoolLiteral(value=truth):
+                return truth
+            case ast.StringLiteral():
+                return letters(node.text)
+            case ast.EnumConstant():
+                if not isinstance(wanted, Enumeration):
+                    raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
+                return constant(wanted, node.name.key)
+            case ast.Parenthesised():
+                return self.value(node.inner, wanted)
+            case ast.Unary():
+                return apply_unary(node.operator, self.value(node.operand))
+            case ast.Binary():
+                return self._binary(node)
+            case ast.Variable() | ast.Subscript() | ast.Member():
+                return self._variable(node)
+        raise LinkError("only variables, constants and operators can be looked at")
+
+    def _binary(self, node: ast.Binary) -> Value:
+        if isinstance(node.left, ast.EnumConstant):
+            right = self.value(node.right)
+            left = self.value(node.left, getattr(right, "type", None))
+        else:
+            left = self.value(node.left)
+            right = self.value(node.right, left.type if isinstance(left, EnumValue) else None)
+        return apply(node.operator, left, right)
+
+    def _variable(self, node: ast.Expression) -> Value:
+        steps = self._steps(node)
+        if str(steps[0]).startswith("$"):
+            if self._read is None:
+                raise LinkError(f"{steps[0]} is the controller's, which nobody asks here")
+            asked: Value = self._read(steps)
+            return asked
+        text = _text(steps)
+        seen = self._look(text)
+        if seen is None:
+            raise LinkError(f"{text} is not known here")
+        return known(seen.value)
+
+    def _steps(self, node: ast.Expression) -> Path:
+        """The way to a variable, with its indices evaluated; one left out ends it."""
+        match node:
+            case ast.Variable():
+                return (node.name.key,)
+            case ast.Parenthesised():
+                return self._steps(node.inner)
+            case ast.Member():
+                return (*self._steps(node.base), node.name.key)
+            case ast.Subscript():
+                given = [index(self.value(one)) for one in node.indices if one is not None]
+                return (*self._steps(node.base), *given)
+        raise LinkError("only a variable has parts")
+
+
+def _text(steps: Path) -> str:
+    """``("A", 1, 2, "X")`` as ``A[1,2].X``."""
+    text, indices = str(steps[0]), list[int]()
+    for step in (*steps[1:], ""):
+        if isinstance(step, int):
+            indices.append(step)
+            continue
+        if indices:
+            text += f"[{','.join(map(str, indices))}]"
+            indices.clear()
+        if step:
+            text += f".{step}"
+    return text

@@ -1,0 +1,73 @@
+"""The executors by name, and how each is made of a program that was checked.
+
+Only what is asked for is imported: the machines need a compiled program, the tree interpreter none.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+from interp.events import Sink
+from interp.executor import Executor
+from interp.faults import LinkError
+from interp.program import CheckedProgram, Limits
+
+if TYPE_CHECKING:
+    from interp.bytecode.verify import Verified
+
+__all__ = ["EXECUTORS", "Prepared", "available"]
+
+#: The reference first.
+EXECUTORS: Final = ("tree", "vm", "native")
+
+
+def available() -> tuple[str, ...]:
+    """The executors that can run here: without a compiler there was no machine in C to build."""
+    from interp.native import AVAILABLE
+
+    return EXECUTORS if AVAILABLE else EXECUTORS[:-1]
+
+
+class Prepared:
+    """A program for executors of any kind: compiled and verified where one needs it, and once.
+
+    ``routine`` is what it begins with, by default the first one of its first file.
+    """
+
+    def __init__(self, program: CheckedProgram, routine: str | None = None) -> None:
+        self.program = program
+        self.routine = routine
+
+    @cached_property
+    def verified(self) -> Verified:
+        """As bytecode that was verified; raises `LinkError`."""
+        from interp.bytecode.compiler import compile_program
+        from interp.bytecode.verify import verify
+
+        return verify(compile_program(self.program).program)
+
+    def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:
+        """An executor of its own; raises `LinkError`, and `ValueError` for an unknown name."""
+        match name:
+            case "tree":
+                from interp.tree import TreeExecutor
+
+                return TreeExecutor(self.program, self.routine, limits, sink)
+            case "vm":
+                from interp.bytecode.vm import Machine
+
+                return Machine(self.verified, self._start, limits, sink)
+            case "native":
+                from interp.native import AVAILABLE
+
+                if not AVAILABLE:
+                    raise LinkError("the machine in C was not built: there was no C compiler")
+                from interp.native.machine import Machine as NativeMachine
+
+                return NativeMachine(self.verified, self._start, limits, sink)
+        raise ValueError(f"there is no executor {name}")
+
+    @property
+    def _start(self) -> str:
+        return self.program.start(self.routine).name

@@ -1,0 +1,13 @@
+local function work(n)
+   local sum, line = 0, ""
+   for _ = 1, n do
+      line = ""
+      for k = 1, 40 do
+         line = line .. "AB"
+         sum = sum + #line - k
+      end
+   end
+   return sum // n + #line
+end
+
+return work

@@ -1,0 +1,250 @@
+"""The machine in C as an executor.
+
+C carries out the instructions; what reaches beyond the cells is done by the same Python code as for
+`interp.bytecode.vm`: requests and replies, the trace, the functions that C does not know, counting
+from one slice to the next. So both machines say the same. For that code the memory in C looks like
+the state of the machine in Python, and a run in C like an operation: it goes on until something is
+to be done outside, and gives the operation that does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, cast
+
+from interp.bytecode import vm
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.image import write_image
+from interp.bytecode.program import Program
+from interp.bytecode.services import Services
+from interp.bytecode.state import Completion, Operation, State
+from interp.bytecode.threads import Threads
+from interp.bytecode.verify import Verified
+from interp.events import Sink
+from interp.executor import Reader
+from interp.faults import FAULTS, LinkError, fault
+from interp.native._core import Core
+from interp.program import Limits
+from interp.requests import Request
+
+__all__ = ["Machine"]
+
+
+class _Stop(IntEnum):
+    """Why C has stopped; as ``enum krl_stop`` has it."""
+
+    STEP = 0
+    LINE = 1
+    FAULT = 2
+    LEFT = 3
+    ACTION = 4
+    END = 5
+
+
+class _Matter(IntEnum):
+    """What a step for Python is about; as ``enum krl_matter`` has it."""
+
+    INSTRUCTION = 0
+    CALL = 1
+    LEAVE = 2
+
+
+_SLUGS = [slug for slug, _ in sorted(FAULTS.items(), key=lambda item: item[1].code)]
+
+
+class _Stack:
+    """The stack of operands of the frame that runs, while C has stopped: the cells below ``top``.
+
+    Only what lies on top is taken, as a slice that begins so many places below.
+    """
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: Core) -> None:
+        self._core = core
+
+    def __len__(self) -> int:
+        return self._core.top - self._core.floor
+
+    def __getitem__(self, where: Any) -> Any:
+        core = self._core
+        if isinstance(where, slice):
+            return core[core.top + where.start : core.top]
+        return core[core.top + where]
+
+    def __delitem__(self, where: slice) -> None:
+        core = self._core
+        core.top = (core.top if where.start < 0 else core.floor) + where.start
+
+    def append(self, raw: Any) -> None:
+        """Put something on top."""
+        core = self._core
+        core[core.top] = raw
+        core.top += 1
+
+
+class _Calls:
+    """The open calls, as far as others than C have to do with them."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: Core) -> None:
+        self._core = core
+
+    def __len__(self) -> int:
+        return self._core.open
+
+
+class _State(Core):
+    """What the machine works on, which lies in C, as `interp.bytecode.state.State` shows it."""
+
+    __slots__ = ("calls", "completion", "reader", "request", "stack")
+
+    base = 0  # where nothing lies on the stack that is not the frame's
+
+    def __init__(self, _image: bytes, _is_told: bool, _most_calls: int) -> None:
+        self.stack = _Stack(self)
+        self.calls = _Calls(self)
+        self.reader: Reader | None = None
+        self.request: Request | None = None
+        self.completion: Completion | None = None
+
+    @property
+    def cells(self) -> Core:
+        """The memory."""
+        return self
+
+
+class _Body:
+    """The operations of a code object, by the places of instructions that are targets."""
+
+    __slots__ = ("_code", "_threads")
+
+    def __init__(self, threads: _Threads, code: int) -> None:
+        self._threads = threads
+        self._code = code
+
+    def __getitem__(self, place: int) -> Operation:
+        return self._threads.at(self._code, place)
+
+
+class _Threads:
+    """Runs in C, in place of `interp.bytecode.threads.Threads`."""
+
+    def __init__(self, program: Program, state: _State, services: Services) -> None:
+        self._program = program
+        self._state = state
+        self._services = services
+        self.entries = [self.at(number, 0) for number in range(len(program.codes))]
+        self._outside: dict[int, Operation] = {}
+
+    def body(self, number: int) -> _Body:
+        """The operations of a code object."""
+        return _Body(self, number)
+
+    def at(self, code: int, place: int) -> Operation:
+        """The operation that runs from an instruction on."""
+        return self._running(self._state.step(code, place))
+
+    def _running(self, step: int, is_begun: bool = False) -> Operation:
+        run = self._state.run
+        return lambda: self._stopped(run(step, is_begun))
+
+    def _stopped(self, stop: int) -> Operation | None:
+        """The operation that does what C has stopped for."""
+        why = stop & 7
+        if why <= _Stop.LINE:
+            operation = self._outside.get(stop)
+            if operation is None:
+                operation = self._outside[stop] = self._made(stop >> 3, _Stop(why))
+            return operation
+        if why == _Stop.FAULT:
+            raise fault(_SLUGS[stop >> 3])
+        if why == _Stop.ACTION:
+            return self._services.leave_action
+        return self._services.finish if why == _Stop.END else None
+
+    def _made(self, step: int, why: _Stop) -> Operation:
+        """What is to be done outside at a step, with the run that follows."""
+        matter, place, statement = self._state.about(step)
+        services = self._services
+        code = self._state.code
+        if why is _Stop.LINE:
+            return services.line(statement, self._running(step, is_begun=True))
+        after = self._running(step + 1)
+        instruction = self._program.codes[code].instructions[place]
+        if matter == _Matter.CALL:
+            return _then(lambda: services.tell_call(instruction.operands[0]), after)
+        if matter == _Matter.LEAVE:
+            return _then(services.tell_leave, after)
+        match instruction.op:
+            case Op.LINE:
+                return services.line(place, after)
+            case Op.ASK:
+                return services.ask(instruction.operands[0], after)
+            case Op.BUILTIN:
+                return services.builtin(instruction.operands[0], after)
+            case Op.PROCEED:
+                return services.proceed(after)
+            case Op.UNLINKED:
+                return self._unlinked(instruction.operands[0])
+        return services.tell(instruction, after)
+
+    def _unlinked(self, number: int) -> Operation:
+        text = self._program.texts[number]
+
+        def operation() -> Operation:
+            raise LinkError(text)
+
+        return operation
+
+
+def _then(act: Callable[[], None], after: Operation) -> Operation:
+    def operation() -> Operation:
+        act()
+        return after
+
+    return operation
+
+
+class Machine(vm.Machine):
+    """Runs a verified program in C; else like `interp.bytecode.vm.Machine`."""
+
+    def __init__(
+        self,
+        verified: Verified,
+        routine: str | int,
+        limits: Limits | None = None,
+        sink: Sink | None = None,
+        random: Callable[[], float] | None = None,
+    ) -> None:
+        self._is_told = sink is not None
+        super().__init__(verified, routine, limits, sink, random)
+
+    def _made_state(self, program: Program, limits: Limits) -> State:
+        return cast("State", _State(write_image(program), self._is_told, limits.depth))
+
+    def _made_ready(self, program: Program) -> Threads:
+        state = cast("_State", self._state)
+        return cast("Threads", _Threads(program, state, self._services))
+
+    def _begin(self, number: int) -> None:
+        self._core.begin(number)
+
+    @property
+    def _core(self) -> _State:
+        return cast("_State", self._state)
+
+    def _push_frame(self, number: int, serial: int, _after: Operation) -> None:
+        core = self._core
+        found = self._captures(number, serial)
+        if not core.open_frame(number):
+            raise fault("stack")
+        core[core.fp : core.fp + len(found)] = found
+
+    def _pop_frame(self) -> None:
+        self._core.close_frame()
+
+    def _frame_of(self, serial: int) -> int | None:
+        return self._core.frame_of(serial)

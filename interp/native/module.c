@@ -1,0 +1,351 @@
+/* The machine as a Python type, for interp/native/machine.py only.
+ *
+ * `Core` gives what runs, its frames and its cells. It checks every number it is given that leads
+ * into memory, so that no caller can do harm; what the numbers mean is the affair of its caller.
+ */
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <structmember.h>
+
+#include "machine.h"
+
+struct core {
+    PyObject_HEAD
+    struct krl_machine machine;
+};
+
+static PyObject *refused(const struct krl_refusal *why)
+{
+    PyErr_SetString(PyExc_ValueError, why->text);
+    return NULL;
+}
+
+static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
+{
+    static char *names[] = {"image", "is_told", "most_calls", NULL};
+    const char *image;
+    Py_ssize_t length;
+    int is_told, most_calls;
+    struct krl_refusal why;
+    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#pi", names, &image, &length, &is_told, &most_calls))
+        return NULL;
+    if (most_calls < 0 || most_calls > KRL_MOST_CALLS) {
+        PyErr_SetString(PyExc_ValueError, "so many calls cannot be open");
+        return NULL;
+    }
+    allocfunc allot = (allocfunc)PyType_GetSlot(type, Py_tp_alloc);
+    struct core *core = (struct core *)allot(type, 0);
+    if (core == NULL)
+        return NULL;
+    if (!krl_load(&core->machine, (const uint8_t *)image, (size_t)length, is_told, &why)) {
+        Py_DECREF(core);
+        return refused(&why);
+    }
+    core->machine.most_calls = most_calls;
+    if (!krl_reserve(&core->machine)) {
+        Py_DECREF(core);
+        return PyErr_NoMemory();
+    }
+    krl_begin(&core->machine, 0);
+    return (PyObject *)core;
+}
+
+static void core_dealloc(PyObject *self)
+{
+    PyTypeObject *type = Py_TYPE(self);
+    freefunc release = (freefunc)PyType_GetSlot(type, Py_tp_free);
+    krl_unload(&((struct core *)self)->machine);
+    release(self);
+    Py_DECREF(type);
+}
+
+/* ---------------------------------------------------------------------------- cells */
+
+static PyObject *object_of(krl_cell cell)
+{
+    switch (krl_tag_of(cell)) {
+    case KRL_TAG_INT:
+        return PyLong_FromLong(krl_int_in(cell));
+    case KRL_TAG_REAL:
+        return PyFloat_FromDouble(krl_real_in(cell));
+    case KRL_TAG_BOOL:
+        return PyBool_FromLong(krl_int_in(cell));
+    case KRL_TAG_NONE:
+        break;
+    }
+    Py_RETURN_NONE;
+}
+
+/* 0 where an object is nothing that a cell holds. */
+static int cell_of(PyObject *object, krl_cell *cell)
+{
+    if (object == Py_None)
+        *cell = KRL_NOTHING;
+    else if (PyBool_Check(object))
+        *cell = krl_of_bool(object == Py_True);
+    else if (PyFloat_Check(object))
+        *cell = krl_of_real((float)PyFloat_AsDouble(object));
+    else {
+        long number = PyLong_AsLong(object);
+        if (number == -1 && PyErr_Occurred())
+            return 0;
+        if (number < INT32_MIN || number > INT32_MAX) {
+            PyErr_SetString(PyExc_OverflowError, "a cell has 32 bits");
+            return 0;
+        }
+        *cell = krl_of_int((int32_t)number);
+    }
+    return 1;
+}
+
+/* The cell of an index; -1 where there is none. */
+static Py_ssize_t place_of(struct core *core, PyObject *key)
+{
+    Py_ssize_t place = PyNumber_AsSsize_t(key, PyExc_IndexError);
+    if (place == -1 && PyErr_Occurred())
+        return -1;
+    if (place < 0 || place >= core->machine.cell_count) {
+        PyErr_SetString(PyExc_IndexError, "there is no such cell");
+        return -1;
+    }
+    return place;
+}
+
+/* The first cell and the number of cells of a slice; 0 where its step is not 1. */
+static int range_of(struct core *core, PyObject *key, Py_ssize_t *start, Py_ssize_t *count)
+{
+    Py_ssize_t stop, step;
+    if (PySlice_Unpack(key, start, &stop, &step) < 0)
+        return 0;
+    if (step != 1) {
+        PyErr_SetString(PyExc_ValueError, "cells are taken one behind the other");
+        return 0;
+    }
+    *count = PySlice_AdjustIndices(core->machine.cell_count, start, &stop, step);
+    return 1;
+}
+
+static PyObject *core_get(PyObject *self, PyObject *key)
+{
+    struct core *core = (struct core *)self;
+    Py_ssize_t start, count;
+    if (!PySlice_Check(key)) {
+        start = place_of(core, key);
+        return start < 0 ? NULL : object_of(core->machine.cells[start]);
+    }
+    if (!range_of(core, key, &start, &count))
+        return NULL;
+    PyObject *found = PyList_New(count);
+    for (Py_ssize_t i = 0; found != NULL && i < count; i++) {
+        PyObject *object = object_of(core->machine.cells[start + i]);
+        if (object == NULL || PyList_SetItem(found, i, object) < 0)
+            Py_CLEAR(found);
+    }
+    return found;
+}
+
+static int core_set(PyObject *self, PyObject *key, PyObject *value)
+{
+    struct core *core = (struct core *)self;
+    Py_ssize_t start, count;
+    if (value == NULL) {
+        PyErr_SetString(PyExc_TypeError, "cells stay");
+        return -1;
+    }
+    if (!PySlice_Check(key)) {
+        krl_cell cell;
+        start = place_of(core, key);
+        if (start < 0 || !cell_of(value, &cell))
+            return -1;
+        core->machine.cells[start] = cell;
+        return 0;
+    }
+    if (!range_of(core, key, &start, &count))
+        return -1;
+    if (!PyList_Check(value) || PyList_Size(value) != count) {
+        PyErr_SetString(PyExc_ValueError, "a list of as many cells is needed");
+        return -1;
+    }
+    for (Py_ssize_t i = 0; i < count; i++) {
+        krl_cell cell;
+        if (!cell_of(PyList_GetItem(value, i), &cell))
+            return -1;
+        core->machine.cells[start + i] = cell;
+    }
+    return 0;
+}
+
+/* ---------------------------------------------------------------------------- running */
+
+static int is_code(struct core *core, int code)
+{
+    if (code >= 0 && code < core->machine.program.code_count)
+        return 1;
+    PyErr_SetString(PyExc_IndexError, "there is no such code object");
+    return 0;
+}
+
+static PyObject *core_begin(PyObject *self, PyObject *arguments)
+{
+    struct core *core = (struct core *)self;
+    int code;
+    if (!PyArg_ParseTuple(arguments, "i", &code) || !is_code(core, code))
+        return NULL;
+    krl_begin(&core->machine, code);
+    Py_RETURN_NONE;
+}
+
+static PyObject *core_step(PyObject *self, PyObject *arguments)
+{
+    struct core *core = (struct core *)self;
+    int code, place;
+    if (!PyArg_ParseTuple(arguments, "ii", &code, &place) || !is_code(core, code))
+        return NULL;
+    const struct krl_routine *routine = &core->machine.routines[code];
+    if (place < 0 || place >= routine->code->length || routine->steps[place] < 0) {
+        PyErr_SetString(PyExc_IndexError, "no way leads there");
+        return NULL;
+    }
+    return PyLong_FromLong(routine->steps[place]);
+}
+
+static PyObject *core_about(PyObject *self, PyObject *arguments)
+{
+    struct core *core = (struct core *)self;
+    int number;
+    if (!PyArg_ParseTuple(arguments, "i", &number))
+        return NULL;
+    if (number < 0 || number >= core->machine.step_count) {
+        PyErr_SetString(PyExc_IndexError, "there is no such step");
+        return NULL;
+    }
+    const struct krl_step *step = &core->machine.steps[number];
+    return Py_BuildValue("iii", (int)step->tag, (int)step->b, (int)step->statement);
+}
+
+static PyObject *core_run(PyObject *self, PyObject *arguments)
+{
+    struct core *core = (struct core *)self;
+    int step, is_begun;
+    if (!PyArg_ParseTuple(arguments, "ii", &step, &is_begun))
+        return NULL;
+    const struct krl_routine *routine = &core->machine.routines[core->machine.code];
+    Py_ssize_t place = step < 0 ? -1 : core->machine.steps + step - routine->entry;
+    if (place < 0 || step >= core->machine.step_count) {
+        PyErr_SetString(PyExc_IndexError, "the step is not one of the code object that runs");
+        return NULL;
+    }
+    if (!krl_reserve(&core->machine))
+        return PyErr_NoMemory();
+    struct krl_stopped stopped = krl_run(&core->machine, step, is_begun);
+    return PyLong_FromLong((long)stopped.at << 3 | (long)stopped.why);
+}
+
+static PyObject *core_open(PyObject *self, PyObject *arguments)
+{
+    struct core *core = (struct core *)self;
+    int code;
+    if (!PyArg_ParseTuple(arguments, "i", &code) || !is_code(core, code))
+        return NULL;
+    if (!krl_reserve(&core->machine))
+        return PyErr_NoMemory();
+    return PyBool_FromLong(krl_open(&core->machine, code));
+}
+
+static PyObject *core_close(PyObject *self, PyObject *Py_UNUSED(ignored))
+{
+    struct core *core = (struct core *)self;
+    if (core->machine.open == 0) {
+        PyErr_SetString(PyExc_IndexError, "no call is open");
+        return NULL;
+    }
+    krl_close(&core->machine);
+    Py_RETURN_NONE;
+}
+
+/* The first cell of the frame of a serial number; None where its routine has ended. */
+static PyObject *core_frame_of(PyObject *self, PyObject *arguments)
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    int serial;
+    if (!PyArg_ParseTuple(arguments, "i", &serial))
+        return NULL;
+    if (machine->serial == serial)
+        return PyLong_FromLong(machine->fp);
+    for (int32_t i = machine->open - 1; i >= 0; i--)
+        if (machine->calls[i].serial == serial)
+            return PyLong_FromLong(machine->calls[i].fp);
+    Py_RETURN_NONE;
+}
+
+/* The first place on the stack of operands of the frame that runs. */
+static PyObject *core_floor(PyObject *self, void *Py_UNUSED(closure))
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    return PyLong_FromLong(machine->fp + machine->routines[machine->code].frame);
+}
+
+/* ---------------------------------------------------------------------------- the type */
+
+static PyMethodDef core_methods[] = {
+    {"begin", core_begin, METH_VARARGS, "begin(code): the first frame, without values."},
+    {"step", core_step, METH_VARARGS, "step(code, place): the step of an instruction that is a target."},
+    {"about", core_about, METH_VARARGS, "about(step): its matter, its instruction, its LINE or -1."},
+    {"run", core_run, METH_VARARGS, "run(step, is_begun): why it stopped, and 8 times where."},
+    {"open_frame", core_open, METH_VARARGS, "open_frame(code): whether there is room for it."},
+    {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
+    {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
+    {NULL, NULL, 0, NULL},
+};
+
+#define MEMBER(name, flags) {#name, T_INT, offsetof(struct core, machine.name), flags, NULL}
+static PyMemberDef core_members[] = {
+    MEMBER(code, READONLY),   MEMBER(fp, READONLY), MEMBER(serial, READONLY), MEMBER(open, READONLY),
+    MEMBER(statement, 0),     MEMBER(left, 0),      MEMBER(last, 0),          MEMBER(top, 0),
+    MEMBER(most_calls, 0),    {NULL, 0, 0, 0, NULL},
+};
+
+static PyGetSetDef core_getset[] = {
+    {"floor", core_floor, NULL, "the first place on the stack of the frame that runs", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+
+static PyType_Slot core_slots[] = {
+    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, is_told, most_calls)."},
+    {Py_tp_new, core_new},
+    {Py_tp_dealloc, core_dealloc},
+    {Py_tp_methods, core_methods},
+    {Py_tp_members, core_members},
+    {Py_tp_getset, core_getset},
+    {Py_mp_subscript, core_get},
+    {Py_mp_ass_subscript, core_set},
+    {0, NULL},
+};
+
+static PyType_Spec core_spec = {
+    "interp.native._core.Core", sizeof(struct core), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, core_slots,
+};
+
+static int execute(PyObject *module)
+{
+    PyObject *type = PyType_FromSpec(&core_spec);
+    if (type == NULL)
+        return -1;
+    int status = PyModule_AddObjectRef(module, "Core", type);
+    Py_DECREF(type);
+    return status;
+}
+
+static PyModuleDef_Slot module_slots[] = {
+    {Py_mod_exec, execute},
+    {0, NULL},
+};
+
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "_core", "The bytecode machine in C.", 0, NULL, module_slots, NULL, NULL, NULL,
+};
+
+PyMODINIT_FUNC PyInit__core(void)
+{
+    return PyModuleDef_Init(&definition);
+}

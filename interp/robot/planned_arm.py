@@ -1,0 +1,576 @@
+"""The arm as it is planned: motions in, one unbroken path out, and the time of each point on it.
+
+Each motion becomes a section of path, and so does each blend between two. From where the arm is
+at a call, all that lies ahead is scheduled anew; what has been travelled stays. So a motion that is
+appended in time turns the stop at the end of the last one into a blend, and one that comes too late
+leaves the stop as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.faults import Fault
+from interp.robot.agenda import Passage, events_of
+from interp.robot.arm import ArmEvent, Motion, Position, Samples
+from interp.robot.blending import blend_of, zone_of
+from interp.robot.blocks import block
+from interp.robot.frames import Pose
+from interp.robot.kinematics import Array
+from interp.robot.machine import ROBOT_AXES, Machine
+from interp.robot.profile import Profile, standing
+from interp.robot.programmed import Programmed, check_start
+from interp.robot.schedule import State, Step, braking, schedule
+from interp.robot.targets import check_limits
+from interp.robot.timeline import (
+    MICROSECOND,
+    Key,
+    Leg,
+    Section,
+    Timeline,
+    micros,
+    tool_tangents,
+)
+from interp.robot.tracks import Track, Tracks
+
+__all__ = ["PlannedArm"]
+
+_THERE = 1e-9
+"""Of u: a section whose rest is shorter has been travelled."""
+_BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    """All that is planned and not yet travelled. ``last`` is the motion that the next follows.
+
+    ``programmed`` is the target that the next motion starts from.
+    """
+
+    programmed: Programmed
+    route: tuple[Section, ...] = ()
+    passages: tuple[Passage, ...] = ()
+    last: Track | None = None
+    is_aborted: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Mark:
+    plan: _Plan
+    kept: tuple[_Plan, ...]
+    legs: tuple[Leg, ...]
+    is_braked: bool
+    stopped: ArmEvent | None
+    has_begun: bool
+
+
+class PlannedArm:
+    """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
+
+    ``start`` are the axes in degrees or mm, robot axes first; external ones left out are at 0.
+    With ``is_selected`` the first motion has to be a PTP that leaves nothing open [MOT-10]. Raises
+    `Fault` 1447 for a start beyond a software limit switch, 1443 for a first motion that is not
+    allowed as such.
+    """
+
+    def __init__(
+        self, machine: Machine, start: Sequence[float], *, is_selected: bool = True
+    ) -> None:
+        self._tracks = Tracks(machine)
+        every = (*machine.axes, *machine.externals)
+        axes = np.zeros(len(every))
+        axes[: len(start)] = start[: len(every)]
+        check_limits(every, axes.tolist())
+        self._plan = _Plan(Programmed(self._tracks.arm, axes))
+        #: What brakes interrupted, while other motions are on [INT-09].
+        self._kept: list[_Plan] = []
+        self._timeline = Timeline(axes)
+        self._override = 1.0
+        self._is_braked = False
+        self._stopped: ArmEvent | None = None
+        self._has_begun = not is_selected
+        self._agenda: list[ArmEvent] | None = None
+        self._now = 0
+
+    # ------------------------------------------------------------------------------- planning
+
+    def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
+        """Append a motion; see `interp.robot.arm.Arm.plan`.
+
+        Returns the numbers of messages that stop nothing: 3171 for a motion of length zero
+        [MOT-11], 2868 for a PTP into a singularity [POS-08].
+        """
+        self._observe(now)
+        if not self._has_begun:
+            check_start(motion)
+        plan = self._standing_plan() if self._is_braked and self._plan.passages else self._plan
+        if motion.kind in {"SPLINE", "PTP_SPLINE"}:
+            track, programmed = block(self._tracks, motion, plan.programmed)
+        else:
+            track, programmed = self._tracks.track(
+                motion, plan.programmed, is_after_abort=plan.is_aborted
+            )
+        if plan is not self._plan:
+            self._kept.append(self._plan)
+            self._plan = plan
+        self._is_braked = False
+        if not self._append_blended(track, programmed):
+            sections = _sections(track)
+            self._plan = _Plan(
+                programmed,
+                (*self._plan.route, *sections),
+                (*self._plan.passages, Passage(motion, sections)),
+                track,
+            )
+            self._reschedule(self._plan.route)
+        self._has_begun = True
+        return track.notices
+
+    def mark(self) -> object:
+        """See `interp.robot.arm.Arm.mark`."""
+        return _Mark(
+            self._plan,
+            tuple(self._kept),
+            tuple(self._timeline.legs),
+            self._is_braked,
+            self._stopped,
+            self._has_begun,
+        )
+
+    def rewind(self, mark: object) -> None:
+        """See `interp.robot.arm.Arm.rewind`."""
+        if not isinstance(mark, _Mark):
+            raise TypeError("not a mark of this arm")
+        self._plan, self._kept = mark.plan, list(mark.kept)
+        self._timeline.restore(0, mark.legs)
+        self._is_braked, self._stopped = mark.is_braked, mark.stopped
+        self._has_begun = mark.has_begun
+        self._agenda = None
+
+    def _append_blended(self, track: Track, programmed: Programmed) -> bool:
+        """Append a motion with a blend from the last one into it, if there is a way and time."""
+        before = self._plan
+        if before.last is None or not before.route or not before.passages:
+            return False
+        body, passage = before.route[-1], before.passages[-1]
+        zone = zone_of(before.last, track)
+        if zone is None or body.number != passage.number:
+            return False
+        leaves = 1.0 - zone.before
+        if leaves < body.start or self._reached(body) > leaves:
+            return False
+        try:
+            curve, ceiling = blend_of(
+                before.last, track, zone, self._tracks.machine, self._tracks.limits
+            )
+        except Fault:
+            return False
+        number = track.motion.number
+        shorter = replace(body, end=leaves)
+        blend = Section(body.number, number, curve, ceiling, gear=1.0 / (2.0 * zone.before))
+        first, *others = _sections(track)
+        rest = (replace(first, start=zone.after, gear=2.0 * zone.after), *others)
+        route = (*before.route[:-1], shorter, blend, *rest)
+        if not self._reschedule(route, is_strict=True):
+            return False
+        self._plan = _Plan(
+            programmed,
+            route,
+            (
+                *before.passages[:-1],
+                replace(passage, body=(*passage.body[:-1], shorter), out=blend),
+                Passage(track.motion, rest, into=blend),
+            ),
+            track,
+        )
+        return True
+
+    def _standing_plan(self) -> _Plan:
+        """An empty plan from where the arm stops."""
+        legs = self._timeline.legs
+        axes = self._timeline.axes_at(max(legs[-1].ends, self._now * MICROSECOND))
+        return _Plan(Programmed(self._tracks.arm, axes))
+
+    # ----------------------------------------------------------------------------------- events
+
+    def next_event(self) -> ArmEvent | None:
+        """See `interp.robot.arm.Arm.next_event`."""
+        agenda = self._events()
+        return agenda[-1] if agenda else None
+
+    def take(self) -> ArmEvent:
+        """See `interp.robot.arm.Arm.take`. Raises `IndexError` where nothing lies ahead."""
+        event = self._events().pop()
+        self._now = max(self._now, event.time)
+        if event.kind == "stopped":
+            self._stopped = None
+            return event
+        plans = [*self._kept, self._plan]
+        for place, plan in enumerate(plans):
+            if any(passage.number == event.motion for passage in plan.passages):
+                plans[place] = replace(plan, passages=self._taken(plan.passages, event))
+        *self._kept, self._plan = plans
+        return event
+
+    def pending(self) -> int:
+        """See `interp.robot.arm.Arm.pending`."""
+        plans = (*self._kept, self._plan)
+        return sum(
+            ("motion_end", None) not in passage.taken for plan in plans for passage in plan.passages
+        )
+
+    def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:
+        """With an event taken; a motion with no events left is dropped, unless it is the last."""
+        found = []
+        for passage in passages:
+            known = passage
+            if passage.number == event.motion:
+                known = replace(passage, taken=passage.taken | {(event.kind, event.key)})
+            if passage is passages[-1] or not known.is_over:
+                found.append(known)
+        return tuple(found)
+
+    def _events(self) -> list[ArmEvent]:
+        """All events ahead, the earliest last."""
+        if self._agenda is None:
+            found = [
+                (time, passage.number, rank, event)
+                for passage in self._plan.passages
+                for time, rank, event in events_of(
+                    passage, self._timeline, self._now, self._stop_from
+                )
+            ]
+            found.sort(key=lambda entry: entry[:3], reverse=True)
+            self._agenda = [event for _, _, _, event in found]
+            if self._stopped is not None:
+                time = self._stopped.time
+                place = sum(event.time > time for event in self._agenda)
+                self._agenda.insert(place, self._stopped)
+        return self._agenda
+
+    # ------------------------------------------------------------------------------ where it is
+
+    def position(self, time: int) -> Position:
+        """See `interp.robot.arm.Arm.position`."""
+        axes = self._timeline.axes_at(time * MICROSECOND)
+        flange = self._tracks.arm.forward(axes[:ROBOT_AXES])
+        return Position(tuple(axes.tolist()), Pose.from_matrix(flange.tolist()))
+
+    def speed(self, time: int) -> float:
+        """See `interp.robot.arm.Arm.speed`."""
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
+        if leg is None or seconds >= leg.ends:
+            return 0.0
+        u, speed, _ = leg.at(np.array([seconds]))
+        tangent = tool_tangents(leg.section.curve, u)
+        return float(np.linalg.norm(tangent)) * abs(float(speed[0])) / 1000.0
+
+    def distances(self, time: int) -> tuple[float, float]:
+        """See `interp.robot.arm.Arm.distances`; 0 and 0 where no motion is on."""
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
+        if leg is None:
+            return 0.0, 0.0
+        section, u = leg.section, leg.state(seconds).u
+        number = section.number
+        if section.following is not None and u >= 0.5:
+            number = section.following
+        for passage in self._plan.passages:
+            if passage.number == number:
+                return passage.distances(section.key, u)
+        return 0.0, 0.0
+
+    def sample(self, times: npt.NDArray[np.int64]) -> Samples:
+        """See `interp.robot.arm.Arm.sample`."""
+        return self._timeline.sample(np.asarray(times, dtype=np.int64))
+
+    def path(self) -> tuple[Leg, ...]:
+        """The legs of path from the first that is remembered to the last that is planned.
+
+        Each has its `Section` with the curve: its parameters, for a path of the tool its course
+        with kind and control points, and when it is travelled.
+        """
+        return tuple(self._timeline.legs)
+
+    def forget(self, before: int) -> None:
+        """Drop what was travelled before a time: nobody will ask for it any more."""
+        self._timeline.forget(before * MICROSECOND)
+
+    # ------------------------------------------------------------------------ stopping and going
+
+    def override(self, now: int, percent: float) -> None:
+        """See `interp.robot.arm.Arm.override`. Raises `Fault` 1422 outside 0 to 100."""
+        if not 0.0 <= percent <= 100.0:
+            text = f"$OV_PRO is {percent:g}, not within 0 to 100"
+            raise Fault("invalid", text, number=1422, rules=("MOT-09",))
+        self._observe(now)
+        was, self._override = self._override, percent / 100.0
+        if self._is_braked or was == self._override:
+            return
+        if self._override == 0.0:
+            self._halt(was, is_hard=False)
+        else:
+            self._reschedule(self._plan.route)
+
+    def brake(self, now: int, is_hard: bool) -> None:
+        """See `interp.robot.arm.Arm.brake`."""
+        self._observe(now)
+        self._halt(self._override or 1.0, is_hard=is_hard)
+        self._is_braked = True
+        self._tell_stop()
+
+    def proceed(self, now: int) -> None:
+        """See `interp.robot.arm.Arm.proceed`.
+
+        Raises `ValueError` where the arm has been moved away and not back.
+        """
+        self._observe(now)
+        if self._kept and not self._plan.route:
+            plan = self._kept.pop()
+            here = self._timeline.axes_at(now * MICROSECOND)
+            there = self._left_at(plan)
+            if np.abs(here - there).max() > _BACK:
+                self._kept.append(plan)
+                raise ValueError("the arm is not where the brake has left it")
+            self._plan = plan
+        self._is_braked = False
+        self._stopped = None
+        if self._override > 0.0:
+            self._reschedule(self._plan.route)
+
+    def discard(self, now: int) -> None:
+        """See `interp.robot.arm.Arm.discard`."""
+        self._observe(now)
+        leg = self._timeline.leg_at(now * MICROSECOND)
+        is_moving = leg is not None and leg.ends > now * MICROSECOND
+        if is_moving and not self._is_braked:
+            self._halt(self._override or 1.0, is_hard=False)
+            self._tell_stop()
+        else:
+            self._timeline.cut(now * MICROSECOND if not is_moving else self._end())
+        self._kept.clear()
+        self._is_braked = False
+        axes = self._timeline.axes_at(self._end())
+        self._plan = _Plan(Programmed(self._tracks.arm, axes), is_aborted=True)
+        self._agenda = None
+
+    def _tell_stop(self) -> None:
+        passages = self._plan.passages
+        number = passages[0].number if passages else 0
+        leg = self._timeline.leg_at(self._end())
+        if leg is not None:
+            number = leg.section.number
+        time = max(self._now, micros(self._end()))
+        self._stopped = ArmEvent(time, "stopped", number)
+        self._agenda = None
+
+    def _end(self) -> float:
+        """When the last leg ends, or now."""
+        legs = self._timeline.legs
+        return max(legs[-1].ends if legs else 0.0, self._now * MICROSECOND)
+
+    # ------------------------------------------------------------------------------- scheduling
+
+    def _observe(self, now: int) -> None:
+        """Time has gone on: what was travelled is no longer ahead."""
+        self._now = max(self._now, now)
+        route = self._plan.route
+        travelled = 0
+        while travelled < len(route) and self._is_travelled(route[travelled]):
+            travelled += 1
+        if travelled:
+            self._plan = replace(self._plan, route=route[travelled:])
+
+    def _is_travelled(self, section: Section) -> bool:
+        legs = list(self._timeline.of(section.key))
+        if not legs:
+            leg = self._timeline.leg_at(self._now * MICROSECOND)
+            return section.is_used_up and leg is not None and leg.section.key > section.key
+        last = legs[-1]
+        return last.ends <= self._now * MICROSECOND and last.last >= section.end - _THERE
+
+    def _reached(self, section: Section) -> float:
+        """How far a section has been travelled by now."""
+        leg = self._timeline.leg_at(self._now * MICROSECOND)
+        if leg is None or leg.section.key != section.key:
+            return section.start
+        return leg.state(self._now * MICROSECOND).u
+
+    def _left_at(self, plan: _Plan) -> Array:
+        """The axes where a plan was interrupted."""
+        if not plan.route:
+            return plan.programmed.axes
+        section = plan.route[0]
+        axes: Array = section.curve.axes(np.array([self._stood_at(section)]))[0]
+        return axes
+
+    def _stood_at(self, section: Section) -> float:
+        """The parameter at which a section was left standing."""
+        legs = list(self._timeline.of(section.key))
+        return legs[-1].last if legs else section.start
+
+    def _reschedule(self, route: Sequence[Section], *, is_strict: bool = False) -> bool:
+        """Lay legs for a route from now on; with ``is_strict`` only if no seam is overrun."""
+        if not route:
+            return True
+        if self._override == 0.0:
+            return not is_strict
+        time = self._now * MICROSECOND
+        leg = self._timeline.leg_at(time)
+        if leg is None or leg.ends <= time:
+            state = State(self._stood_at(route[0]), 0.0, 0.0)
+            return self._lay(route, state, max(time, self._timeline_end(time)), None, is_strict)
+        if leg.section.key == route[0].key:
+            laid = self._lay(route, leg.state(time), time, leg, is_strict)
+            if laid or is_strict:
+                return laid
+        # The acceleration cannot be taken back before the leg ends; so it is travelled first.
+        rest, state = _behind(leg, route)
+        return not rest or self._lay(rest, state, leg.ends, None, is_strict)
+
+    def _timeline_end(self, time: float) -> float:
+        leg = self._timeline.leg_at(time)
+        return leg.ends if leg is not None else 0.0
+
+    def _lay(
+        self,
+        route: Sequence[Section],
+        state: State,
+        begins: float,
+        leg: Leg | None,
+        is_strict: bool,
+    ) -> bool:
+        """Schedule a route from a state on and put its legs behind what is kept of the timeline."""
+        entries = _entries(route, state.u)
+        steps = _steps(entries)
+        planned = None
+        if leg is not None and steps and _goes_on(leg, steps[0], self._override):
+            planned = leg.state(leg.ends).speed
+        profiles: list[Profile | None] | None = []
+        if steps:
+            profiles = schedule(steps, state, self._override, planned=planned, is_strict=is_strict)
+        if profiles is None:
+            return False
+        if profiles and profiles[0] is None and leg is not None:
+            begins = leg.ends
+        self._timeline.cut(begins)
+        queue = iter(profiles)
+        for section, step in entries:
+            profile = standing(0.0) if step is None else next(queue)
+            if profile is None:
+                continue
+            stretch = step.stretch if step is not None else section.ceiling.stretches[0]
+            ends = begins + profile.duration
+            self._timeline.append(Leg(section, stretch, profile, begins, ends))
+            begins = ends
+        self._agenda = None
+        return True
+
+    def _halt(self, override: float, *, is_hard: bool) -> None:
+        """Stop on the path."""
+        time = self._now * MICROSECOND
+        leg = self._timeline.leg_at(time)
+        self._agenda = None
+        if leg is None or leg.ends <= time or not self._plan.route:
+            self._timeline.cut(time)
+            return
+        begins, legs = self._ramp_down(leg, time, override, is_hard)
+        self._timeline.cut(begins)
+        for each in legs:
+            self._timeline.append(each)
+
+    def _ramp_down(
+        self, leg: Leg, time: float, override: float, is_hard: bool
+    ) -> tuple[float, list[Leg]]:
+        """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
+        route: Sequence[Section] = self._plan.route
+        while route and route[0].key < leg.section.key:
+            route = route[1:]
+        begins, state = time, leg.state(time)
+        entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
+        profiles = braking(_steps(entries), state, override, is_hard=is_hard)
+        if profiles is None:  # it cannot before the leg ends
+            begins = leg.ends
+            route, state = _behind(leg, route)
+            entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
+            profiles = braking(_steps(entries), state, override, is_hard=is_hard) or []
+        legs, start = [], begins
+        for (section, step), profile in zip(entries, profiles, strict=False):
+            if step is not None:
+                legs.append(Leg(section, step.stretch, profile, start, start + profile.duration))
+                start += profile.duration
+        return begins, legs
+
+    def _stop_from(self, time: float) -> tuple[Key, float] | None:
+        """Where a brake at a time would end; ``None`` where the arm stands then."""
+        leg = self._timeline.leg_at(time)
+        if leg is None or leg.ends <= time or self._is_braked:
+            return None
+        _, legs = self._ramp_down(leg, time, self._override or 1.0, is_hard=False)
+        last = legs[-1] if legs else leg
+        return last.section.key, last.last
+
+
+def _steps(entries: Sequence[tuple[Section, Step | None]]) -> list[Step]:
+    return [step for _, step in entries if step is not None]
+
+
+def _sections(track: Track) -> tuple[Section, ...]:
+    """The sections of a motion that nothing is blended into or out of."""
+    return tuple(
+        Section(
+            track.motion.number,
+            None,
+            piece.curve,
+            piece.ceiling,
+            gear=piece.gear,
+            is_still=piece.is_still,
+            part=part,
+        )
+        for part, piece in enumerate(track.pieces)
+    )
+
+
+def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], State]:
+    """What of a route is left when a leg has ended, and the state there."""
+    speed = leg.state(leg.ends).speed
+    if route[0].key != leg.section.key or leg.last < route[0].end - _THERE:
+        return tuple(route), State(leg.last, speed, 0.0)
+    rest = list(route[1:])
+    while rest and rest[0].is_used_up:
+        speed *= rest.pop(0).gear
+    if not rest:
+        return (), State(leg.last, 0.0, 0.0)
+    return tuple(rest), State(rest[0].start, speed * rest[0].gear, 0.0)
+
+
+def _entries(route: Sequence[Section], start: float) -> list[tuple[Section, Step | None]]:
+    """The steps of a route from a parameter of its first section on; ``None`` for a motion of none.
+
+    A section that two blends have used up has no step; its gear goes on to the next.
+    """
+    entries: list[tuple[Section, Step | None]] = []
+    gear = 1.0
+    for place, section in enumerate(route):
+        if section.is_still:
+            entries.append((section, None))
+            gear = 1.0
+            continue
+        steps = section.steps(start if place == 0 else section.start)
+        gear *= section.gear
+        for number, step in enumerate(steps):
+            entries.append((section, replace(step, gear=gear if number == 0 else 1.0)))
+            gear = 1.0
+    return entries
+
+
+def _goes_on(leg: Leg, step: Step, override: float) -> bool:
+    """Whether the leg under way is one with all the bounds that are in force now."""
+    own, other = leg.stretch, step.stretch
+    is_whole = leg.last >= own.end - _THERE
+    return is_whole and own.end == other.end and own.bounds(override) == other.bounds(override)

@@ -1,0 +1,192 @@
+"""A session: a program, an executor, the controller and a robot put together, and what came of it.
+
+Everything that a run depends on is in its `Setup`; the same program and setup give the same trace,
+to the bit, on every executor and with every robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from interp.controller.controller import HOUR, Controller, Outcome
+from interp.controller.profile import Profile
+from interp.controller.script import Script
+from interp.controller.trace import Trace, TraceEvent
+from interp.executors import EXECUTORS, Prepared, available
+from interp.faults import Fault, LinkError
+from interp.program import CheckedProgram, Limits
+from interp.requests import Value
+from interp.robot.batch import BatchCore
+from interp.robot.core import ControlCore, Switch
+from interp.robot.data_list import DataListError
+from interp.robot.following import Following, PathRecord
+from interp.robot.machine import ROBOT_AXES, Machine, MachineDataError, read_machine
+from interp.robot.models import default_machine, model_file
+from interp.robot.planned_arm import PlannedArm
+from interp.robot.robots import RobotName, make_robot
+from interp.tree import system_values
+from interp.values import StructureValue
+
+__all__ = ["EXECUTORS", "Run", "Setup", "available", "machine_of_program", "run_program"]
+
+#: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
+#: forearm level.
+_UPRIGHT = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What a program is run with.
+
+    ``routine`` is the one to begin with, by default the first of the first file; ``submit`` that of
+    a submit program in the same project. ``machine`` is the arm, by default that of the project's
+    ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
+    or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
+    assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
+    ``until`` is the most virtual time in µs, ``limits`` the most statements and calls.
+    """
+
+    executor: str = "tree"
+    robot: RobotName = "none"
+    profile: Profile = field(default_factory=Profile.load)
+    script: Script = field(default_factory=Script)
+    routine: str | None = None
+    submit: str | None = None
+    machine: Machine | None = None
+    start: tuple[float, ...] | None = None
+    is_full: bool = False
+    motion: Literal["lookahead", "batch"] = "lookahead"
+    until: int = HOUR
+    limits: Limits | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What came of a run: how it ended, the trace, and where the arm went.
+
+    ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
+    ``start`` are those that were used.
+    """
+
+    outcome: Outcome
+    events: Sequence[TraceEvent]
+    path: PathRecord | None
+    machine: Machine
+    start: tuple[float, ...]
+    controller: Controller
+
+
+def run_program(
+    prepared: Prepared | CheckedProgram,
+    setup: Setup,
+    *,
+    take: Callable[[TraceEvent], None] | None = None,
+    on_time: Callable[[int], None] = lambda _now: None,
+) -> Run:
+    """Run a program to its end, its fault or the end of its time.
+
+    ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
+    virtual time now and then. Raises `LinkError` for a program that cannot begin,
+    `interp.controller.script.ScriptError` for a script about what does not exist, and `ImportError`
+    for a robot that is not installed.
+    """
+    if isinstance(prepared, CheckedProgram):
+        prepared = Prepared(prepared, setup.routine)
+    program, profile = prepared.program, setup.profile
+    values = system_values(program)
+    machine = setup.machine or machine_of_program(program, profile)
+    start = setup.start or _home(values, machine)
+    try:
+        arm = PlannedArm(machine, start)
+    except Fault as fault:
+        raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
+    robot = make_robot(setup.robot, machine, profile.cycle)
+    following = Following(arm, robot, machine, profile.cycle, start)
+    trace = Trace(take, is_full=setup.is_full)
+    sink, submit_sink = trace.sink(), trace.sink("submit")
+    limits = setup.limits or Limits(per_slice=profile.statements)
+    executor = prepared.executor(setup.executor, limits, sink)
+    submit = executor.companion(setup.submit, submit_sink) if setup.submit else None
+    kind = BatchCore if setup.motion == "batch" else ControlCore
+
+    def core(switch: Switch) -> ControlCore:
+        return kind(arm, switch, 1)
+
+    controller = Controller(
+        executor,
+        core,
+        profile=profile,
+        script=setup.script,
+        trace=trace,
+        sink=sink,
+        submit=submit,
+        submit_sink=submit_sink,
+        machine=machine,
+        values=values,
+        following=following,
+    )
+    outcome = _run(controller, setup.until, on_time)
+    path = following.record() if robot.step else None
+    return Run(outcome, trace.events, path, machine, tuple(start), controller)
+
+
+#: Virtual time in µs from one report of progress to the next.
+_REPORT = 1_000_000
+
+
+def _run(controller: Controller, until: int, on_time: Callable[[int], None]) -> Outcome:
+    now = 0
+    while True:
+        now = min(now + _REPORT, until)
+        outcome = controller.run(now)
+        on_time(outcome.time)
+        if outcome.ending != "time" or now >= until or outcome.time < now:
+            return outcome
+
+
+def machine_of_program(program: CheckedProgram, profile: Profile) -> Machine:
+    """The arm of the project's own machine data, else that of the profile.
+
+    Raises `LinkError` where the project has machine data of an arm that is not understood.
+    """
+    for unit in program.units.values():
+        module = unit.module
+        if (
+            module.name == "$MACHINE"
+            and module.suffix == ".dat"
+            and "$LENGTH_A" in unit.source.text
+        ):
+            try:
+                return read_machine(unit.source.text, module.path)
+            except (DataListError, MachineDataError) as error:
+                raise LinkError(str(error)) from error
+    if profile.machine == default_machine().name.lower():
+        return default_machine()
+    path = model_file(f"{profile.machine}.dat")
+    try:
+        return read_machine(path.read_text(encoding="utf-8"), path.name)
+    except OSError as error:
+        raise LinkError(f"the profile names an unknown arm: {profile.machine}") from error
+    except (DataListError, MachineDataError) as error:
+        raise LinkError(str(error)) from error
+
+
+def _home(values: Mapping[str, Value], machine: Machine) -> tuple[float, ...]:
+    """$H_POS where the project has it and the arm can stand there, else upright."""
+    home: Any = values.get("$H_POS")
+    axes: tuple[float, ...] = _UPRIGHT
+    if isinstance(home, StructureValue):
+        found = [home.get(f"A{number}") for number in range(1, ROBOT_AXES + 1)]
+        known = [float(value) for value in found if isinstance(value, int | float)]
+        axes = tuple(known) if len(known) == ROBOT_AXES else axes
+    fits = all(
+        axis.lower <= value <= axis.upper for axis, value in zip(machine.axes, axes, strict=True)
+    )
+    if fits:
+        return axes
+    return tuple(
+        min(max(value, axis.lower), axis.upper)
+        for axis, value in zip(machine.axes, _UPRIGHT, strict=True)
+    )

@@ -1,0 +1,54 @@
+"""`krl bench fuzz`: how many planted faults `krl fuzz` finds."""
+
+import json
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from krl.door import FINE, Unusable
+from krl.progress import progress_bar
+
+__all__ = ["fuzz"]
+
+
+def fuzz(
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    programs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Each mutant meets so many programs at most.")
+    ] = 1_000,
+    seed: Annotated[int, typer.Option(metavar="N", help="Chooses the programs.")] = 1,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Plant faults into the machine in Python, one at a time, and see whether programs find them.
+
+    The faults are made from the table of instructions: operands exchanged, results a little off,
+    jumps that go the wrong way, faults that are not raised.
+    """
+    from conformance.differential.hunt import hunt, record_of
+    from conformance.differential.mutants import mutants
+
+    if json_file is not None and json_file.is_dir():
+        raise Unusable(f"{json_file}: a folder, not a file")
+    with progress_bar("hunting mutants", len(mutants())) as bar:
+        verdicts = hunt(programs, seed, jobs or os.cpu_count() or 1, bar)
+    record = record_of(verdicts, programs, seed)
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    console = Console(highlight=False)
+    console.print(
+        f"{record['caught']:,} of {record['mutants']:,} planted faults found "
+        f"({record['share']:.1%}; aim 95 %), half of them within {record['median_runs']} runs",
+        soft_wrap=True,
+    )
+    for one in record["missed"]:
+        console.print(f"Not found: {one}", markup=False, soft_wrap=True)
+    return FINE

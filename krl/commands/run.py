@@ -1,0 +1,299 @@
+"""`krl run`: a program on the controller, with an arm that moves."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from enum import StrEnum
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
+
+import typer
+
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.programs import load_program
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from interp.controller.trace import TraceEvent
+    from interp.program import CheckedProgram
+    from interp.session import Run, Setup
+
+__all__ = ["run"]
+
+_NEEDED = {
+    "numpy": "arm",
+    "scipy": "arm",
+    "py_opw_kinematics": "arm",
+    "ruckig": "arm",
+    "toppra": "arm",
+    "mujoco": "arm",
+    "pandas": "records",
+    "pyarrow": "records",
+}
+
+
+_MOST_TOLD = 3
+
+
+class Executor(StrEnum):
+    """Who executes the program."""
+
+    TREE = "tree"
+    VM = "vm"
+    NATIVE = "native"
+
+
+class Robot(StrEnum):
+    """What moves."""
+
+    NONE = "none"
+    KINEMATIC = "kinematic"
+    MUJOCO = "mujoco"
+
+
+class Motion(StrEnum):
+    """How motions are planned."""
+
+    LOOKAHEAD = "lookahead"
+    BATCH = "batch"
+
+
+class Level(StrEnum):
+    """What the trace tells."""
+
+    WORLD = "world"
+    FULL = "full"
+
+
+def run(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="The program; archive.zip/path/name.src in an archive."
+        ),
+    ],
+    routine: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
+    ] = None,
+    executor: Annotated[
+        Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
+    ] = None,
+    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE,
+    profile: Annotated[
+        str, typer.Option(metavar="NAME", help="The controller: kss8, kss5, or a .toml file.")
+    ] = "kss8",
+    io_script: Annotated[
+        Path | None, typer.Option("--io", metavar="SCRIPT", help="What inputs do, and when.")
+    ] = None,
+    submit: Annotated[
+        str | None, typer.Option(metavar="NAME", help="A routine of the project for the submit.")
+    ] = None,
+    trace: Annotated[
+        Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace here.")
+    ] = None,
+    trace_level: Annotated[
+        Level, typer.Option(help="full tells every line and assignment too.")
+    ] = Level.WORLD,
+    path: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.parquet", help="Write set-points here; .csv goes too."),
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the page of the run here.")
+    ] = None,
+    video: Annotated[
+        Path | None, typer.Option(metavar="FILE.gif", help="Film the MuJoCo arm; .webp goes too.")
+    ] = None,
+    motion: Annotated[
+        Motion,
+        typer.Option(help="Plan motions as they come, or as the paper did in batches."),
+    ] = Motion.LOOKAHEAD,
+    max_time: Annotated[
+        float, typer.Option(min=0.0, metavar="S", help="Stop after so much virtual time.")
+    ] = 3600.0,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Run nothing while the checker finds an error.")
+    ] = False,
+) -> int:
+    """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
+
+    The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
+    its end or to a HALT, 1 after a fault or where its time or budget was used up.
+    """
+    with _expected_errors():
+        from interp.controller.profile import Profile
+        from interp.controller.script import Script
+        from interp.session import Setup, available
+
+        chosen = executor.value if executor is not None else available()[-1]
+        script = Script() if io_script is None else Script.read(_text(io_script))
+        setup = Setup(
+            executor=chosen,
+            robot=robot.value,
+            profile=Profile.load(profile),
+            script=script,
+            routine=routine,
+            submit=submit,
+            is_full=trace_level is Level.FULL,
+            motion=motion.value,
+            until=round(max_time * 1e6),
+        )
+        _check_targets(trace, path, html, video, robot)
+        program, left = load_program(file, strict=strict)
+        for why in left[:_MOST_TOLD]:
+            typer.echo(one_line(f"left out: {why}"), err=True)
+        if len(left) > _MOST_TOLD:
+            typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
+        done = _performed(program, setup, trace)
+        _write(done, program, setup, path, html, video)
+    typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
+    if html is not None:
+        typer.echo(f"page: {html}")
+    return FINE if done.outcome.ending in ("end", "halt") else FINDINGS
+
+
+@contextmanager
+def _expected_errors() -> Iterator[None]:
+    """Turn what the rooms raise about input into what the door prints."""
+    from interp.faults import RuntimeFailure
+
+    try:
+        yield
+    except RuntimeFailure as error:
+        raise Unusable(str(error)) from error
+    except ModuleNotFoundError as error:
+        name = (error.name or "").partition(".")[0]
+        if name not in _NEEDED:
+            raise
+        raise Unusable(
+            f"this needs {name}, which is not installed: "
+            f"pip install 'krl-workbench[{_NEEDED[name]}]'"
+        ) from error
+
+
+def _text(file: Path) -> str:
+    if file.is_dir():
+        raise Unusable(f"{file}: a folder, not a file")
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise Unusable(f"{file}: not a text in UTF-8") from None
+
+
+def _check_targets(
+    trace: Path | None, path: Path | None, html: Path | None, video: Path | None, robot: Robot
+) -> None:
+    """Say now what would only fail after the run."""
+    for target in (trace, path, html, video):
+        if target is not None and target.is_dir():
+            raise Unusable(f"{target}: a folder, not a file")
+    if path is not None and path.suffix.lower() not in (".parquet", ".csv"):
+        raise Unusable(f"--path: {path} ends neither in .parquet nor in .csv")
+    if path is not None and robot is Robot.NONE:
+        raise Unusable(
+            "--path: the robot none takes no set-points; say --robot kinematic or mujoco"
+        )
+    if video is not None:
+        from interp.robot.video import VideoError, check
+
+        if robot is not Robot.MUJOCO:
+            raise Unusable("--video: only the MuJoCo arm can be filmed; say --robot mujoco")
+        try:
+            check(video)
+        except VideoError as error:
+            raise Unusable(str(error)) from error
+
+
+def _performed(program: "CheckedProgram", setup: "Setup", trace: Path | None) -> "Run":
+    """Run it with a progress bar, writing the trace as it comes."""
+    from interp.session import run_program
+
+    with progress_bar("running, virtual seconds", None) as bar, _tracing(trace) as stream:
+        kept: list[TraceEvent] = []
+        told = 0
+
+        def take(event: "TraceEvent") -> None:
+            kept.append(event)
+            if stream is not None:
+                stream.write(event.line() + "\n")
+
+        def on_time(now: int) -> None:
+            nonlocal told
+            bar(now // 1_000_000 - told)
+            told = now // 1_000_000
+
+        done = run_program(program, setup, take=take, on_time=on_time)
+        return replace(done, events=kept)
+
+
+@contextmanager
+def _tracing(file: Path | None) -> Iterator[TextIO | None]:
+    """The trace, written beside its place and moved there when it is whole."""
+    if file is None:
+        yield None
+        return
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_name(file.name + ".part")
+    try:
+        with part.open("w", encoding="utf-8", newline="\n") as stream:
+            yield stream
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _write(
+    done: "Run",
+    program: "CheckedProgram",
+    setup: "Setup",
+    path: Path | None,
+    html: Path | None,
+    video: Path | None,
+) -> None:
+    if path is not None and done.path is not None:
+        _write_path(done.path.columns(), path)
+    if html is not None:
+        from reports import write_run_page
+
+        write_run_page(_record(done, program, setup), html)
+    if video is not None and done.path is not None:
+        _film(done, video)
+
+
+def _film(done: "Run", target: Path) -> None:
+    from interp.robot.video import VideoError, frame_count, write_video
+
+    assert done.path is not None
+    shown = done.path.axes if done.path.axes_measured is None else done.path.axes_measured
+    try:
+        with progress_bar("filming", frame_count(done.path.times)) as bar:
+            write_video(target, done.machine, done.path.times, shown, on_frame=bar)
+    except VideoError as error:
+        raise Unusable(str(error)) from error
+
+
+def _write_path(columns: Mapping[str, Any], target: Path) -> None:
+    """A table with a row each interpolation cycle."""
+    import pandas as pd  # type: ignore[import-untyped]
+
+    table = pd.DataFrame(dict(columns))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(target.name + ".part")
+    if target.suffix.lower() == ".csv":
+        table.to_csv(part, index=False, lineterminator="\n")
+    else:
+        table.to_parquet(part, index=False)
+    part.replace(target)
+
+
+def _record(done: "Run", program: "CheckedProgram", setup: "Setup") -> dict[str, Any]:
+    """What the page of a run is made of; see `reports.run_page.write_run_page`."""
+    from interp.session_record import record_of
+
+    return {
+        **record_of(done, program, setup),
+        "version": metadata.version("krl-workbench"),
+        "generated": datetime.now(UTC).isoformat(timespec="seconds"),
+    }

@@ -1,0 +1,119 @@
+"""The program that a file on the command line means: with all files of its project."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from krl.door import Unusable
+
+if TYPE_CHECKING:
+    from grammar.source import Source
+    from interp.program import CheckedProgram
+    from recovery.ingest import Found
+
+__all__ = ["load_program", "read_sources"]
+
+#: Folders that lie directly below the root of a controller's files.
+_PARTS = frozenset({"R1", "STEU"})
+_MOST_FILES = 20_000
+
+
+def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, list[str]]":
+    """The program that begins with a file, and why files of its project were left out.
+
+    ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
+    checker finds is no obstacle: what it is about fails when it is reached. Raises `Unusable` for
+    what cannot be read, and `interp.faults.LinkError` for what cannot be run.
+    """
+    from interp.program import load
+
+    sources, main, left = read_sources(file)
+    return load(sources, main, strict=strict), left
+
+
+def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
+    """The files of the project of a file, the path of that file among them, and what was left out.
+
+    A project is what one controller holds: the nearest folder above the file with R1 or STEU in
+    it, else the folder that it lies in. Files that cannot be read as KRL are left out, but not the
+    one that was asked for.
+    """
+    from grammar import ast
+    from grammar.build import read_module
+    from grammar.source import Source
+    from recovery.decode import decode
+    from recovery.ingest import Found, IngestError, Skipped, discover, read
+
+    archive, inner = _in_archive(file)
+    try:
+        root = archive or _root_of(file)
+        found = [one for one in discover([root]) if isinstance(one, Found)]
+    except IngestError as error:
+        raise Unusable(str(error)) from error
+    if archive is None and root == file.parent:  # a loose file: its neighbours, not what lies below
+        found = [one for one in found if one.file.parent == file.parent and one.member is None]
+    sources: list[Source] = []
+    left: list[str] = []
+    main = ""
+    for one in found[:_MOST_FILES]:
+        is_main = _is_asked_for(one, file, inner)
+        data = read(one)
+        decoded = data.reason if isinstance(data, Skipped) else decode(data)
+        if isinstance(decoded, str):
+            if is_main:
+                raise Unusable(f"{one.path}: {decoded}")
+            left.append(f"{one.path}: {decoded}")
+            continue
+        source = Source(decoded.text, _shown(one, root))
+        syntax = read_module(source.text, source.path)
+        if isinstance(syntax, ast.Module) or is_main:
+            sources.append(source)
+        else:
+            left.append(f"{one.path}:{syntax[0].line}: it cannot be read")
+        main = source.path if is_main else main
+    if not main:
+        raise Unusable(f"{file}: no KRL program")
+    return sources, main, left
+
+
+def _shown(found: "Found", root: Path) -> str:
+    """The path of a file below the root of its project: the same wherever the project lies."""
+    if found.member is not None:
+        return found.member
+    return found.file.relative_to(root).as_posix()
+
+
+def _in_archive(file: Path) -> tuple[Path | None, str]:
+    """The archive that a path leads into, and the rest of the path; none for a plain file."""
+    for parent in file.parents:
+        if parent.suffix.lower() == ".zip" and parent.is_file():
+            return parent, file.relative_to(parent).as_posix()
+    return None, ""
+
+
+def _is_asked_for(found: "Found", file: Path, inner: str) -> bool:
+    if found.member is not None:
+        return bool(inner) and found.path.endswith("/" + inner)
+    return not inner and found.file.resolve() == file.resolve()
+
+
+def _root_of(file: Path) -> Path:
+    """The folder that holds the project of a file."""
+    if not file.is_file():
+        raise Unusable(f"{file}: no such file")
+    for parent in _above(file):
+        if any(one.name.upper() in _PARTS and one.is_dir() for one in _listed(parent)):
+            return parent
+    return file.parent
+
+
+def _above(file: Path) -> Sequence[Path]:
+    """The folders above a file, the nearest first; R1 itself is not where a project begins."""
+    return [parent for parent in file.absolute().parents if len(parent.parts) > 1][:12]
+
+
+def _listed(folder: Path) -> list[Path]:
+    try:
+        return list(folder.iterdir())
+    except OSError:
+        return []

@@ -1,0 +1,248 @@
+"""The nights so far, and what changed from one to the next.
+
+``history.jsonl`` has a line a night. A line that cannot be read is passed over: a night that was
+cut off must not hide those before it.
+"""
+
+import hashlib
+import json
+import secrets
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from reports.fields import Record, count, nested, number, records, text
+
+__all__ = ["append_night", "changes", "night_of", "read_nights"]
+
+Json = dict[str, Any]
+
+#: A figure of a bench that is so much worse than the night before is told; machines are noisy.
+_WORSE = 1.25
+#: Events whose times are compared between nights.
+_TIMED = frozenset(
+    "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
+)
+_MOST_TOLD = 40
+
+
+def read_nights(file: Path) -> list[Json]:
+    """The nights of a history, the oldest first; none where there is no file."""
+    try:
+        lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    except FileNotFoundError:
+        return []
+    nights = []
+    for line in lines:
+        try:
+            night = json.loads(line)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(night, dict):
+            nights.append(night)
+    return nights
+
+
+def append_night(file: Path, night: Mapping[str, Any]) -> None:
+    """Write the history anew with one more line, whole or not at all.
+
+    A night of the same date, which was broken off or repeated, gives way to it. Raises OSError.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+    kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, night)]
+    kept.append(json.dumps(night, ensure_ascii=False, separators=(",", ":"), allow_nan=False))
+    draft = file.with_name(f".{file.name}-{secrets.token_hex(8)}.tmp")
+    try:
+        draft.write_text("\n".join(kept) + "\n", encoding="utf-8", newline="\n")
+        draft.replace(file)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _is_of(line: str, night: Mapping[str, Any]) -> bool:
+    try:
+        other = json.loads(line)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(other, dict) and other.get("date") == night.get("date")
+
+
+def night_of(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:
+    """The line of a night: from the records of its steps by name, and how each step went."""
+    recover, growth, conform = (made.get(name, {}) for name in ("recover", "growth", "conform"))
+    fuzz = made.get("fuzz", {})
+    return {
+        "date": date,
+        "steps": dict(steps),
+        "recover": {
+            "files": count(recover, "files"),
+            "parsed": count(recover, "parsed"),
+            "clusters": {text(c, "id"): text(c, "title") for c in records(recover, "clusters")},
+        },
+        "growth": {
+            "steps": count(growth, "steps"),
+            "files": count(growth, "files"),
+            "parsed": max((count(step, "parsed") for step in records(growth, "steps")), default=0),
+        },
+        "conform": {
+            "verdicts": dict(nested(conform, "verdicts")),
+            "seconds": number(conform, "seconds"),
+            "hard": count(nested(conform, "coverage"), "hard"),
+            "hard_covered": count(nested(conform, "coverage"), "hard_covered"),
+            "cases": {text(c, "name"): _short(c) for c in records(conform, "cases")},
+        },
+        "fuzz": {
+            "programs": count(fuzz, "programs"),
+            "seed": count(fuzz, "seed"),
+            "divergences": count(fuzz, "divergences"),
+        },
+        "bench": {
+            f"{name.removeprefix('bench-')}.{figure}": value
+            for name, record in sorted(made.items())
+            if name.startswith("bench-")
+            for figure, value in _figures(record)
+        },
+    }
+
+
+def _short(case: Record) -> str:
+    """A case in a word: its verdict, and a digest of when its events happened."""
+    code = hashlib.sha256()
+    for label, time in _timing(case):
+        code.update(f"{label} {time};".encode())
+    return f"{text(case, 'verdict')} {code.hexdigest()[:8]}"
+
+
+def _timing(case: Record) -> Iterator[tuple[str, int]]:
+    """What happened when in the first run of a case that was kept whole."""
+    for result in records(case, "results"):
+        events = records(result, "events")
+        if events:
+            for event in events:
+                if event.get("kind") in _TIMED and isinstance(event.get("t"), int):
+                    signal = text(event, "signal") or text(event, "motion") or text(event, "number")
+                    yield f"{text(event, 'kind')} {signal}".strip(), int(event["t"])
+            return
+
+
+def _figures(record: Record) -> Iterator[tuple[str, float]]:
+    """The figures of a bench that are ratios or speeds: those that stand at its top level."""
+    for name, value in record.items():
+        if isinstance(value, int | float) and not isinstance(value, bool) and "second" not in name:
+            yield name, round(float(value), 6)
+
+
+# ----------------------------------------------------------------------------------- what changed
+
+
+def changes(
+    before: Record | None, now: Record, old: Record | None = None, new: Record | None = None
+) -> list[str]:
+    """What changed since the night before, a sentence each; nothing where nothing did.
+
+    ``old`` and ``new`` are the records of the judge of both nights, where they are still there:
+    they tell what a shift in time was.
+    """
+    if before is None:
+        return ["this is the first night"]
+    return [
+        *_steps(before, now),
+        *_survey(nested(before, "recover"), nested(now, "recover")),
+        *_verdicts(nested(before, "conform"), nested(now, "conform")),
+        *_shifts(nested(before, "conform"), nested(now, "conform"), old, new),
+        *_fuzz(nested(before, "fuzz"), nested(now, "fuzz")),
+        *_speeds(nested(before, "bench"), nested(now, "bench")),
+    ]
+
+
+def _steps(before: Record, now: Record) -> Iterator[str]:
+    for name, step in nested(now, "steps").items():
+        status = text(step, "status")
+        was = text(nested(nested(before, "steps"), name), "status")
+        if status != was and (
+            status not in ("ok", "findings") or was not in ("", "ok", "findings")
+        ):
+            yield f"step {name}: {status}" + (f" (was: {was})" if was else "")
+
+
+def _survey(before: Record, now: Record) -> Iterator[str]:
+    for key, what in (("files", "files"), ("parsed", "files that parse")):
+        if count(before, key) != count(now, key):
+            yield f"survey: {what} {count(before, key):,} → {count(now, key):,}"
+    old, new = nested(before, "clusters"), nested(now, "clusters")
+    yield from (
+        f"survey: new cluster {new[one]}" for one in list(new)[:_MOST_TOLD] if one not in old
+    )
+    yield from (
+        f"survey: gone cluster {old[one]}" for one in list(old)[:_MOST_TOLD] if one not in new
+    )
+
+
+def _verdicts(before: Record, now: Record) -> Iterator[str]:
+    old, new = _by_case(before), _by_case(now)
+    for name, (verdict, _) in new.items():
+        if name not in old:
+            yield f"case appeared: {name} ({verdict})"
+        elif old[name][0] != verdict:
+            what = (
+                "new failure" if verdict == "fail" else "fixed" if verdict == "pass" else "changed"
+            )
+            yield f"{what}: {name}: {old[name][0]} → {verdict}"
+    yield from (f"case vanished: {name}" for name in old if name not in new)
+
+
+def _by_case(conform: Record) -> dict[str, tuple[str, str]]:
+    found = {}
+    for name, short in nested(conform, "cases").items():
+        verdict, _, digest = str(short).partition(" ")
+        found[name] = (verdict, digest)
+    return found
+
+
+def _shifts(before: Record, now: Record, old: Record | None, new: Record | None) -> Iterator[str]:
+    was, became = _by_case(before), _by_case(now)
+    shifted = [n for n, (_, digest) in became.items() if n in was and was[n][1] != digest]
+    details = {} if old is None or new is None else _details(old, new, set(shifted))
+    for name in shifted[:_MOST_TOLD]:
+        yield f"timing shifted: {name}{details.get(name, '')}"
+    if len(shifted) > _MOST_TOLD:
+        yield f"timing shifted: {len(shifted) - _MOST_TOLD} more cases"
+
+
+def _details(old: Record, new: Record, names: set[str]) -> dict[str, str]:
+    """The first event of each case that happens at another time, or not at all."""
+    rows = [{text(c, "name"): list(_timing(c)) for c in records(r, "cases")} for r in (old, new)]
+    told = {}
+    for name in names:
+        left, right = rows[0].get(name, []), rows[1].get(name, [])
+        for one, two in zip(left, right, strict=False):
+            if one != two:
+                told[name] = (
+                    f": {one[0]} at {one[1] / 1e6:.6f} s → {two[0]} at {two[1] / 1e6:.6f} s"
+                )
+                break
+        else:
+            if len(left) != len(right):
+                told[name] = f": {len(left)} events → {len(right)}"
+    return told
+
+
+def _fuzz(before: Record, now: Record) -> Iterator[str]:
+    if count(now, "divergences") != count(before, "divergences"):
+        yield f"fuzz: divergences {count(before, 'divergences')} → {count(now, 'divergences')}"
+
+
+#: Figures of which less is better; of all others more is.
+_COSTS = ("_per_mb", "_us", "_ms", "cost", "clusters_per_cause", "false_accept", "_tokens")
+
+
+def _speeds(before: Record, now: Record) -> Iterator[str]:
+    for name, value in now.items():
+        was = before.get(name)
+        if not isinstance(was, int | float) or not isinstance(value, int | float):
+            continue
+        is_cost = any(part in name for part in _COSTS)
+        worse, better = (value, was) if is_cost else (was, value)
+        if better > 0 and worse / better >= _WORSE:
+            yield f"slower: {name} {was:.4g} → {value:.4g} ({worse / better:.2f} times worse)"
