@@ -8,18 +8,23 @@ BIN := $(VENV)/bin
 BASE := $(VENV)/.base
 DEV := $(VENV)/.dev
 
-.PHONY: help setup recover growth conformance nightly test check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile test check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
 	@echo 'make recover      survey the corpus and write the page (ARGS="PATH --json FILE")'
 	@echo 'make growth       replay the ledger over the corpus and write the page'
+	@echo 'make conformance  run the conformance cases on every executor and write the page'
+	@echo 'make nightly      everything once, at most an hour, and what changed since last night'
+	@echo 'make fuzz         random programs on all executors (ARGS="--programs 100000")'
+	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
+	@echo 'make killed       kill surveys and acceptances at random moments'
+	@echo 'make hostile      hostile input at every entry point'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
 	@echo 'make bench        measure the tools; records go to reports/out/bench (ARGS="PATH")'
 	@echo 'make clean        remove .venv, caches and reports/out'
-	@echo 'make conformance, make nightly: not built yet'
 
 setup: $(DEV)
 
@@ -44,13 +49,28 @@ grammar: $(DEV)
 	@command -v java >/dev/null || { echo 'make grammar: ANTLR needs Java, and there is no java on the PATH' >&2; exit 2; }
 	@$(BIN)/python -m grammar.generate
 
-conformance nightly:
-	@echo 'make $@: not built yet, it comes with the interpreters' >&2; exit 2
+conformance: $(DEV)
+	@$(BIN)/krl conform --html reports/out/conformance --json reports/out/conformance/conform.json $(ARGS)
 
-bench: $(BASE)
+nightly: $(DEV)
+	@$(BIN)/krl nightly $(ARGS)
+
+fuzz: $(DEV)
+	@$(BIN)/krl fuzz $(ARGS)
+
+real-code: $(DEV)
+	@$(BIN)/krl bench real-code $(ARGS)
+
+killed hostile: $(DEV)
+	@$(BIN)/python -m pytest -q -s -m soak tests/soak/test_$@.py $(ARGS)
+
+bench: $(DEV)
 	@$(BIN)/krl bench recover --json reports/out/bench/recover.json $(ARGS)
 	@$(BIN)/krl bench mutation --json reports/out/bench/mutation.json $(ARGS)
 	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
+	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
+	@$(BIN)/krl bench arm --json reports/out/bench/arm.json
+	@$(BIN)/krl bench conform --json reports/out/bench/conform.json
 
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache

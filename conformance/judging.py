@@ -131,10 +131,11 @@ def _ended(case: Case, seen: Observation) -> Iterator[Check]:
         yield Check(file, line, "no crash", "unmet", seen.note)
         return
     runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in case.expectations)
-    wanted = "fault" if "fault" in kinds else "running" if runs_on else "end"
+    faults = [event for event in seen.events if event.kind == "fault"]
+    is_robot = not faults or any(event.task == "robot" for event in faults)
+    wanted = "fault" if "fault" in kinds and is_robot else "running" if runs_on else "end"
     if seen.ending != wanted and not (
         wanted == "end" and "halt" in kinds and seen.ending == "halt"
     ):
-        faults = [event for event in seen.events if event.kind == "fault"]
         told = f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
         yield Check(file, line, f"the program ends with: {wanted}", "unmet", told)

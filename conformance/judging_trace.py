@@ -174,15 +174,12 @@ def _order(one: Expectation, seen: Observation, marks: Marks) -> Judged:
 def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     faults = [*seen.of_kind("fault")]
     told = "; ".join(
-        f"{event.fields.get('slug')} {event.fields.get('number') or ''} on line {event.line}"
+        f"{event.fields.get('slug') or 'link'} {event.fields.get('number') or ''} on line {event.line}"
         for event in faults
     )
-    names = {
-        str(event.fields.get(key))
-        for event in faults
-        if (event.file, event.line) == (one.file, one.line)
-        for key in ("slug", "number")
-    }
+    there = [event for event in faults if (event.file, event.line) == (one.file, one.line)]
+    names = {str(event.fields.get("slug") or "link") for event in there}
+    names |= {str(event.fields.get("number")) for event in there}
     return ("met" if one.arguments[0] in names else "unmet"), told or f"none: {seen.ending}"
 
 

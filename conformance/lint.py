@@ -15,11 +15,12 @@ from typing import Final
 
 from conformance.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.expectations import KINDS
+from conformance.observing import PROFILES
 from conformance.registry import Rule, registry
 from conformance.verdicts import KnownFailures
 from grammar.build import read_module
 
-__all__ = ["PROFILES", "SUITES", "Coverage", "coverage", "lint"]
+__all__ = ["SUITES", "Coverage", "coverage", "lint"]
 
 #: The suites, in the order in which they are shown.
 SUITES: Final = (
@@ -39,7 +40,6 @@ SUITES: Final = (
     "message",
     "program",
 )
-PROFILES: Final = ("kss8", "kss5")
 _ROBOTS: Final = ("none", "kinematic", "mujoco")
 _STEM: Final = re.compile(r"[a-z][a-z0-9_]{0,23}")
 _LONGEST: Final = 100

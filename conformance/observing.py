@@ -7,7 +7,7 @@ told as such (`missing`), never silently left out.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.util import find_spec
 from typing import Final
@@ -33,10 +33,12 @@ from interp.faults import LinkError
 from interp.program import Limits, load
 from interp.robot.robots import ROBOTS, RobotName
 
-__all__ = ["EXECUTORS", "FRONT", "ROBOTS", "Setup", "missing", "observe"]
+__all__ = ["EXECUTORS", "FRONT", "PROFILES", "ROBOTS", "Setup", "missing", "observe"]
 
 #: Who reads and checks cases: there is one front end.
 FRONT: Final = "grammar"
+#: What ``;@ profile:`` may be: a controller, and that its program begins with a coincidence run.
+PROFILES: Final = ("kss8", "kss8-bco", "kss5", "kss5-bco")
 #: So many statements a case may execute.
 _STATEMENTS: Final = 1_000_000
 #: Endings of a run in the words of expectations.
@@ -118,15 +120,16 @@ def _run(case: Case, setup: Setup) -> Observation:
     program = _prepared(case)
     if isinstance(program, LinkError):
         return _refused(program)
+    profile = _profile(case.profile)
     wanted = session.Setup(
         executor=setup.executor,
         robot=setup.robot,
-        profile=Profile.load(case.profile),
+        profile=profile,
         script=Script.read("\n".join(case.io), case.name),
         submit=_submit(case),
         is_full=True,
         until=round(case.seconds * 1e6),
-        limits=Limits(statements=_STATEMENTS, per_slice=Profile.load(case.profile).statements),
+        limits=Limits(statements=_STATEMENTS, per_slice=profile.statements),
     )
     try:
         return _observed(session.run_program(program, wanted), wanted)
@@ -134,6 +137,12 @@ def _run(case: Case, setup: Setup) -> Observation:
         return _refused(error)
     except ScriptError as error:
         return Observation(ending="crash", note=f"the script of inputs: {error}")
+
+
+def _profile(name: str) -> Profile:
+    """A profile by its name; with ``-bco`` it begins with the block coincidence run [ADV-14]."""
+    base, _, variant = name.partition("-")
+    return replace(Profile.load(base), runs_coincidence=variant == "bco")
 
 
 @lru_cache(maxsize=16)

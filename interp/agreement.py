@@ -11,8 +11,10 @@ triggers and cyclic signals would.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from random import Random
 from typing import Any, Final
 
@@ -31,6 +33,7 @@ from interp.requests import (
     MoveSpline,
     Request,
     Resume,
+    SetCyclicFlag,
     SetTrigger,
     SplineStop,
     SwitchSignal,
@@ -38,6 +41,7 @@ from interp.requests import (
     Write,
 )
 from interp.stub import StubWorld
+from interp.values import ArrayValue, EnumValue, StructureValue
 
 __all__ = ["Difference", "Entered", "Evaluated", "Observed", "Prober", "difference", "observe"]
 
@@ -47,8 +51,6 @@ _PROBED: Final = 6
 _FAILING: Final = 300
 #: So many actions may interrupt one another.
 _DEEPEST: Final = 3
-#: What stands for any code: executors number them as they like.
-_ANY: Final = Code(-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +186,7 @@ def observe(
         request = executor.advance(reply)
         steps += recorder.events
         recorder.events.clear()
-        steps.append(_comparable(request))
+        steps.append(request)
         reply = None
         match request:
             case End() if prober is not None and prober.is_end_of_action():
@@ -220,14 +222,40 @@ def _step(steps: Sequence[Step], place: int) -> Step | None:
     return steps[place] if place < len(steps) else None
 
 
-def _alike(one: Step, other: Step) -> bool:
+def _alike(one: Any, other: Any) -> bool:
     """Whether two steps are the same to the last bit: 1 is not 1.0, and 0.0 not -0.0."""
-    match one, other:
-        case (Fail(), Fail()):
-            return one.at == other.at and repr(one.fault) == repr(other.fault)
-        case (Evaluated(RuntimeFailure()), Evaluated()):
+    if type(one) is not type(other):
+        return False
+    match one:
+        case Code():  # executors number them as they like
+            return True
+        case float():
+            return one == other and math.copysign(1, one) == math.copysign(1, other)
+        case RuntimeFailure():
             return repr(one) == repr(other)
-    return one == other and repr(one) == repr(other)
+        case StructureValue():
+            return one.type == other.type and _all_alike(one.members, other.members)
+        case ArrayValue():
+            return one.type == other.type and _all_alike(list(one), list(other))
+        case tuple():
+            return _all_alike(one, other)
+    kind: type = type(one)
+    names = _names(kind)
+    if names:
+        return all(_alike(getattr(one, name), getattr(other, name)) for name in names)
+    return bool(one == other)
+
+
+def _all_alike(ones: Sequence[Any], others: Sequence[Any]) -> bool:
+    return len(ones) == len(others) and all(map(_alike, ones, others))
+
+
+@cache
+def _names(kind: type) -> tuple[str, ...]:
+    """The fields of a step or of a part of one; none of values and places, which are compared."""
+    if not is_dataclass(kind) or kind in (At, EnumValue):
+        return ()
+    return tuple(one.name for one in fields(kind))
 
 
 def _evaluated(executor: Executor, code: Code, world: StubWorld) -> Value | RuntimeFailure:
@@ -247,28 +275,11 @@ def _handed(request: Request) -> Iterator[tuple[Code, bool]]:
             yield action, True
         case SwitchSignal(cycle=Code() as cycle):
             yield cycle, True
+        case SetCyclicFlag(condition=condition):
+            yield condition, False
         case MoveSpline(items=items):
             for item in items:
                 if isinstance(item, SplineStop):
                     yield item.condition, False
                 elif isinstance(item, SetTrigger):
                     yield item.action, True
-
-
-def _comparable(part: Any) -> Any:
-    """A request without the numbers of codes; runtime failures are compared by their texts."""
-    match part:
-        case Code():
-            return _ANY
-        case tuple():
-            return tuple(_comparable(one) for one in part)
-        case At():
-            return part
-    if (
-        is_dataclass(part)
-        and not isinstance(part, type)
-        and type(part).__module__.endswith("requests")
-    ):
-        changed = {one.name: _comparable(getattr(part, one.name)) for one in fields(part)}
-        return replace(part, **changed)
-    return part

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from interp.controller.moving import PlannedPoint
 from interp.program import CheckedProgram
 from interp.robot.following import PathRecord
 from interp.robot.machine import Machine
@@ -26,6 +27,7 @@ def record_of(run: Run, program: CheckedProgram, setup: Setup) -> dict[str, Any]
     """
     outcome = run.outcome
     events = [json.loads(event.line()) for event in run.events]
+    blended = {event["motion"] for event in events if event["kind"] == "blend_apex"}
     record: dict[str, Any] = {
         "main": program.main.module.path,
         "executor": setup.executor,
@@ -45,13 +47,13 @@ def record_of(run: Run, program: CheckedProgram, setup: Setup) -> dict[str, Any]
         "limits": _limits(run.machine),
         "points": [
             {
-                "motion": point.motion,
+                "motion": point.number,
                 "kind": point.kind,
                 "at": f"{point.at.file}:{point.at.line}",
-                "place": [round(value, 4) for value in point.tip],
-                "blended": point.motion in _blended(events),
+                "place": _tip(point),
+                "blended": point.number in blended,
             }
-            for point in getattr(run.controller, "points", ())
+            for point in run.controller.points
         ],
     }
     if run.path is not None:
@@ -73,8 +75,11 @@ def _files(program: CheckedProgram, named: set[str]) -> list[dict[str, str]]:
     ]
 
 
-def _blended(events: list[dict[str, Any]]) -> set[int]:
-    return {event["motion"] for event in events if event["kind"] == "blend_apex"}
+def _tip(point: PlannedPoint) -> list[float]:
+    """Where a motion leads the tool, in front of the robot's foot; empty where nobody knows."""
+    if point.position is None:
+        return []
+    return [round(value, 4) for value in (point.position.flange @ point.tool).position]
 
 
 def _limits(machine: Machine) -> dict[str, Any]:

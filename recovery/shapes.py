@@ -81,7 +81,10 @@ class Shaper:
         ends: dict[tuple[int, ...], Counter[str]] = defaultdict(Counter)
         failures = list(failures)
         for _, failed, form in failures:
-            if form.index < len(failed.words) and form.kinds[form.index] == self._name:
+            if not 0 < form.index < len(failed.words):
+                continue
+            before, kind = form.kinds[form.index - 1 : form.index + 1]
+            if kind == self._name and self.lexer.is_keyword(before):
                 ends[form.kinds[: form.index]][failed.words[form.index]] += 1
         self._sole = frozenset(
             word

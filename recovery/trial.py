@@ -95,14 +95,28 @@ class Trial:
                 self._by_keyword[keyword].add(number)
 
     def _way_to(self, paths: Paths, before: Frames) -> list[int]:
-        """The shortest tokens after which a line can begin in this state, its line end included."""
-        prefix = min(map(paths.prefix, before), key=len)
+        """The shortest tokens after which a line can begin in this state, its line end included.
+
+        A line that may begin in several ways may do so only behind some of the ways that lead to
+        one of them: a routine may follow a routine, but not a data list.
+        """
+        ways = sorted(map(self._ended, map(paths.prefix, before)), key=lambda way: (len(way), way))
+        wanted = frozenset(before)
+        return max(ways, key=lambda way: len(wanted & self._after(way)))  # the first of equals
+
+    def _ended(self, prefix: list[int]) -> list[int]:
+        """A way with a line end behind it, where one can be there."""
         line_kind = self.recognizer.line_kind
         if prefix and prefix[-1] != line_kind:
             ended = [*prefix, line_kind]
             if self.recognizer.run(self.recognizer.start, ended)[1] is None:
                 return ended
         return prefix
+
+    def _after(self, way: Sequence[int]) -> frozenset[tuple[int, ...]]:
+        """The configurations that a way leads to."""
+        state, _ = self.recognizer.run(self.recognizer.start, way)
+        return frozenset(self.recognizer.frames(state))
 
     def _rules_at_work(self, line: Line) -> set[str]:
         """Rules in which an edit could change how this line is read."""

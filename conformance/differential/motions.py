@@ -217,7 +217,7 @@ class Motions(WorldStatements):
             return self._declaration()
         number = str(choices.pick(self.interrupts))
         way = choices.below(8)
-        if way < 4:
+        if way < 2:
             self.write(f"INTERRUPT ON {number}")
         elif way < 6:
             self.write(f"INTERRUPT {choices.pick(('OFF', 'ENABLE', 'DISABLE'))} {number}")

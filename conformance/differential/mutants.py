@@ -262,7 +262,7 @@ def _by_shape(row: Shape) -> Iterator[tuple[str, Change]]:
     """What can be wrong with any instruction of this kind."""
     op = Op[row.name]
     family, _, kind = row.name.rpartition("_")
-    is_binary = row.effect is not None and len(row.effect.takes) == 2 and family in _PARTNERS
+    is_binary = len(row.effect_text.partition("--")[0].split()) == 2 and family in _PARTNERS
     if is_binary:
         if family not in _SYMMETRIC:
             yield "the operands are exchanged", _before(_exchange, op)

@@ -29,6 +29,7 @@ from interp.robot.commands import (
     Transaction,
 )
 from interp.robot.core import ControlCore
+from interp.robot.frames import Pose
 
 __all__ = ["Call", "Moving", "PlannedPoint"]
 
@@ -66,12 +67,16 @@ class _Way:
 
 @dataclass(frozen=True, slots=True)
 class PlannedPoint:
-    """A motion as it was planned, and where it leads, if the arm tells that."""
+    """A motion as it was planned, and where it leads, if the arm tells that.
+
+    ``tool`` is $TOOL as it was then.
+    """
 
     number: int
     kind: str
     at: At
     position: Position | None
+    tool: Pose
     is_blended: bool
 
 
@@ -139,7 +144,14 @@ class Moving(World):
         target = arm.target() if isinstance(arm, _Aiming) else None
         self._ways[motion.number] = _Way(built, task, target)
         self.points.append(
-            PlannedPoint(motion.number, motion.kind, motion.at, target, bool(motion.criteria))
+            PlannedPoint(
+                motion.number,
+                motion.kind,
+                motion.at,
+                target,
+                motion.settings.placement.tool,
+                bool(motion.criteria),
+            )
         )
         if task.level is not None:
             task.level.motions.add(motion.number)

@@ -118,7 +118,7 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
 /* Enters an action or evaluates a condition, which goes back to the frame that runs now. */
 static void interrupt(struct krl_machine *machine, int depth, int *statements)
 {
-    int32_t number = depth < 3 ? owned(machine) : -1, open = machine->open;
+    int32_t number = depth < 3 ? owned(machine) : -1, open = machine->open, top = machine->top;
     if (number < 0 || !krl_open(machine, number))
         return;
     machine->most_calls++;
@@ -126,6 +126,7 @@ static void interrupt(struct krl_machine *machine, int depth, int *statements)
     while (machine->open > open)
         krl_close(machine);
     machine->most_calls--;
+    machine->top = top; /* what a condition has left is looked at and forgotten */
 }
 
 /* The step behind the statement that began last; -1 where none has. */

@@ -29,6 +29,7 @@ _RANK: dict[EventKind, int] = {
 }
 _AT_END = 5
 _HALVINGS = 30
+_ROUNDING = 1e-12  # of u
 
 #: Kind and key of an event of one motion.
 Taken = tuple[str, int | None]
@@ -172,8 +173,9 @@ class _Clock:
         if u <= legs[0].stretch.start:
             return legs[0].begins
         for leg in legs:
-            if u <= leg.last + 1e-12:
-                return leg.time_at(u)
+            last = leg.last
+            if u <= last + _ROUNDING:
+                return leg.ends if u >= last - _ROUNDING else leg.time_at(u)
         return None
 
     def _beside(self, section: Section, u: float) -> float | None:

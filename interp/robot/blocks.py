@@ -75,7 +75,7 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
     pieces = _pieces(tracks, motion, segments, np.array(externals), before.axes)
     track = Track(motion, with_ranges(motion, pieces), tracks.limits)
     axes = pieces[-1].curve.axes(np.ones(1))[0]
-    is_told = settings.orientation == "#VAR" and motion.parts[-1].angle is None
+    is_told = motion.parts[-1].angle is None
     point = Pose.of(*target.point(placement)) if is_told else None
     return track, before.reached(axes, point, placement)
 

@@ -396,5 +396,28 @@ class ControlCore:
         if left is None:
             return
         self._chances[command] = left - 1
-        if left == 1 and not is_taken and command.state is State.LINKED:
+        if is_taken or command.state is not State.LINKED:
+            return
+        if left == 1:
             self._finish(command, State.CANCELLED, "cancelled")
+        else:
+            self._cancel_ring()
+
+    def _cancel_ring(self) -> None:
+        """Cancel the first of commands that wait for one another and for nothing else."""
+        waiting = [one for one in self._chances if one.state is State.LINKED]
+        coming = {command for _, _, effect, command in self._due if effect == "start"}
+        starts = [
+            (link.command, event.command)
+            for event, links in self._links.items()
+            for link in links
+            if link.effect == "start"
+        ]
+        while (
+            more := {one for one, cause in starts if cause in coming or cause not in waiting}
+            - coming
+        ):
+            coming |= more
+        stuck = next((one for one in waiting if one not in coming), None)
+        if stuck is not None:
+            self._finish(stuck, State.CANCELLED, "cancelled")

@@ -38,6 +38,9 @@ _STRAIGHT = 1e-12
 """Sine of A5 below which axes 4 and 6 turn about the same line."""
 _UNDETERMINED = 2e-9
 """Sine of A5 below which A4 is free to stay where it is: 1e-7 degrees."""
+_BENT = 1e-3
+"""Sine of A5 above which the wrist is plainly bent."""
+_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
 _MARGIN = 1e-7
 """mm that rounding may take away: of reach, and of the distance from axis 1."""
 _FAR = 1e9
@@ -120,28 +123,59 @@ class Arm:
         the shoulder, the elbow and the turn of each axis. The wrist is turned over or not, as lies
         nearer; where it is straight, A4 is that of the reference.
         """
-        inner = self._to_inner @ poses @ self._to_wrist
         theta = np.radians(references) * self._directions
-        main = self._main_axes_near(inner[:, :3, 3], theta) + self._zeros[:3]
-        upper = _about_z(main[:, 0]) @ _about_y(main[:, 1] + main[:, 2])
-        wrist = np.swapaxes(upper, -1, -2) @ inner[:, :3, :3] @ self._reverse
+        main, wrist = self._main_and_wrist(poses, theta)
+        own = theta[:, 3] * self._senses[3] * self._directions[3] + self._zeros[3]
+        bent = theta[:, 4] * self._senses[4] * self._directions[4]
         sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
         a4 = np.arctan2(wrist[:, 1, 2], wrist[:, 0, 2])
         a5 = np.arctan2(sine, wrist[:, 2, 2])
-        own = np.radians(references[:, 3:]) * self._senses[3:] + self._zeros[3:]
-        there = np.abs(np.sin((a4 - own[:, 0]) / 2.0)) + np.abs(a5 - own[:, 1])
-        over = np.abs(np.cos((a4 - own[:, 0]) / 2.0)) + np.abs(a5 + own[:, 1])
+        there = np.abs(np.sin((a4 - own) / 2.0)) + np.abs(a5 - bent)
+        over = np.abs(np.cos((a4 - own) / 2.0)) + np.abs(a5 + bent)
+        sign = np.where(over < there, -1.0, 1.0)
         a4 = np.where(over < there, a4 + math.pi, a4)
-        a5 = np.where(over < there, -a5, a5)
-        a4 = np.where(sine < _UNDETERMINED, own[:, 0], a4)
-        s4, c4 = np.sin(a4), np.cos(a4)
-        a6 = np.arctan2(
-            c4 * wrist[:, 1, 0] - s4 * wrist[:, 0, 0], c4 * wrist[:, 1, 1] - s4 * wrist[:, 0, 1]
-        )
-        angles = np.concatenate((main, np.stack((a4, a5, a6), axis=-1)), axis=-1)
-        found = np.degrees((angles - self._zeros) * self._senses)
+        a4 = np.where(sine < _UNDETERMINED, own, a4)
+        found = self._degrees(main, a4, sign * a5, wrist)
         near: Array = found + 360.0 * np.round((references - found) / 360.0)
         return near
+
+    def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
+        """Axes ``(n, 6)`` along a path of poses in the way that ``start`` stands in, unbroken.
+
+        ``None`` where that is not plain: the wrist is or becomes straight, the path leaves the way,
+        or its samples are too far apart.
+        """
+        references = np.array(start, dtype=np.float64)
+        theta = np.radians(references) * self._directions
+        main, wrist = self._main_and_wrist(poses, np.broadcast_to(theta, (len(poses), 6)))
+        sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
+        sign = math.copysign(1.0, references[4] * self._senses[4])
+        if not (sine > _BENT).all():
+            return None
+        a4 = np.arctan2(sign * wrist[:, 1, 2], sign * wrist[:, 0, 2])
+        found = self._degrees(main, a4, sign * np.arctan2(sine, wrist[:, 2, 2]), wrist)
+        path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
+        steps = np.abs(np.diff(path, axis=0))
+        return path[1:] if bool((steps < _SAME_WAY).all()) else None
+
+    def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
+        """Main axes of the upright arm, and the rotation that is left for its wrist."""
+        inner = self._to_inner @ poses @ self._to_wrist
+        main = self._main_axes_near(inner[:, :3, 3], theta) + self._zeros[:3]
+        upper = _about_z(main[:, 0]) @ _about_y(main[:, 1] + main[:, 2])
+        wrist = np.swapaxes(upper, -1, -2) @ inner[:, :3, :3] @ self._reverse
+        return main, wrist
+
+    def _degrees(self, main: Array, a4: Array, a5: Array, wrist: Array) -> Array:
+        """Axes in degrees; A6 is what A4 leaves over of the wrist's rotation."""
+        s4, c4 = np.sin(a4), np.cos(a4)
+        angles = np.empty((len(main), 6))
+        angles[:, :3], angles[:, 3], angles[:, 4] = main, a4, a5
+        angles[:, 5] = np.arctan2(
+            c4 * wrist[:, 1, 0] - s4 * wrist[:, 0, 0], c4 * wrist[:, 1, 1] - s4 * wrist[:, 0, 1]
+        )
+        degrees: Array = np.degrees((angles - self._zeros) * self._senses)
+        return degrees
 
     def _main_axes_near(self, places: Array, theta: Array) -> Array:
         """Main axes in radians ``(n, 3)`` for wrist centres, with shoulder and elbow of others."""
@@ -312,16 +346,18 @@ def _about_x(degrees: float) -> Array:
 
 
 def _about_y(radians: Array) -> Array:
-    sine, cosine = np.sin(radians), np.cos(radians)
-    zero, one = np.zeros_like(sine), np.ones_like(sine)
-    return _stacked(((cosine, zero, sine), (zero, one, zero), (-sine, zero, cosine)))
+    turn = np.zeros((*radians.shape, 3, 3))
+    turn[..., 0, 0] = turn[..., 2, 2] = np.cos(radians)
+    turn[..., 0, 2] = np.sin(radians)
+    turn[..., 2, 0] = -turn[..., 0, 2]
+    turn[..., 1, 1] = 1.0
+    return turn
 
 
 def _about_z(radians: Array) -> Array:
-    sine, cosine = np.sin(radians), np.cos(radians)
-    zero, one = np.zeros_like(sine), np.ones_like(sine)
-    return _stacked(((cosine, -sine, zero), (sine, cosine, zero), (zero, zero, one)))
-
-
-def _stacked(rows: Sequence[Sequence[Array]]) -> Array:
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    turn = np.zeros((*radians.shape, 3, 3))
+    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(radians)
+    turn[..., 1, 0] = np.sin(radians)
+    turn[..., 0, 1] = -turn[..., 1, 0]
+    turn[..., 2, 2] = 1.0
+    return turn

@@ -19,6 +19,7 @@ from interp.robot.kinematics import Array
 __all__ = ["Carried", "Orientation", "Turning", "about", "angle_between", "turning"]
 
 _PARALLEL = 1e-12
+_DIRECTION = np.array([1.0, 0.0, 0.0])
 
 
 class Orientation(Protocol):
@@ -55,10 +56,12 @@ class Turning:
 
     def at(self, u: Array) -> Array:
         """See `Orientation.at`."""
-        if self.swivel == 0.0 and self.twist == 0.0:
-            return np.broadcast_to(self.start, (len(u), 3, 3))
-        turned: Array = self.start @ about(self.axis, u * self.swivel)
-        return turned @ about(np.array([1.0, 0.0, 0.0]), u * self.twist)
+        turned: Array = np.broadcast_to(self.start, (len(u), 3, 3))
+        if self.swivel:
+            turned = turned @ about(self.axis, u * self.swivel)
+        if self.twist:
+            turned = turned @ about(_DIRECTION, u * self.twist)
+        return turned
 
 
 @dataclass(frozen=True, slots=True, eq=False)

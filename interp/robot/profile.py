@@ -8,7 +8,9 @@ times in seconds.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import ruckig  # type: ignore[import-not-found]
@@ -19,6 +21,8 @@ __all__ = ["Bounds", "Profile", "Ramp", "ramp", "standing", "stop", "travel"]
 
 _SLACK = 1e-7
 """Share of a length within which speeding up or braking all the way is what fills it."""
+_ROUNDS = 60
+_INSTANT = 1e-12  # seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,61 +34,100 @@ class Bounds:
     jerk: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Profile:
-    """Cubics one after the other: ``times`` has their starts and the end of the last.
+    """Cubics one after the other, each with its start: time, position, speed, acceleration, jerk.
 
-    ``positions``, ``speeds``, ``accelerations`` and ``jerks`` are those at the starts.
+    It begins at time 0 and position 0.
     """
 
-    times: Array
-    positions: Array
-    speeds: Array
-    accelerations: Array
-    jerks: Array
+    def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
+        """From a speed on, with pieces of duration, acceleration at their start, and jerk."""
+        time = position = 0.0
+        knots = []
+        for duration, acceleration, jerk in pieces:
+            knots.append((time, position, speed, acceleration, jerk))
+            position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
+            speed += duration * (acceleration + duration * jerk / 2.0)
+            time += duration
+        self.knots: list[tuple[float, ...]] = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
+        #: Seconds from start to end, the position and the speed there.
+        self.duration, self.length, self.final = time, position, speed
 
     @property
-    def duration(self) -> float:
-        """Seconds from start to end."""
-        return float(self.times[-1])
+    def lowest(self) -> float:
+        """The lowest speed at a start of a piece or at the end."""
+        return min(self.final, *(knot[2] for knot in self.knots))
+
+    @cached_property
+    def _columns(self) -> Array:
+        return np.array(self.knots).T
 
     def at(self, times: Array) -> tuple[Array, Array, Array]:
         """Position, speed and acceleration; before the start and behind the end as there."""
-        clipped = np.clip(times, 0.0, self.times[-1])
-        place = np.clip(
-            np.searchsorted(self.times, clipped, side="right") - 1, 0, len(self.jerks) - 1
-        )
-        dt = clipped - self.times[place]
-        jerk, acceleration = self.jerks[place], self.accelerations[place]
-        speed = self.speeds[place]
+        clipped = np.minimum(np.maximum(times, 0.0), self.duration)
+        starts, positions, speeds, accelerations, jerks = self._columns
+        place = np.searchsorted(starts, clipped, side="right") - 1
+        dt = clipped - starts[place]
+        jerk, acceleration, speed = jerks[place], accelerations[place], speeds[place]
         return (
-            self.positions[place] + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
+            positions[place] + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
+            speed + dt * (acceleration + dt * jerk / 2),
+            acceleration + dt * jerk,
+        )
+
+    def state(self, time: float) -> tuple[float, float, float]:
+        """`at` for a single time."""
+        clipped = min(max(time, 0.0), self.duration)
+        start, position, speed, acceleration, jerk = self.knots[0]
+        for knot in self.knots[1:]:
+            if knot[0] > clipped:
+                break
+            start, position, speed, acceleration, jerk = knot
+        dt = clipped - start
+        return (
+            position + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
             speed + dt * (acceleration + dt * jerk / 2),
             acceleration + dt * jerk,
         )
 
     def time_at(self, position: float) -> float:
         """When a position is reached first; the nearest end where it never is."""
-        ends, _, _ = self.at(self.times)
-        if position <= ends[0]:
+        if position <= 0.0:
             return 0.0
-        beyond = np.nonzero(ends >= position)[0]
-        if not len(beyond):
+        if position >= self.length:
             return self.duration
-        last = int(beyond[0])
-        low, high = float(self.times[last - 1]), float(self.times[last])
-        place = last - 1
-        start, speed = float(self.positions[place]), float(self.speeds[place])
-        acceleration, jerk = float(self.accelerations[place]), float(self.jerks[place])
-        origin = low
-        for _ in range(60):
-            middle = (low + high) / 2
-            dt = middle - origin
-            if start + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)) < position:
-                low = middle
-            else:
-                high = middle
-        return high
+        low, high = self.knots[0], self.duration
+        for knot in self.knots[1:]:
+            if knot[1] >= position:
+                high = knot[0]
+                break
+            low = knot
+        origin, start, speed, acceleration, jerk = low
+        first, last = 0.0, high - origin
+        dt = last / 2
+        for _ in range(_ROUNDS):
+            beyond = start + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)) - position
+            first, last = (first, dt) if beyond >= 0.0 else (dt, last)
+            slope = speed + dt * (acceleration + dt * jerk / 2)
+            following = dt - beyond / slope if slope > 0.0 else first
+            if not first < following < last:
+                following = (first + last) / 2
+            if abs(following - dt) < _INSTANT:
+                break
+            dt = following
+        return origin + dt
+
+    def stretched(self, length: float) -> Profile:
+        """The same with its end at a length that differs in rounding only."""
+        if self.length <= 0.0:
+            return self
+        share = length / self.length
+        other = Profile(0.0, ())
+        other.knots = [
+            (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
+        ]
+        other.duration, other.length, other.final = self.duration, length, self.final * share
+        return other
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +176,13 @@ def travel(
     """
     direct = ramp(speed, acceleration, target, bounds)
     if direct.distance >= length * (1.0 - _SLACK) and target <= bounds.velocity:
-        return _stretched(_change(speed, acceleration, target, bounds), length)
+        return _change(speed, acceleration, target, bounds).stretched(length)
     asked = _asked(speed, acceleration, target, bounds)
     asked.target_position = [length]
     asked.max_velocity = [max(bounds.velocity, target)]
     found = _solved(asked)
-    if found is None or float(found.speeds.min()) < -1e-6 * bounds.velocity - 1e-9:
-        return _stretched(_change(speed, acceleration, target, bounds), length)
+    if found is None or found.lowest < -1e-6 * bounds.velocity - 1e-9:
+        return _change(speed, acceleration, target, bounds).stretched(length)
     return found
 
 
@@ -150,8 +193,7 @@ def stop(speed: float, acceleration: float, bounds: Bounds) -> Profile:
 
 def standing(duration: float) -> Profile:
     """No motion at all."""
-    zero = np.zeros(1)
-    return Profile(np.array([0.0, duration]), zero, zero, zero, zero)
+    return Profile(0.0, ((duration, 0.0, 0.0),))
 
 
 # --------------------------------------------------------------------------------------- ruckig
@@ -191,47 +233,7 @@ def _solved(asked: ruckig.InputParameter) -> Profile | None:
         return None
     solved = trajectory.profiles[0][0]
     pieces = [
-        *zip(solved.brake.t, solved.brake.j, solved.brake.a, strict=True),
-        *zip(solved.t, solved.j, solved.a[:-1], strict=True),
+        *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
+        *zip(solved.t, solved.a[:-1], solved.j, strict=True),
     ]
-    return _integrated(
-        asked.current_velocity[0],
-        [(t, jerk, acceleration) for t, jerk, acceleration in pieces if t > 0.0],
-    )
-
-
-def _integrated(speed: float, pieces: list[tuple[float, float, float]]) -> Profile:
-    """A profile of durations, jerks, and accelerations at their starts."""
-    if not pieces:
-        return standing(0.0)
-    times, positions, speeds = [0.0], [0.0], [speed]
-    for duration, jerk, acceleration in pieces:
-        before = speeds[-1]
-        times.append(times[-1] + duration)
-        positions.append(
-            positions[-1]
-            + duration * (before + duration * (acceleration / 2 + duration * jerk / 6))
-        )
-        speeds.append(before + duration * (acceleration + duration * jerk / 2))
-    return Profile(
-        np.array(times),
-        np.array(positions[:-1]),
-        np.array(speeds[:-1]),
-        np.array([acceleration for _, _, acceleration in pieces]),
-        np.array([jerk for _, jerk, _ in pieces]),
-    )
-
-
-def _stretched(profile: Profile, length: float) -> Profile:
-    """The same with its end at a length that differs in rounding only."""
-    (reached,), _, _ = profile.at(profile.times[-1:])
-    if reached <= 0.0:
-        return profile
-    share = length / float(reached)
-    return Profile(
-        profile.times,
-        profile.positions * share,
-        profile.speeds * share,
-        profile.accelerations * share,
-        profile.jerks * share,
-    )
+    return Profile(asked.current_velocity[0], (piece for piece in pieces if piece[0] > 0.0))

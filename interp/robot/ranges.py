@@ -124,7 +124,7 @@ def _check_reached(
     for number, stretch, profile in _travelled(pieces):
         length = _length(pieces[number])
         place = float(ends[number]) + stretch.start * length
-        _, (first, out), _ = profile.at(profile.times[[0, -1]])
+        first, out = profile.knots[0][2], profile.final
         scale = length / stretch.size
         if abs(place - start) < _SAME * length and first * scale < speed * (1.0 - _SAME):
             raise _broken(3216, "the way to speed up before a range of constant speed is too short")

@@ -92,8 +92,10 @@ class Leg:
 
     def state(self, time: float) -> State:
         """The state at a time."""
-        u, speed, acceleration = (float(value[0]) for value in self.at(np.array([time])))
-        return State(min(u, self.stretch.end), max(speed, 0.0), acceleration)
+        position, speed, acceleration = self.profile.state(min(time, self.ends) - self.begins)
+        stretch = self.stretch
+        u = min(stretch.start + position / stretch.size, stretch.end)
+        return State(u, max(speed, 0.0) / stretch.size, acceleration / stretch.size)
 
     @property
     def last(self) -> float:
@@ -101,8 +103,8 @@ class Leg:
         if self.section.is_still:
             return self.section.end
         if self.ends >= self.begins + self.profile.duration:
-            reached = self.profile.at(self.profile.times[-1:])[0][0] / self.stretch.size
-            return min(self.stretch.start + float(reached), self.stretch.end)
+            reached = self.stretch.start + self.profile.length / self.stretch.size
+            return min(reached, self.stretch.end)
         return self.state(self.ends).u
 
     def time_at(self, u: float) -> float:

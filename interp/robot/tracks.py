@@ -155,7 +155,7 @@ class Tracks:
         piece = self.along(course, before.axes[:ROBOT_AXES], others, motion.kind, settings)
         track = Track(motion, (piece,), self.limits)
         axes = piece.curve.axes(np.ones(1))[0]
-        reached = point if motion.angle is None and settings.orientation == "#VAR" else None
+        reached = point if motion.angle is None else None
         return track, before.reached(axes, reached, settings.placement)
 
     def along(

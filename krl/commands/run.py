@@ -276,7 +276,7 @@ def _film(done: "Run", target: Path) -> None:
 
 def _write_path(columns: Mapping[str, Any], target: Path) -> None:
     """A table with a row each interpolation cycle."""
-    import pandas as pd  # type: ignore[import-untyped]
+    import pandas as pd
 
     table = pd.DataFrame(dict(columns))
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -68,13 +68,16 @@ class SecondArm:
     # the port
 
     def mark(self) -> object:
+        """What is planned."""
         queue = self.queue
         return (list(queue.motions), list(queue.events), queue.end, set(queue.ended))
 
     def rewind(self, mark: Any) -> None:
+        """Undo what was planned since."""
         self.queue.motions, self.queue.events, self.queue.end, self.queue.ended = mark
 
     def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
+        """Append a motion; beyond 180 degrees it cannot be."""
         if motion.target.get("A1", 0.0) > 180:
             raise Fault("software_limit", "behind a software limit switch", number=1447)
         if self.is_braked and self.standing is None:
@@ -132,6 +135,7 @@ class SecondArm:
         return next((one for one in self.queue.events if one[1] == 0), None)
 
     def next_event(self) -> ArmEvent | None:
+        """The first event ahead."""
         if self.standing is not None:
             return ArmEvent(self.standing, "stopped", 0)
         found = self._next()
@@ -144,6 +148,7 @@ class SecondArm:
         )
 
     def take(self) -> ArmEvent:
+        """It happens."""
         event = self.next_event()
         assert event is not None
         if self.standing is not None:
@@ -157,10 +162,12 @@ class SecondArm:
         return event
 
     def pending(self) -> int:
+        """Motions that have not ended."""
         queues = [self.queue, *(rest for rest, _ in self.rests)]
         return sum(len(one.motions) - len(one.ended) for one in queues)
 
     def position(self, time: int) -> Position:
+        """A1, by the share of the second that has passed."""
         place, axes = self._at(time), self.queue.axes
         for start, motion in self.queue.motions:
             share = min(max((place - start) / SECOND, 0.0), 1.0)
@@ -168,22 +175,27 @@ class SecondArm:
             axes = (axes[0] + (target - axes[0]) * share, *axes[1:])
         return Position(axes, IDENTITY)
 
-    def speed(self, time: int) -> float:
+    def speed(self, _time: int) -> float:
+        """1 while it moves."""
         return 1.0 if self.rate and self.pending() else 0.0
 
-    def distances(self, time: int) -> tuple[float, float]:
+    def distances(self, _time: int) -> tuple[float, float]:
+        """Nothing is known of them."""
         return 0.0, 0.0
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
+        """Nothing is known of them."""
         zeros = np.zeros((len(times), 6))
         return Samples(times, zeros, zeros, zeros)
 
     def override(self, now: int, percent: float) -> None:
+        """The path clock goes slower."""
         self.percent = percent
         if not self.is_braked:
             self._run(now, percent / 100)
 
     def brake(self, now: int, is_hard: bool) -> None:
+        """Stand at once, tell it after the braking time."""
         self.calls.append("hard" if is_hard else "brake")
         if not self.pending():
             return
@@ -192,6 +204,7 @@ class SecondArm:
         self.standing = now + BRAKING
 
     def proceed(self, now: int) -> None:
+        """Go on, with what a nested motion interrupted as well."""
         self.calls.append("proceed")
         if self.rests and len(self.queue.motions) == len(self.queue.ended) and not self.is_braked:
             self.queue, self.path = self.rests.pop()
@@ -199,6 +212,7 @@ class SecondArm:
         self.since, self.rate = now, self.percent / 100
 
     def discard(self, now: int) -> None:
+        """Forget the path."""
         self.calls.append("discard")
         is_moving = self.pending() > 0 and not self.is_braked and self.rate > 0
         axes = self.position(now).axes
@@ -296,9 +310,14 @@ def made(
 def go() -> Runner:
     """Runs ``main.src`` and gives what happened."""
 
-    def ran(text: str, script: str = "", until: float = 60.0, **more: Any) -> Ran:
+    def ran(text: str, script: str = "", until: float = 60.0, pieces: int = 1, **more: Any) -> Ran:
         controller, trace, arm = made(text, script, **more)
-        outcome = controller.run(round(until * SECOND))
+        end, ends = round(until * SECOND), 0
+        while True:
+            ends += 1
+            outcome = controller.run(end * ends // pieces)
+            if ends == pieces or outcome.ending != "time":
+                break
         return Ran(outcome, trace.events, controller, arm)
 
     return ran

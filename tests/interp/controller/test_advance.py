@@ -1,10 +1,14 @@
-"""The advance run: how far it goes, what stops it, what CONTINUE does, and values that exist twice."""
+"""The advance run: how far it goes, what stops it, CONTINUE, and values that exist twice."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from interp.controller import Profile
+
+Go = Callable[..., Any]
 
 # The paths of the tests: HOME takes the first second, each further motion one more.
 HOME = "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n"
@@ -15,7 +19,7 @@ def program(*lines: str, declarations: str = "", more: str = "") -> str:
 
 
 @pytest.mark.parametrize(("depth", "times"), [(5, 0), (4, 1), (3, 2), (2, 3), (1, 4), (0, 5)])
-def test_depth(go, depth: int, times: int) -> None:
+def test_depth(go: Go, depth: int, times: int) -> None:
     """The program is $ADVANCE motions ahead of the one that runs; with 0 it is not [ADV-01]."""
     moves = [f"PTP {{A1 {place}}}" for place in range(1, 5)]
     text = program(*moves, "I=1", declarations="INT I\n$ADVANCE=" + str(depth) + "\n")
@@ -24,20 +28,20 @@ def test_depth(go, depth: int, times: int) -> None:
     assert 5.0 == ran.times("end")[0]
 
 
-def test_depth_is_limited(go) -> None:
+def test_depth_is_limited(go: Go) -> None:
     """$ADVANCE takes 0 to 5 [ADV-01]."""
     ran = go("DEF main()\n$ADVANCE=6\nEND\n")
     assert ("fault", 1422) == (ran.outcome.ending, ran.outcome.error.number)
 
 
-def test_zero_never_blends(go) -> None:
+def test_zero_never_blends(go: Go) -> None:
     """With $ADVANCE=0 every point is exact, and the message says so [ADV-02]."""
     ran = go(program("PTP {A1 1} C_PTP", "PTP {A1 2}", declarations="$ADVANCE=0\n"))
     assert [] == ran.told("blend_apex")
     assert [1442] == ran.messages()
 
 
-def test_one_blends(go) -> None:
+def test_one_blends(go: Go) -> None:
     """1 is enough for approximate positioning [ADV-02]."""
     ran = go(program("PTP {A1 1} C_PTP", "PTP {A1 2}", declarations="$ADVANCE=1\n"))
     assert [2.0] == ran.times("blend_apex", motion=2)
@@ -85,8 +89,8 @@ SUB = "DEF SUB()\nEND\n"
 
 
 @pytest.mark.parametrize("line", STOPPING.values(), ids=STOPPING.keys())
-def test_stops(go, line: str) -> None:
-    """What stops the advance run makes the point before it exact [ADV-04, ADV-05, ADV-06, ADV-07]."""
+def test_stops(go: Go, line: str) -> None:
+    """What stops the advance run makes the point before it exact [ADV-04 to ADV-07]."""
     text = program("PTP {A1 1} C_PTP", line, "PTP {A1 2}", declarations=DECLARATIONS, more=SUB)
     ran = go(text, "on HALT press START")
     assert [0.0] == ran.times("advance_stop")[:1]
@@ -96,7 +100,7 @@ def test_stops(go, line: str) -> None:
 
 
 @pytest.mark.parametrize("line", PLAIN.values(), ids=PLAIN.keys())
-def test_does_not_stop(go, line: str) -> None:
+def test_does_not_stop(go: Go, line: str) -> None:
     """All else is executed ahead of the arm, and the point is blended [ADV-13]."""
     text = program("PTP {A1 1} C_PTP", line, "PTP {A1 2}", declarations=DECLARATIONS, more=SUB)
     ran = go(text)
@@ -105,7 +109,7 @@ def test_does_not_stop(go, line: str) -> None:
     assert [] == ran.messages()
 
 
-def test_import_stops(go) -> None:
+def test_import_stops(go: Go) -> None:
     """An imported variable stops it [ADV-05]."""
     files = {"other.dat": "DEFDAT OTHER PUBLIC\nDECL GLOBAL INT FAR=7\nENDDAT\n"}
     text = program(
@@ -118,7 +122,7 @@ def test_import_stops(go) -> None:
     assert 2.0 == ran.times("assign", name="I")[0]
 
 
-def test_message_where_it_waits(go) -> None:
+def test_message_where_it_waits(go: Go) -> None:
     """$STOPNOAPROX makes it a message that the robot waits for [ADV-12]."""
     lines = ("$STOPNOAPROX=TRUE", "PTP {A1 1} C_PTP", "WAIT SEC 0", "PTP {A1 2}")
     waits = go(program(*lines), until=10)
@@ -128,14 +132,14 @@ def test_message_where_it_waits(go) -> None:
     assert [4.0] == confirmed.times("motion_planned", motion=3)
 
 
-def test_continue(go) -> None:
+def test_continue(go: Go) -> None:
     """CONTINUE spares the next line: it is executed before the arm is there [ADV-08, ADV-09]."""
     ran = go(program("PTP {A1 1} C_PTP", "CONTINUE", "$OUT[1]=TRUE", "PTP {A1 2}"))
     assert [(0.0, 1, True)] == ran.outputs()
     assert [2.0] == ran.times("blend_apex")
 
 
-def test_continue_is_for_one_line(go) -> None:
+def test_continue_is_for_one_line(go: Go) -> None:
     """It spares exactly one line, even a blank one [ADV-08]."""
     ran = go(program("PTP {A1 1}", "CONTINUE", "", "$OUT[1]=TRUE"))
     assert [(2.0, 1, True)] == ran.outputs()
@@ -143,7 +147,7 @@ def test_continue_is_for_one_line(go) -> None:
     assert [(0.0, 1, True), (2.0, 2, True)] == ran.outputs()
 
 
-def test_continue_and_condition(go) -> None:
+def test_continue_and_condition(go: Go) -> None:
     """A condition behind CONTINUE is looked at by the advance run [ADV-09]."""
     text = program(
         *("PTP {A1 1}", "CONTINUE", "IF $IN[1] THEN", "I=1", "ELSE", "I=2", "ENDIF"),
@@ -153,7 +157,7 @@ def test_continue_and_condition(go) -> None:
     assert 1 == go(text.replace("CONTINUE", ""), "t=0.5 IN[1]=TRUE").last("I")
 
 
-def test_continue_and_wait_for(go) -> None:
+def test_continue_and_wait_for(go: Go) -> None:
     """WAIT FOR behind CONTINUE waits while the arm moves [ADV-08, CTL-12]."""
     text = program("PTP {A1 1} C_PTP", "CONTINUE", "WAIT FOR $IN[1]", "PTP {A1 2}")
     ran = go(text, "t=0.5 IN[1]=TRUE")
@@ -161,7 +165,7 @@ def test_continue_and_wait_for(go) -> None:
     assert [2.0] == ran.times("blend_apex")
 
 
-def test_twins(go) -> None:
+def test_twins(go: Go) -> None:
     """The running motion keeps the values that it was planned with, as X_C shows [ADV-10]."""
     text = program(
         *("$VEL.CP=0.5", "PTP {A1 1}", "$VEL.CP=0.25", "$TIMER_STOP[1]=FALSE"),
@@ -173,20 +177,20 @@ def test_twins(go) -> None:
     assert 0.25 == ran.last("Y")
 
 
-def test_twin_is_read_only(go) -> None:
+def test_twin_is_read_only(go: Go) -> None:
     """The value of the main run is not written by programs [ADV-10]."""
     ran = go("DEF main()\n$VEL_C.CP=1\nEND\n")
     assert ("fault", 1388) == (ran.outcome.ending, ran.outcome.error.number)
 
 
-def test_output_in_step(go) -> None:
+def test_output_in_step(go: Go) -> None:
     """$OUT_C is set at the end of an exact motion, and at the apex of a blend [ADV-11]."""
     ran = go(program("$OUT_C[1]=TRUE", "PTP {A1 1} C_PTP", "$OUT_C[2]=TRUE", "PTP {A1 2}"))
     assert [(1.0, 1, True), (2.0, 2, True)] == ran.outputs()
     assert [0.0, 0.0, 0.0] == ran.times("motion_planned")
 
 
-def test_output_in_step_without_motion(go) -> None:
+def test_output_in_step_without_motion(go: Go) -> None:
     """Where nothing is on its way $OUT_C acts at once [ADV-11]."""
     assert [(0.0, 1, True)] == go("DEF main()\n$OUT_C[1]=TRUE\nEND\n").outputs()
 
@@ -195,28 +199,29 @@ def test_output_in_step_without_motion(go) -> None:
     "motion",
     ["LIN {X 1,Y 2,Z 3}", "PTP {A1 1}", "PTP {X 1,Y 2,Z 3,A 0,B 0,C 0}", "PTP_REL {A1 1}"],
 )
-def test_first_motion(go, motion: str) -> None:
+def test_first_motion(go: Go, motion: str) -> None:
     """The first motion is a PTP that leaves nothing open [MOT-10]."""
     ran = go(f"DEF main()\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n{motion}\nEND\n")
     assert ("fault", 1443) == (ran.outcome.ending, ran.outcome.error.number)
     assert [1443] == ran.messages()
 
 
-def test_first_motion_with_status(go) -> None:
+def test_first_motion_with_status(go: Go) -> None:
     """A pose with Status and Turn is complete [MOT-10]."""
-    text = "DEF main()\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\nPTP {X 1,Y 2,Z 3,A 0,B 0,C 0,S 2,T 1}\nEND\n"
+    frames = "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n"
+    text = f"DEF main()\n{frames}PTP {{X 1,Y 2,Z 3,A 0,B 0,C 0,S 2,T 1}}\nEND\n"
     assert "end" == go(text).outcome.ending
 
 
 @pytest.mark.parametrize(("frame", "number"), [("$BASE", 1419), ("$TOOL", 1516)])
-def test_frames_are_needed(go, frame: str, number: int) -> None:
+def test_frames_are_needed(go: Go, frame: str, number: int) -> None:
     """A Cartesian motion without tool or base is a message [MOT-15]."""
     ran = go(program(f"{frame}=$NULLFRAME", "LIN {X 1}"))
     assert [number] == ran.messages()
     assert "fault" == ran.outcome.ending
 
 
-def test_coincidence_run(go) -> None:
+def test_coincidence_run(go: Go) -> None:
     """A profile can have the first motion as a block coincidence run: it ends exactly [ADV-14]."""
     profile = replace(Profile.load(), runs_coincidence=True)
     text = program("B=$MOVE_BCO", "CONTINUE", "$OUT[1]=TRUE", "PTP {A1 1}", declarations="BOOL B\n")
@@ -227,7 +232,7 @@ def test_coincidence_run(go) -> None:
     assert [(0.0, 1, True)] == go(text).outputs()
 
 
-def test_fault_of_a_motion_stops_the_arm(go) -> None:
+def test_fault_of_a_motion_stops_the_arm(go: Go) -> None:
     """A point that cannot be reached stops the arm with the documented message [MOT-15]."""
     ran = go(program("PTP {A1 1}", "WAIT SEC 0", "PTP {A1 500}"))
     assert [1447] == ran.messages()
@@ -237,7 +242,7 @@ def test_fault_of_a_motion_stops_the_arm(go) -> None:
     assert ("fault", 10_000) == (ran.outcome.ending, ran.outcome.time)
 
 
-def test_proceed_takes_a_fault_of_the_controller(go) -> None:
+def test_proceed_takes_a_fault_of_the_controller(go: Go) -> None:
     """ON_ERROR_PROCEED takes it, and $ERR tells number, line and module [TYP-13, FCT-07]."""
     ran = go(
         program(
@@ -251,6 +256,6 @@ def test_proceed_takes_a_fault_of_the_controller(go) -> None:
     assert (1447, 6, 4, True, 0) == tuple(ran.last(name) for name in "NLIBM")
 
 
-def test_message_of_a_motion(go) -> None:
+def test_message_of_a_motion(go: Go) -> None:
     """What planning has to say without stopping is a message [MOT-11]."""
     assert [3171] == go(program("PTP {A1 1,A6 99}")).messages()

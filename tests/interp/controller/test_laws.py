@@ -1,7 +1,12 @@
 """Laws: one program has one trace; what is nested comes back to where it was."""
 
+from collections.abc import Callable
+from typing import Any
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+Go = Callable[..., Any]
 
 HOME = "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n"
 TIMES = st.integers(0, 250).map(lambda one: one / 100)
@@ -31,9 +36,9 @@ def pulses(times: list[tuple[int, float]]) -> str:
 EVENTS = st.lists(st.tuples(st.integers(1, 3), TIMES), max_size=8)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(EVENTS)
-def test_one_trace(go, events: list[tuple[int, float]]) -> None:
+def test_one_trace(go: Go, events: list[tuple[int, float]]) -> None:
     """The same program in the same world has the same trace, and time never goes back."""
     first, second = go(NESTING, pulses(events)), go(NESTING, pulses(events))
     assert [one.line() for one in first.events] == [one.line() for one in second.events]
@@ -41,10 +46,10 @@ def test_one_trace(go, events: list[tuple[int, float]]) -> None:
     assert sorted(times) == times
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(EVENTS)
-def test_nesting(go, events: list[tuple[int, float]]) -> None:
-    """Routines nest by rising priority and unwind to the state before; the program ends the same."""
+def test_nesting(go: Go, events: list[tuple[int, float]]) -> None:
+    """Routines nest by rising priority and unwind to the state before."""
     ran = go(NESTING, pulses(events))
     stack: list[int] = []
     for one in ran.told("interrupt_enter", "interrupt_leave"):
@@ -68,12 +73,22 @@ STOPPING = (
 )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.lists(TIMES, max_size=4))
-def test_brakes_cost_time_only(go, times: list[float]) -> None:
+def test_brakes_cost_time_only(go: Go, times: list[float]) -> None:
     """However often the arm is stopped, it comes to the same place, later by the stops."""
     ran = go(STOPPING, pulses([(1, time) for time in times]))
     stops = zip(ran.times("brake"), ran.times("interrupt_leave"), strict=True)
     lost = sum(leave - brake for brake, leave in stops if brake < ran.times("motion_end")[-1])
     assert abs(3.0 + lost - ran.times("motion_end")[-1]) < 1e-5
     assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
+
+
+@settings(max_examples=20, deadline=None)
+@given(EVENTS, st.integers(2, 400))
+def test_in_pieces(go: Go, events: list[tuple[int, float]], pieces: int) -> None:
+    """A run that is stopped and taken up again at any time has the trace of one run."""
+    whole = go(NESTING, pulses(events), until=5)
+    parts = go(NESTING, pulses(events), until=5, pieces=pieces)
+    assert [one.line() for one in whole.events] == [one.line() for one in parts.events]
+    assert whole.outcome == parts.outcome

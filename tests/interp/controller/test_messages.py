@@ -1,8 +1,13 @@
 """Messages and dialogues of programs, errors, and routines that act on the robot."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from interp.controller import Profile
+
+Go = Callable[..., Any]
 
 DECLARATIONS = """DECL KRLMSG_T MSG
 DECL KRLMSGPAR_T PAR[3]
@@ -23,7 +28,7 @@ FILL = (
 )
 
 
-def test_notification(go) -> None:
+def test_notification(go: Go) -> None:
     """A message is told with its parameters filled in, and does not stay [FCT-10]."""
     ran = go(program(FILL + "H=SET_KRLMSG(#NOTIFY,MSG,PAR[],OPT)\nB=EXISTS_KRLMSG(H)\n"))
     assert [{"number": 17, "text": "part 3 of all", "type": "notify"}] == [
@@ -32,7 +37,7 @@ def test_notification(go) -> None:
     assert False is ran.last("B")
 
 
-def test_state_message_is_taken_away(go) -> None:
+def test_state_message_is_taken_away(go: Go) -> None:
     """A state stays until the program takes it away [FCT-10]."""
     ran = go(
         program(
@@ -45,7 +50,7 @@ def test_state_message_is_taken_away(go) -> None:
     ]
 
 
-def test_quit_message_is_confirmed(go) -> None:
+def test_quit_message_is_confirmed(go: Go) -> None:
     """One to be acknowledged goes when the operator does so [FCT-10]."""
     body = (
         FILL + "H=SET_KRLMSG(#QUIT,MSG,PAR[],OPT)\nWHILE EXISTS_KRLMSG(H)\nWAIT SEC 0.1\nENDWHILE\n"
@@ -53,11 +58,12 @@ def test_quit_message_is_confirmed(go) -> None:
     assert [1.08] == go(program(body), "on message 17 after 1 press CONFIRM").times("end")
 
 
-def test_confirm_statement(go) -> None:
+def test_confirm_statement(go: Go) -> None:
     """CONFIRM acknowledges a message from the program [FCT-10]."""
     body = (
         FILL
-        + "H=SET_KRLMSG(#QUIT,MSG,PAR[],OPT)\nB=ISMESSAGESET(17)\nI=1\nCONFIRM 17\nB=ISMESSAGESET(17)\n"
+        + "H=SET_KRLMSG(#QUIT,MSG,PAR[],OPT)\nB=ISMESSAGESET(17)\nI=1\nCONFIRM 17\n"
+        + "B=ISMESSAGESET(17)\n"
     )
     values = [
         one.fields["value"] for one in go(program(body)).told("assign") if one.fields["name"] == "B"
@@ -65,7 +71,7 @@ def test_confirm_statement(go) -> None:
     assert [True, False] == values
 
 
-def test_dialogue(go) -> None:
+def test_dialogue(go: Go) -> None:
     """A dialogue waits for an answer, which the program gets [FCT-10]."""
     body = (
         FILL
@@ -75,7 +81,7 @@ def test_dialogue(go) -> None:
     assert (2, [0.54]) == (ran.last("I"), ran.times("end"))
 
 
-def test_message_may_stop_the_advance_run(go) -> None:
+def test_message_may_stop_the_advance_run(go: Go) -> None:
     """VL_STOP has the message wait for the arm [FCT-10]."""
     home = "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n"
     for word, time in (("TRUE", 1.0), ("FALSE", 0.0)):
@@ -84,7 +90,7 @@ def test_message_may_stop_the_advance_run(go) -> None:
         assert [time] == ran.times("message", number=17)
 
 
-def test_error_is_raised_and_cleared(go) -> None:
+def test_error_is_raised_and_cleared(go: Go) -> None:
     """ERR_RAISE gives a fault of that number; ON_ERROR_PROCEED takes it [FCT-07, TYP-13]."""
     declarations = "DECL ERROR_T E\nINT N\n"
     body = "E.NUMBER=1447\n{}ERR_RAISE(E)\nN=$ERR.NUMBER\nERR_CLEAR($ERR)\nN=$ERR.NUMBER\n"
@@ -95,13 +101,13 @@ def test_error_is_raised_and_cleared(go) -> None:
     ]
 
 
-def test_what_is_not_simulated(go) -> None:
+def test_what_is_not_simulated(go: Go) -> None:
     """A routine that acts on something else is a clear fault, never silence [FCT-11]."""
     ran = go(program("I=DIAG_STOP()\n"))
     assert ("fault", "unsupported") == (ran.outcome.ending, ran.outcome.error.slug)
 
 
-def test_size_of_a_variable(go) -> None:
+def test_size_of_a_variable(go: Go) -> None:
     """GETVARSIZE tells the elements of a system variable [FCT-11]."""
     body = "I=GETVARSIZE(#TIMER)\nI=GETVARSIZE(#AN_IN)\nI=GETVARSIZE(#COUNT_I)\n"
     assert [64, 32, 160] == [one.fields["value"] for one in go(program(body)).told("assign")]
@@ -109,11 +115,12 @@ def test_size_of_a_variable(go) -> None:
     assert [32, 32, 160] == [one.fields["value"] for one in old.told("assign")]
 
 
-def test_robot_is_stopped(go) -> None:
+def test_robot_is_stopped(go: Go) -> None:
     """ROB_STOP holds the arm until ROB_STOP_RELEASE [FCT-11]."""
     text = (
         program(
-            "INTERRUPT DECL 10 WHEN $IN[1] DO HOLD()\nINTERRUPT ON 10\nPTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n",
+            "INTERRUPT DECL 10 WHEN $IN[1] DO HOLD()\nINTERRUPT ON 10\n"
+            "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n",
             "BOOL B\n",
         )
         + "DEF HOLD()\nBOOL B\nB=ROB_STOP(#RAMP_DOWN)\nWAIT SEC 0.48\nROB_STOP_RELEASE()\nEND\n"
@@ -122,6 +129,6 @@ def test_robot_is_stopped(go) -> None:
 
 
 @pytest.mark.parametrize("body", ["", "I=1\n", "WAIT SEC 0.1\n"])
-def test_trace_ends_with_the_end(go, body: str) -> None:
+def test_trace_ends_with_the_end(go: Go, body: str) -> None:
     """The last event is the end of the program."""
     assert "end" == go(program(body)).events[-1].kind

@@ -1,11 +1,15 @@
 """Profiles: what they say, and what is said of wrong ones."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from interp.controller import Profile, ProfileError, profile_names
+
+Go = Callable[..., Any]
 
 
 def test_all_can_be_read() -> None:
@@ -67,13 +71,13 @@ def test_what_is_no_file(tmp_path: Path) -> None:
         Profile.load(str(file))
 
 
-def test_old_release_runs(go) -> None:
+def test_old_release_runs(go: Go) -> None:
     """A program runs on an older release, with its motion parameters [CON-07]."""
     text = "DEF main()\nPTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nEND\n"
     assert "end" == go(text, profile=Profile.load("kss5")).outcome.ending
 
 
-def test_wrong_initial_value(go) -> None:
+def test_wrong_initial_value(go: Go) -> None:
     """An initial value that its variable cannot have is told."""
     profile = Profile.load()
     profile = replace(profile, values={**profile.values, "$OV_PRO": "fast"})

@@ -1,10 +1,14 @@
 """The submit interpreter: a second program on the same clock and data."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from interp.controller import Profile
+
+Go = Callable[..., Any]
 
 SPS = "DEF SPS()\n{}END\n"
 CONFIG = {"$config.dat": "DEFDAT $CONFIG\nDECL INT COUNT=0\nENDDAT\n"}
@@ -14,7 +18,7 @@ def sub(body: str, **more: str) -> dict[str, str]:
     return {"sps.sub": SPS.format(body), **CONFIG, **more}
 
 
-def test_shares_data(go) -> None:
+def test_shares_data(go: Go) -> None:
     """Both programs have the same data lists and the same clock [SUB-01]."""
     files = sub("LOOP\nWAIT FOR $IN[1]\nCOUNT=COUNT+1\nWAIT FOR NOT $IN[1]\nENDLOOP\n")
     text = "DEF main()\nINT I\nWAIT SEC 1\nI=COUNT\nEND\n"
@@ -25,7 +29,7 @@ def test_shares_data(go) -> None:
     assert {"robot", "submit"} == {one.task for one in ran.events}
 
 
-def test_runs_beside_motions(go) -> None:
+def test_runs_beside_motions(go: Go) -> None:
     """It runs while the robot's program waits for the arm, and sets outputs [SUB-01, SUB-05]."""
     files = sub("WAIT SEC 0.5\n$OUT[1]=TRUE\nWAIT FOR FALSE\n")
     text = "DEF main()\nPTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nWAIT SEC 0\nEND\n"
@@ -36,7 +40,7 @@ def test_runs_beside_motions(go) -> None:
 
 
 @pytest.mark.parametrize(("every", "passes"), [(1, 10), (4, 4)])
-def test_slices(go, every: int, passes: int) -> None:
+def test_slices(go: Go, every: int, passes: int) -> None:
     """It computes in slices: so many requests every so many cycles [SUB-03]."""
     profile = replace(Profile.load(), submit_every=every, submit_requests=10)
     files = sub("LOOP\nCOUNT=COUNT+1\n" + "$FLAG[1]=TRUE\n" * 10 + "ENDLOOP\n")
@@ -45,7 +49,7 @@ def test_slices(go, every: int, passes: int) -> None:
     assert passes == ran.last("I")
 
 
-def test_no_motions(go) -> None:
+def test_no_motions(go: Go) -> None:
     """It cannot move the robot; the robot's program goes on [SUB-05]."""
     files = sub("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n")
     ran = go("DEF main()\nWAIT SEC 0.5\nEND\n", files=files, submit="SPS")
@@ -53,19 +57,19 @@ def test_no_motions(go) -> None:
     assert ("end", [0.504]) == (ran.outcome.ending, ran.times("end"))
 
 
-def test_no_triggers(go) -> None:
+def test_no_triggers(go: Go) -> None:
     """Triggers are not allowed in it: message 1409 [SUB-06, TRG-09]."""
     files = sub("TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE\n")
     assert [1409] == go("DEF main()\nWAIT SEC 0.1\nEND\n", files=files, submit="SPS").messages()
 
 
-def test_no_workspaces(go) -> None:
+def test_no_workspaces(go: Go) -> None:
     """Workspaces are not shared from it: message 2825 [SUB-06]."""
     files = sub("$FLAG[1]=WSPACETAKE(1,0)\n")
     assert [2825] == go("DEF main()\nWAIT SEC 0.1\nEND\n", files=files, submit="SPS").messages()
 
 
-def test_state(go) -> None:
+def test_state(go: Go) -> None:
     """$PRO_STATE0 is its state [SUB-08]."""
     text = (
         "DEF main()\nBOOL B\nB=$PRO_STATE0==#P_ACTIVE\nWAIT SEC 0.1\nB=$PRO_STATE0==#P_END\nEND\n"
@@ -76,7 +80,7 @@ def test_state(go) -> None:
     ]
 
 
-def test_has_its_own_interrupts(go) -> None:
+def test_has_its_own_interrupts(go: Go) -> None:
     """It has interrupts of its own, which do not run in the robot's program [SUB-10, INT-17]."""
     files = sub("INTERRUPT DECL 10 WHEN $IN[1] DO SEEN()\nINTERRUPT ON 10\nWAIT FOR FALSE\n")
     files["sps.sub"] += "DEF SEEN()\nCOUNT=7\nEND\n"
@@ -86,7 +90,7 @@ def test_has_its_own_interrupts(go) -> None:
     assert ["submit"] == [one.task for one in ran.told("interrupt_enter")]
 
 
-def test_is_not_stopped_by_halt(go) -> None:
+def test_is_not_stopped_by_halt(go: Go) -> None:
     """It goes on while the robot's program halts [SUB-01]."""
     files = sub("LOOP\nCOUNT=COUNT+1\nWAIT SEC 0.1\nENDLOOP\n")
     text = "DEF main()\nINT I\nHALT\nI=COUNT\nEND\n"

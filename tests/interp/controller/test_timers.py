@@ -1,22 +1,27 @@
 """Timers, date and time, WAIT SEC and WAIT FOR on the virtual clock."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from interp.program import Limits
+
+Go = Callable[..., Any]
 
 
 def program(body: str) -> str:
     return f"DEF main()\nINT I\nBOOL B\nREAL X\n{body}END\n"
 
 
-def test_start(go) -> None:
+def test_start(go: Go) -> None:
     """At the start timers are 0, stopped, and their flags FALSE [TIM-02]."""
     ran = go(program("I=$TIMER[64]\nB=$TIMER_STOP[64]\nX=1\nB=$TIMER_FLAG[64]\n"))
     values = [one.fields["value"] for one in ran.told("assign")]
     assert [0, True, 1.0, False] == values
 
 
-def test_running(go) -> None:
+def test_running(go: Go) -> None:
     """A timer counts ms while it is not stopped, in steps of the cycle [TIM-01, TIM-05]."""
     text = program(
         "$TIMER_STOP[1]=FALSE\nWAIT SEC 0.1\nI=$TIMER[1]\n$TIMER_STOP[1]=TRUE\nWAIT SEC 0.1\n"
@@ -27,18 +32,18 @@ def test_running(go) -> None:
 
 
 @pytest.mark.parametrize(("preset", "end"), [(-50, 0.06), (-48, 0.048), (-1000, 1.008)])
-def test_countdown(go, preset: int, end: float) -> None:
+def test_countdown(go: Go, preset: int, end: float) -> None:
     """Preset to a negative value, the flag turns TRUE when it reaches zero [TIM-03, TIM-04]."""
     ran = go(program(f"$TIMER[2]={preset}\n$TIMER_STOP[2]=FALSE\nWAIT FOR $TIMER_FLAG[2]\n"))
     assert [end] == ran.times("end")
 
 
-def test_limits(go) -> None:
+def test_limits(go: Go) -> None:
     """There are so many timers as the profile says [TIM-01]."""
     assert 1444 == go(program("I=65\n$TIMER[I]=0\n")).outcome.error.number
 
 
-def test_flag_is_written(go) -> None:
+def test_flag_is_written(go: Go) -> None:
     """A flag that a program resets stays so until its timer passes zero from below [TIM-04]."""
     body = (
         "$TIMER[1]=5\n$TIMER_STOP[1]=FALSE\nB=$TIMER_FLAG[1]\nX=1\n$TIMER_FLAG[1]=FALSE\n"
@@ -53,44 +58,44 @@ def test_flag_is_written(go) -> None:
     ("seconds", "end"),
     [("0", 0.0), ("-1", 0.0), ("0.001", 0.012), ("0.012", 0.012), ("0.5", 0.504)],
 )
-def test_wait_seconds(go, seconds: str, end: float) -> None:
-    """WAIT SEC lasts to the first cycle behind its time; zero and less is no wait [TIM-06, CTL-12]."""
+def test_wait_seconds(go: Go, seconds: str, end: float) -> None:
+    """WAIT SEC lasts to the first cycle behind its time; zero is no wait [TIM-06, CTL-12]."""
     assert [end] == go(program(f"WAIT SEC {seconds}\n")).times("end")
 
 
-def test_wait_for(go) -> None:
+def test_wait_for(go: Go) -> None:
     """WAIT FOR goes on in the cycle in which its condition is TRUE [CTL-12]."""
     ran = go(program("WAIT FOR $IN[3]\nWAIT FOR $IN[3]\n"), "t=0.1 IN[3]=TRUE")
     assert [0.108] == ran.times("end")
     assert [0.0] == ran.times("wait")
 
 
-def test_date(go) -> None:
+def test_date(go: Go) -> None:
     """$DATE is the profile's start and the virtual time since [TIM-05]."""
     text = program("WAIT SEC 61.5\nI=$DATE.HOUR*10000+$DATE.MIN*100+$DATE.SEC\nX=$DATE.YEAR\n")
     ran = go(text, until=100)
     assert (80101, 2020.0) == (ran.last("I"), ran.last("X"))
 
 
-def test_slices(go) -> None:
+def test_slices(go: Go) -> None:
     """A loop that asks nothing lets time pass: so many statements a cycle."""
     ran = go(program("$TIMER_STOP[1]=FALSE\nFOR I=1 TO 2500\nX=I\nENDFOR\nI=$TIMER[1]\n"))
     assert 5 * 12 == ran.last("I")  # 2 statements a pass, 1000 a cycle
 
 
-def test_polling_lets_time_pass(go) -> None:
+def test_polling_lets_time_pass(go: Go) -> None:
     """A loop that asks all the time does so too: so many requests a cycle."""
     ran = go(program("WHILE NOT $IN[1]\nENDWHILE\n"), "t=0.5 IN[1]=TRUE")
     assert [0.504] == ran.times("end")
 
 
-def test_endless_program(go) -> None:
+def test_endless_program(go: Go) -> None:
     """A program that never ends uses up its statements: a clear end."""
     ran = go(program("LOOP\nI=1\nENDLOOP\n"), limits=Limits(statements=5000))
     assert ("budget", "the program does not end") == (ran.outcome.ending, str(ran.outcome.error))
 
 
-def test_time_is_over(go) -> None:
+def test_time_is_over(go: Go) -> None:
     """A run ends when its time is over, at exactly that time."""
     ran = go(program("WAIT FOR $IN[1]\n"), until=2.5)
     assert ("time", 2_500_000) == (ran.outcome.ending, ran.outcome.time)
@@ -98,7 +103,7 @@ def test_time_is_over(go) -> None:
     assert ("time", 1_250_000) == (ran.outcome.ending, ran.outcome.time)
 
 
-def test_halt(go) -> None:
+def test_halt(go: Go) -> None:
     """HALT ends a run that nobody starts again; START goes on behind it [CTL-08]."""
     text = program("I=1\nHALT\nI=2\nWAIT SEC 0.1\nHALT\nI=3\n")
     ran = go(text)
@@ -111,7 +116,7 @@ def test_halt(go) -> None:
     assert [0.206] == go(text, "on HALT after 0.05 press START").times("end")
 
 
-def test_operator(go) -> None:
+def test_operator(go: Go) -> None:
     """STOP holds the program and the arm, START lets both go on."""
     text = program("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {A1 1}\nWAIT SEC 0\nI=1\n")
     ran = go(text, "t=0.5 press STOP\nt=2 press START")
@@ -119,7 +124,7 @@ def test_operator(go) -> None:
     assert ["brake", "proceed"] == ran.arm.calls
 
 
-def test_override(go) -> None:
+def test_override(go: Go) -> None:
     """$OV_PRO scales the speed; 0 stops the arm until it is raised [MOT-09]."""
     text = program("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {A1 1}\n")
     assert [1.5, 2.5] == go(text, "t=0.5 OV_PRO=50\nt=1.5 OV_PRO=100").times("motion_end")
@@ -127,7 +132,7 @@ def test_override(go) -> None:
     assert [2.0, 4.0] == go(text.replace("REAL X\n", "REAL X\n$OV_PRO=50\n")).times("motion_end")
 
 
-def test_states(go) -> None:
+def test_states(go: Go) -> None:
     """$PRO_STATE tells what the program does, $ROB_STOPPED whether the arm stands [SUB-08]."""
     text = program("B=$PRO_STATE1==#P_ACTIVE\nB=$PRO_STATE0==#P_FREE\nB=$ROB_STOPPED\nB=$T1\n")
     ran = go(text, "t=0 MODE_OP=#T1")
