@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Final, get_args
+from typing import Final
 
 from conformance.expectations import (
+    PHASES,
     Expectation,
     ExpectationError,
     Phase,
@@ -92,7 +93,7 @@ class Case:
     def is_negative(self) -> bool:
         """Whether it is about what has to be refused: by the front end, or by a running program."""
         kinds = {one.kind for one in self.expectations}
-        if kinds & {"syntax", "error", "fault"}:
+        if kinds & {"syntax", "error", "warning", "fault"}:
             return True
         return any(
             one.kind == "message" and "never" not in one.arguments for one in self.expectations
@@ -118,7 +119,7 @@ class Case:
 def find_cases(
     root: Path = CASES, on_error: Callable[[CaseError], None] | None = None
 ) -> list[Case]:
-    """All cases below a folder, by name. Raises the first `CaseError`, or hands all of them over."""
+    """All cases below a folder, by name; raises the first `CaseError`, or hands over all."""
     found = []
     for path in sorted(root.rglob("*")):
         if path.suffix.lower() in ENDINGS and path.is_file() and _is_case(path):
@@ -174,9 +175,10 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     for rule in rules:
         if rule not in registry():
             raise CaseError(f"{path}: there is no rule {rule!r}")
-    phase = front.get("phase", [""])[0]
-    if phase not in get_args(Phase):
-        raise CaseError(f"{path}: the phase is parse, check or run, not {phase!r}")
+    wanted = front.get("phase", [""])[0]
+    phase = next((one for one in PHASES if one == wanted), None)
+    if phase is None:
+        raise CaseError(f"{path}: the phase is parse, check or run, not {wanted!r}")
     sources = (source, *_companions(path, front.get("with", [""])[0]))
     expectations = tuple(one for each in sources for one in _expectations(each, path))
     if not expectations:

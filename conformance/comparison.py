@@ -1,8 +1,8 @@
 """Where two runs of one case begin to differ, with the state of each at that point.
 
-Executors conform when their traces are equal, full level included [docs/trace.md]. `first_divergence`
-finds the first event that differs and tells, for both sides, what every variable and output was by
-then: the values that the trace has told so far.
+Executors conform when their traces are equal, full level included [docs/trace.md].
+`first_divergence` finds the first event that differs and tells, for both sides, what every variable
+and output was by then: the values that the trace has told so far.
 """
 
 from __future__ import annotations

@@ -175,7 +175,8 @@ _WHEN: Final = re.compile(
     rf"|between (?P<first>{_MOMENT}) and (?P<last>{_MOMENT}))$"
 )
 _MOMENT_PARTS: Final = re.compile(
-    rf"(?:(?P<event>[a-z-]+) (?P<of>\w+)(?: (?P<sign>[-+]) (?P<more>{_NUMBER}))?|(?P<at>{_NUMBER}))$"
+    rf"(?:(?P<event>[a-z-]+) (?P<of>\w+)(?: (?P<sign>[-+]) (?P<more>{_NUMBER}))?"
+    rf"|(?P<at>{_NUMBER}))$"
 )
 
 

@@ -37,7 +37,7 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 
 
 def judge(case: Case, seen: Observation) -> list[Check]:
-    """All checks of a case, in the order of its lines; what is expected of every case comes last."""
+    """All checks of a case, in the order of its lines; what every case expects comes last."""
     if case.phase != "run":
         return [*(_said(one, seen) for one in case.expectations), *_unsaid(case, seen)]
     marks = _marks(case)

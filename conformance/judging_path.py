@@ -37,7 +37,7 @@ _TRACKING: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The motion of a line: times in µs; ``leave`` and ``join`` are the ends of the blend behind it."""
+    """The motion of a line, times in µs; ``leave`` and ``join`` are the ends of its blend."""
 
     path: PathRecord
     start: int
@@ -226,7 +226,7 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Judged:
 
 
 def _limits(one: Expectation, seen: Observation, part: _Part) -> Judged:
-    """No axis is faster than its machine data allow; with ``smooth`` none changes its speed faster."""
+    """No axis is faster than its machine data allow; ``smooth``: none changes its speed faster."""
     if seen.machine is None:
         return "open", "the limits of the arm are not known"
     last = part.end if part.join is None else part.join

@@ -174,8 +174,9 @@ def _order(one: Expectation, seen: Observation, marks: Marks) -> Judged:
 def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     faults = [*seen.of_kind("fault")]
     told = "; ".join(
-        f"{event.fields.get('slug') or 'link'} {event.fields.get('number') or ''} on line {event.line}"
-        for event in faults
+        f"{one_fault.fields.get('slug') or 'link'} {one_fault.fields.get('number') or ''}"
+        f" on line {one_fault.line}"
+        for one_fault in faults
     )
     there = [event for event in faults if (event.file, event.line) == (one.file, one.line)]
     names = {str(event.fields.get("slug") or "link") for event in there}

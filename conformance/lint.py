@@ -134,8 +134,9 @@ def _of_expectations(case: Case) -> Iterator[str]:
         said.add((one.file, one.line, one.text))
     marks = {one.arguments[0] for one in case.expectations if one.kind == "mark"}
     for one in case.expectations:
-        for anchor in filter(None, (one.when and one.when.first, one.when and one.when.last)):
-            if anchor.event == "mark" and anchor.of not in marks:
+        anchors = [one.when.first, one.when.last] if one.when else []
+        for anchor in anchors:
+            if anchor is not None and anchor.event == "mark" and anchor.of not in marks:
                 yield f"line {one.line}: nothing is marked {anchor.of}"
     is_accepted = any(one.kind == "accepted" for one in case.expectations)
     if is_accepted and case.is_negative:

@@ -19,7 +19,7 @@ __all__ = ["Event", "Finding", "Observation"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a front end says of a line: ``code`` is KSS and a number, KRL and a number, or syntax."""
+    """What a front end says of a line; ``code`` is KSS or KRL with a number, or ``syntax``."""
 
     file: str
     line: int
@@ -74,7 +74,7 @@ class Observation:
 
     ``findings`` where it was read or checked only. ``ending`` tells how a run ended: ``end``,
     ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
-    ``cycle`` is the interpolation cycle in µs. ``is_exact`` tells whether times are known to the µs.
+    ``cycle`` is the interpolation cycle in µs; ``is_exact``: times are known to the µs.
     ``watched`` are the kinds of events that a recording says it has, ``None`` where all were told.
     ``machine`` is the arm whose limits the path has to keep, where it is known.
     """

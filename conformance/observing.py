@@ -6,7 +6,7 @@ told as such (`missing`), never silently left out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.util import find_spec
@@ -28,17 +28,33 @@ from interp import session
 from interp.controller.profile import Profile
 from interp.controller.script import Script, ScriptError
 from interp.controller.trace import TraceEvent
+from interp.events import Sink
+from interp.executor import Executor
 from interp.executors import EXECUTORS, Prepared, available
 from interp.faults import LinkError
-from interp.program import Limits, load
-from interp.robot.robots import ROBOTS, RobotName
+from interp.program import CheckedProgram, Limits, load
+from interp.robot.machine import Machine
+from interp.robot.models import default_machine
+from interp.robot.robots import ROBOTS, Robot, RobotName
 
-__all__ = ["EXECUTORS", "FRONT", "PROFILES", "ROBOTS", "Setup", "missing", "observe"]
+__all__ = [
+    "EXECUTORS",
+    "FRONT",
+    "PROFILES",
+    "ROBOTS",
+    "Setup",
+    "missing",
+    "observe",
+    "observe_with",
+]
 
 #: Who reads and checks cases: there is one front end.
 FRONT: Final = "grammar"
 #: What ``;@ profile:`` may be: a controller, and that its program begins with a coincidence run.
 PROFILES: Final = ("kss8", "kss8-bco", "kss5", "kss5-bco")
+MakeExecutor = Callable[[CheckedProgram, str | None, Limits, Sink | None], Executor]
+MakeRobot = Callable[[Machine, int], Robot]
+
 #: So many statements a case may execute.
 _STATEMENTS: Final = 1_000_000
 #: Endings of a run in the words of expectations.
@@ -50,7 +66,7 @@ class Setup:
     """An executor and a robot, by name."""
 
     executor: str
-    robot: RobotName
+    robot: str
 
 
 def observe(case: Case, setup: Setup) -> Observation:
@@ -61,6 +77,13 @@ def observe(case: Case, setup: Setup) -> Observation:
         case "check":
             return _checked(case)
     return _run(case, setup)
+
+
+def observe_with(
+    case: Case, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
+) -> Observation:
+    """See what a case that runs does on somebody's executor, or robot, or both."""
+    return _run(case, Setup("tree", "none" if robot is None else "mujoco"), executor, robot)
 
 
 def _parsed(case: Case) -> Observation:
@@ -115,18 +138,39 @@ def missing(setup: Setup) -> str:
     return ""
 
 
-def _run(case: Case, setup: Setup) -> Observation:
+class _Theirs(Prepared):
+    """A program for an executor that is not ours."""
+
+    def __init__(self, program: CheckedProgram, make: MakeExecutor) -> None:
+        super().__init__(program)
+        self._make = make
+
+    def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:  # noqa: ARG002
+        """Theirs, whatever the name."""
+        return self._make(self.program, self.routine, limits, sink)
+
+
+def _run(
+    case: Case,
+    setup: Setup,
+    executor: MakeExecutor | None = None,
+    robot: MakeRobot | None = None,
+) -> Observation:
     """Run it; a program that cannot begin is a fault without a line."""
     program = _prepared(case)
     if isinstance(program, LinkError):
         return _refused(program)
+    if executor is not None:
+        program = _Theirs(program.program, executor)
     profile = _profile(case.profile)
     wanted = session.Setup(
         executor=setup.executor,
-        robot=setup.robot,
+        robot=_robot(setup.robot),
         profile=profile,
         script=Script.read("\n".join(case.io), case.name),
         submit=_submit(case),
+        machine=_machine(case),
+        make_robot=robot,
         is_full=True,
         until=round(case.seconds * 1e6),
         limits=Limits(statements=_STATEMENTS, per_slice=profile.statements),
@@ -137,6 +181,16 @@ def _run(case: Case, setup: Setup) -> Observation:
         return _refused(error)
     except ScriptError as error:
         return Observation(ending="crash", note=f"the script of inputs: {error}")
+
+
+def _robot(name: str) -> RobotName:
+    return next(one for one in ROBOTS if one == name)
+
+
+def _machine(case: Case) -> Machine | None:
+    """The arm of the profile, read once; ``None`` where the case has machine data of its own."""
+    has_own = any(one.path.lower() == "$machine.dat" for one in case.sources)
+    return None if has_own else default_machine()
 
 
 def _profile(name: str) -> Profile:

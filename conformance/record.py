@@ -10,11 +10,14 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any, Final
 
+import numpy as np
+
 from conformance.case import Case
 from conformance.lint import SUITES, coverage
 from conformance.observation import Observation
 from conformance.registry import registry
 from conformance.runner import CaseResult, Result
+from conformance.shapes import drawn
 from conformance.verdicts import VERDICTS
 from interp.robot.following import PathRecord
 
@@ -107,10 +110,7 @@ def _rules(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
             "source": rule.source,
             "unshown": rule.unshown,
             "cases": [one.case.name for one in by_rule[rule.id]],
-            "verdicts": {
-                verdict: count
-                for verdict, count in Counter(one.verdict for one in by_rule[rule.id]).items()
-            },
+            "verdicts": dict(Counter(one.verdict for one in by_rule[rule.id])),
         }
         for rule in registry().values()
     ]
@@ -132,11 +132,13 @@ def _case(one: CaseResult) -> dict[str, Any]:
         "io": list(case.io),
         "verdict": one.verdict,
         "files": [{"name": each.path, "text": each.text} for each in case.sources],
-        "results": [_result(result, is_first=not at) for at, result in enumerate(one.results)],
+        "results": [
+            _result(case, result, is_first=not at) for at, result in enumerate(one.results)
+        ],
     }
 
 
-def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
+def _result(case: Case, result: Result, *, is_first: bool) -> dict[str, Any]:
     found: dict[str, Any] = {
         "executor": result.executor,
         "robot": result.robot,
@@ -158,6 +160,8 @@ def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
     if result.observation is not None:
         is_whole = is_first or result.verdict == "fail"
         found |= _seen(result.observation, is_whole=is_whole)
+        if is_first and "path" in found:
+            found["path"]["analytic"] = _analytic(case)
     return found
 
 
@@ -185,6 +189,17 @@ def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
     ):
         told["path"] = _path(seen.path)
     return told
+
+
+def _analytic(case: Case) -> list[list[float]]:
+    """Points of the lines, circles and arcs that the case expects, one behind the other."""
+    found: list[list[float]] = []
+    for one in case.expectations:
+        if one.kind == "path" and one.arguments[0] != "joint":
+            numbers = [float(word) for word in one.arguments if word[-1].isdigit()]
+            points = np.array(numbers).reshape(-1, 3)
+            found += drawn(one.arguments[0], points).round(4).tolist()
+    return found
 
 
 def _path(path: PathRecord) -> dict[str, Any]:

@@ -103,8 +103,9 @@ def _path(data: Mapping[str, Any]) -> PathRecord:
         raise ValueError("a path has axes and points")
     if len(times) < 2 or not (np.diff(times) > 0).all():
         raise ValueError("the times of a path rise")
-    axes_measured = _rows(data, "axes_meas", times)
-    return PathRecord(times, axes, points, axes_measured, _rows(data, "points_meas", times))
+    measured = _rows(data, "axes_meas", times), _rows(data, "points_meas", times)
+    tips = None if measured[1] is None else measured[1][:, :3]
+    return PathRecord(times, axes, points, points[:, :3], *measured, tips)
 
 
 def _rows(

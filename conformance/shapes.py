@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["between", "from_arc", "from_circle", "from_line", "refined"]
+__all__ = ["between", "circle_of", "drawn", "from_arc", "from_circle", "from_line", "refined"]
 
 Array = npt.NDArray[np.float64]
 
@@ -26,21 +26,27 @@ def from_line(points: Array, start: Array, end: Array) -> Array:
     return np.asarray(np.linalg.norm(points - (start + share[:, None] * along), axis=1))
 
 
-def from_circle(points: Array, first: Array, second: Array, third: Array) -> Array:
-    """The distance of each point from the circle through three points."""
+def circle_of(first: Array, second: Array, third: Array) -> tuple[Array, Array]:
+    """The centre of the circle through three points, and its axis as a unit vector.
+
+    Seen against the axis it turns to the left. Raises `ValueError` for points on a line.
+    """
     one, other = second - first, third - first
     normal = np.cross(one, other)
     square = float(normal @ normal)
     if square < 1e-12:
         raise ValueError("three points on a line make no circle")
-    towards = np.cross(normal, one) * float(other @ other) - np.cross(normal, other) * float(
-        one @ one
-    )
-    centre = first + towards / (2 * square)
+    towards = np.cross(normal, one) * float(other @ other)
+    towards -= np.cross(normal, other) * float(one @ one)
+    return first + towards / (2 * square), normal / np.sqrt(square)
+
+
+def from_circle(points: Array, first: Array, second: Array, third: Array) -> Array:
+    """The distance of each point from the circle through three points."""
+    centre, axis = circle_of(first, second, third)
     radius = float(np.linalg.norm(first - centre))
-    unit = normal / np.sqrt(square)
-    height = (points - centre) @ unit
-    flat = np.linalg.norm(points - centre - height[:, None] * unit, axis=1)
+    height = (points - centre) @ axis
+    flat = np.linalg.norm(points - centre - height[:, None] * axis, axis=1)
     return np.asarray(np.hypot(flat - radius, height))
 
 
@@ -54,24 +60,49 @@ def from_arc(points: Array, start: Array, corner: Array, end: Array) -> Array:
     return np.array([np.linalg.norm(arc - point, axis=1).min() for point in points])
 
 
-def between(times: npt.NDArray[np.int64], rows: Array, time: float) -> Array:
-    """A row at a time, by the cubic through the four samples around it; the ends are kept."""
-    if len(times) < 4:
-        columns = [np.interp(time, times, rows[:, column]) for column in range(rows.shape[1])]
-        return np.array(columns)
-    at = int(np.clip(np.searchsorted(times, time) - 2, 0, len(times) - 4))
-    known = times[at : at + 4].astype(np.float64)
-    moment = float(np.clip(time, times[0], times[-1]))
-    found = np.zeros(rows.shape[1])
-    for one in range(4):
-        others = [other for other in range(4) if other != one]
-        weight = np.prod([(moment - known[o]) / (known[one] - known[o]) for o in others])
-        found += weight * rows[at + one]
-    return found
+def between(times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike) -> Array:
+    """Rows at other times, by the cubic through the four samples around each; the ends are kept.
+
+    ``rows`` is of shape (n, columns), the result of shape (moments, columns), or (columns,) for one
+    moment.
+    """
+    wanted = np.clip(np.atleast_1d(np.asarray(moments, dtype=np.float64)), times[0], times[-1])
+    count = min(4, len(times))
+    first = np.clip(np.searchsorted(times, wanted) - count // 2, 0, len(times) - count)
+    found = np.zeros((len(wanted), rows.shape[1]))
+    for one in range(count):
+        weight = np.ones(len(wanted))
+        for other in range(count):
+            if other != one:
+                gap = times[first + one] - times[first + other]
+                weight *= (wanted - times[first + other]) / gap
+        found += weight[:, None] * rows[first + one]
+    return found[0] if np.ndim(moments) == 0 else found
 
 
 def refined(
     times: npt.NDArray[np.int64], rows: Array, start: float, end: float, count: int = 200
 ) -> Array:
     """Rows at so many times from one to another."""
-    return np.array([between(times, rows, time) for time in np.linspace(start, end, count)])
+    return between(times, rows, np.linspace(start, end, count))
+
+
+def drawn(kind: str, points: Array, count: int = 33) -> Array:
+    """Points along a ``line``, a ``circle`` or the arc of a ``blend``, to be looked at.
+
+    ``points`` are those that define it, shape (2, 3) or (3, 3); a circle goes from the first over
+    the second to the third.
+    """
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    if kind == "line":
+        return np.asarray(points[0] + share * (points[1] - points[0]))
+    if kind == "blend":
+        start, corner, end = points
+        arc = (1 - share) ** 2 * start + 2 * share * (1 - share) * corner + share**2 * end
+        return np.asarray(arc)
+    centre, normal = circle_of(*points)
+    first = points[0] - centre
+    sideways = np.cross(normal, first)
+    turned = np.arctan2((points[2] - centre) @ sideways, (points[2] - centre) @ first)
+    angle = share * (turned % (2 * np.pi))
+    return np.asarray(centre + np.cos(angle) * first + np.sin(angle) * sideways)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Literal
 
 from interp.controller.controller import HOUR, Controller, Outcome
@@ -25,7 +26,7 @@ from interp.robot.following import Following, PathRecord
 from interp.robot.machine import ROBOT_AXES, Machine, MachineDataError, read_machine
 from interp.robot.models import default_machine, model_file
 from interp.robot.planned_arm import PlannedArm
-from interp.robot.robots import RobotName, make_robot
+from interp.robot.robots import Robot, RobotName, make_robot
 from interp.tree import system_values
 from interp.values import StructureValue
 
@@ -46,6 +47,7 @@ class Setup:
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
     assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
     ``until`` is the most virtual time in µs, ``limits`` the most statements and calls.
+    ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
     """
 
     executor: str = "tree"
@@ -60,6 +62,7 @@ class Setup:
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
     limits: Limits | None = None
+    make_robot: Callable[[Machine, int], Robot] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +105,7 @@ def run_program(
         arm = PlannedArm(machine, start)
     except Fault as fault:
         raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
-    robot = make_robot(setup.robot, machine, profile.cycle)
+    robot = (setup.make_robot or partial(make_robot, setup.robot))(machine, profile.cycle)
     following = Following(arm, robot, machine, profile.cycle, start)
     trace = Trace(take, is_full=setup.is_full)
     sink, submit_sink = trace.sink(), trace.sink("submit")

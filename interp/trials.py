@@ -56,7 +56,7 @@ class Unread:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What came of a routine; ``reason`` tells why it came no further, or how it ended.
+    """What came of a routine; ``reason`` tells why it came no further, ``why`` how its run ended.
 
     ``endings`` are those of its runs by executor, the reference first; ``differences`` what other
     executors than the first said differently, by executor.
@@ -69,6 +69,7 @@ class Trial:
     reason: str = ""
     endings: Mapping[str, Ending] | None = None
     differences: Mapping[str, str] | None = None
+    why: str = ""
 
 
 def trials(
@@ -156,8 +157,8 @@ class _Project:
         for name, text in self._probed(program, start).items():
             differences.setdefault(name, text)
         endings = {name: _ending(one) for name, one in seen.items()}
-        reason = reason or _why(first)
-        return Trial(path, line, routine.name, stage, reason, endings, differences)
+        why = _why(first)
+        return Trial(path, line, routine.name, stage, reason, endings, differences, why)
 
     def _stage(self, routine: Routine) -> tuple[Stage, str]:
         unit = routine.unit

@@ -1,6 +1,5 @@
 """The program that a file on the command line means: with all files of its project."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,9 +33,9 @@ def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, 
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     """The files of the project of a file, the path of that file among them, and what was left out.
 
-    A project is what one controller holds: the nearest folder above the file with R1 or STEU in
-    it, else the folder that it lies in. Files that cannot be read as KRL are left out, but not the
-    one that was asked for.
+    A project is what one controller holds: the nearest R1 or STEU that the file lies in and what
+    stands beside that, else the folder that the file lies in, without those below. Files that
+    cannot be read as KRL are left out, but not the one that was asked for.
     """
     from grammar import ast
     from grammar.build import read_module
@@ -50,8 +49,8 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         found = [one for one in discover([root]) if isinstance(one, Found)]
     except IngestError as error:
         raise Unusable(str(error)) from error
-    if archive is None and root == file.parent:  # a loose file: its neighbours, not what lies below
-        found = [one for one in found if one.file.parent == file.parent and one.member is None]
+    if archive is None and root == file.resolve().parent:  # a loose file: not what lies below
+        found = [one for one in found if one.file.parent == root and one.member is None]
     sources: list[Source] = []
     left: list[str] = []
     main = ""
@@ -98,22 +97,8 @@ def _is_asked_for(found: "Found", file: Path, inner: str) -> bool:
 
 
 def _root_of(file: Path) -> Path:
-    """The folder that holds the project of a file."""
+    """The folder that holds the project of a file: it lies below R1 or STEU there, or alone."""
     if not file.is_file():
         raise Unusable(f"{file}: no such file")
-    for parent in _above(file):
-        if any(one.name.upper() in _PARTS and one.is_dir() for one in _listed(parent)):
-            return parent
-    return file.parent
-
-
-def _above(file: Path) -> Sequence[Path]:
-    """The folders above a file, the nearest first; R1 itself is not where a project begins."""
-    return [parent for parent in file.absolute().parents if len(parent.parts) > 1][:12]
-
-
-def _listed(folder: Path) -> list[Path]:
-    try:
-        return list(folder.iterdir())
-    except OSError:
-        return []
+    folders = file.resolve().parents
+    return next((one.parent for one in folders if one.name.upper() in _PARTS), folders[0])

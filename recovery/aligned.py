@@ -18,6 +18,7 @@ __all__ = ["common_phrases"]
 _MOST_ROWS = 16
 _MOST_COLUMNS = 14
 _MOST_RULES = 3
+_MOST_SHAPES = 6
 
 _Span = tuple[Word, ...]
 
@@ -53,8 +54,7 @@ def common_phrases(
     if not rows:
         return
     columns = _columns(phraser, rows)
-    shared = sum(len(column.cells) == len(rows) for column in columns)
-    if len(columns) > _MOST_COLUMNS or 2 * shared < len(columns):
+    if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):
         return
     seen = set()
     for level in range(3):
@@ -63,6 +63,15 @@ def common_phrases(
         if all(written) and symbols not in seen:
             seen.add(symbols)
             yield symbols
+
+
+def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
+    """Whether most columns are in all rows, or the rows are few forms of what one word begins."""
+    in_all = [len(column.cells) == rows for column in columns]
+    if 2 * sum(in_all) >= len(columns):
+        return True
+    forms = {frozenset(column.cells) for column in columns}
+    return bool(columns[0].key and in_all[0]) and len(forms) <= _MOST_SHAPES
 
 
 def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:

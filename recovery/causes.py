@@ -20,6 +20,7 @@ from recovery.joined import one_choice, reach_the_same, together
 from recovery.phrases import Word
 from recovery.progress import Progress, unheard
 from recovery.trial import Outcome, Trial, changed_rules
+from recovery.uncollected import uncollected
 from recovery.whole import WholeFiles
 
 __all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
@@ -27,11 +28,11 @@ __all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
 # Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
 # that a first trial looks at: what is kept after it is tried on everything.
 _SPECIMENS = 3
-_MOST_TRIED = 140
+_MOST_TRIED = 120
 # Behind the groups that hold back most a quicker look has to do.
 _HEAVY_GROUPS = 12
-_MOST_TRIED_LIGHT = 60
-_FIRST_TRIAL = 12
+_MOST_TRIED_LIGHT = 50
+_FIRST_TRIAL = 8
 # Lines whose openings are compared for what they have in common.
 _VARIED = 6
 _KEPT = 10
@@ -46,12 +47,16 @@ _LINE_COUNTS = 0.2
 # Causes that a later one is compared with: the first ones hold back most.
 _MOST_JOINED = 40
 _ROUNDS = 4
+# What the trials of a group leave behind, in the measure of `recovery.uncollected`.
+_GARBAGE = 2_000_000
 # Symbols of an alternative that make it a form of its own, whatever word it begins with.
 _A_FORM = 4
 # What a mended line counts that is of another group than the one a cause is sought for.
 _OTHERS_COUNT = 0.3
 # What an edit gains that mends every line which fails at the same token: it leaves none to explain.
 _ALL_ALIKE = 1.25
+# What an edit loses that gives some of its lines two readings.
+_TWO_READINGS = 0.97
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,23 +110,27 @@ def find_causes(
     causes: list[Cause] = []
     for place, group in enumerate(groups):
         search.thorough = place < _HEAVY_GROUPS
-        left = [n for n in group if n in search.open]
-        for _ in range(_ROUNDS):
-            if not left:
-                break
-            cause = search.best_for(left)
-            if cause is None:
-                break
-            cause = search.with_entailed(cause)
-            causes.append(cause)
-            search.open.difference_update(cause.lines)
-            left = [n for n in left if n in search.open]
-        left += [n for n in group if lines[n].is_enormous]
-        if left:
-            search.open.difference_update(left)
-            causes.append(Cause(tuple(left), ()))
+        with uncollected(_GARBAGE):
+            causes += _of_group(search, group)
         on_done(1)
     return search.joined(causes)
+
+
+def _of_group(search: Search, group: Sequence[int]) -> Iterator[Cause]:
+    """The causes of a group, one after the other; lines without any are one of their own."""
+    left = [n for n in group if n in search.open]
+    for _ in range(_ROUNDS):
+        cause = search.best_for(left) if left else None
+        if cause is None:
+            break
+        cause = search.with_entailed(cause)
+        yield cause
+        search.open.difference_update(cause.lines)
+        left = [n for n in left if n in search.open]
+    left += [n for n in group if search.lines[n].is_enormous]
+    if left:
+        search.open.difference_update(left)
+        yield Cause(tuple(left), ())
 
 
 class Search:
@@ -348,6 +357,8 @@ class Search:
             worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
             if p.mended.issuperset(alike):
                 worth[p.edits] *= _ALL_ALIKE
+            if self.trial.is_ambiguous(p.edits, p.mended):
+                worth[p.edits] *= _TWO_READINGS
         return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
 
 

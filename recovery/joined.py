@@ -106,6 +106,6 @@ def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candi
     else:
         assert isinstance(last, AddAlternative)
         edit = AddAlternative(last.rule, body)
-    tokens = sorted({e.name for c in members.values() for e in c.edits if isinstance(e, AddToken)})
-    breadth = max(c.breadth for c in members.values()) + 1
-    return Candidate((*(AddToken(t) for t in tokens), edit), breadth)
+    reserving = {e for c in members.values() for e in c.edits[:-1]}
+    before = sorted(reserving, key=lambda e: (not isinstance(e, AddToken), str(e)))
+    return Candidate((*before, edit), max(c.breadth for c in members.values()) + 1)

@@ -7,9 +7,10 @@ line itself. No code is generated and no file is read again, so a candidate cost
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from grammar.ambiguity import is_ambiguous
 from grammar.edits import AddRule, AddToken, Comment, Edit, Preamble, RemoveRule, apply
 from grammar.g4 import GrammarError
 from grammar.network import is_left_recursive, network_of, with_rule
@@ -23,6 +24,8 @@ __all__ = ["Outcome", "Trial", "edited"]
 _MOST_REMEMBERED = 160
 # An edit can give a line exponentially many readings; what needs more than these is no good edit.
 _MOST_WAYS = 2_000
+# Lines that are looked at for a second reading.
+_MOST_READ_TWICE = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,13 +138,13 @@ class Trial:
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
         """Lines that the edits might mend."""
         keywords = [e.name for e in edits if isinstance(e, AddToken)]
-        if keywords:
+        if keywords and not any("|" in getattr(e, "text", "") for e in edits):
             found = set.union(*(self._by_keyword.get(k, set()) for k in keywords))
             return sorted(found)
         if any(isinstance(e, AddRule) for e in edits):
             return list(range(len(self.lines)))
-        rules = changed_rules(edits)
-        return sorted({n for rule in rules for n in self._by_rule.get(rule, ())})
+        found = {n for rule in changed_rules(edits) for n in self._by_rule.get(rule, ())}
+        return sorted(found.union(*(self._by_keyword.get(k, set()) for k in keywords)))
 
     def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
         """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
@@ -161,10 +164,33 @@ class Trial:
         if among is not None:
             wanted = frozenset(among)
             chosen = [n for n in chosen if n in wanted]
+        mended, advanced = [], []
+        for number, start, kinds in self._read_by(wider, edits, chosen):
+            _, failed = wider.run(start, kinds)
+            if failed is None:
+                mended.append(number)
+            elif failed > self.lines[number].form.index:
+                advanced.append(number)
+        return Outcome(frozenset(mended), frozenset(advanced))
+
+    def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
+        """Whether one of the lines has two readings with the edits; the shortest few are read."""
+        wider = self.wider(edits)
+        if wider is None:
+            return False
+        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:_MOST_READ_TWICE]
+        return any(
+            is_ambiguous(wider, start, kinds)
+            for _, start, kinds in self._read_by(wider, edits, short)
+        )
+
+    def _read_by(
+        self, wider: Recognizer, edits: Sequence[Edit], numbers: Iterable[int]
+    ) -> Iterator[tuple[int, State, Sequence[int]]]:
+        """Lines with the states they begin in and their tokens, as ``wider`` has them."""
         new = {e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)}
         starts: dict[Frames, State | None] = {}
-        mended, advanced = [], []
-        for number in chosen:
+        for number in numbers:
             line = self.lines[number]
             before = line.form.before
             if before not in starts:
@@ -173,14 +199,7 @@ class Trial:
             start = starts[before]
             if start is None:  # the edits took away what leads to this line
                 continue
-            kinds: Sequence[int] = line.form.kinds
-            if new:
-                kinds = list(kinds)
-                for place, keyword in line.keywords:
-                    kinds[place] = new.get(keyword, kinds[place])
-            _, failed = wider.run(start, kinds)
-            if failed is None:
-                mended.append(number)
-            elif failed > line.form.index:
-                advanced.append(number)
-        return Outcome(frozenset(mended), frozenset(advanced))
+            kinds = list(line.form.kinds)
+            for place, keyword in line.keywords if new else ():
+                kinds[place] = new.get(keyword, kinds[place])
+            yield number, start, kinds

@@ -6,7 +6,7 @@ kept small as a rule, so that most programs go on; now and then one is not.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from conformance.differential.code import Counter
@@ -62,14 +62,21 @@ class Expressions(Functions):
     def target(self, type_: Type, *, is_local: bool = True) -> str | None:
         """A place that can be assigned, ``None`` where there is none."""
         places = self.scope.places(type_, is_written=True, is_local=is_local)
-        return self.written(self.choices.pick(places)) if places else None
+        return self.written(self._one_of(places)) if places else None
+
+    def _one_of(self, places: Sequence[Place]) -> Place:
+        """A place: of one as likely as of the other, or of each variable alike."""
+        if self.choices.chance(50):
+            return self.choices.pick(places)
+        variable = self.choices.pick(list(dict.fromkeys(one.variable for one in places)))
+        return self.choices.pick([one for one in places if one.variable is variable])
 
     def read(self, type_: Type) -> str | None:
         """A place that has a value, ``None`` where there is none."""
         places = self.scope.places(type_, is_bare=self.risks())
         if type_ == CHAR and self.choices.chance(92):
             places = [one for one in places if not one.is_letter_of_text]
-        return self.written(self.choices.pick(places)) if places else None
+        return self.written(self._one_of(places)) if places else None
 
     def atom(self, type_: Type) -> str:
         """A variable or a constant."""
@@ -106,11 +113,13 @@ class Expressions(Functions):
         """An argument; for a parameter :OUT a variable nearly always."""
         choices = self.choices
         if isinstance(type_, Array):
-            return self.array(type_)
+            found = self.array(type_)
+            self.passes_arrays |= found.startswith("P")
+            return found
         if is_out and choices.chance(95):
-            found = self.target(type_)
-            if found is not None:
-                return found
+            place = self.target(type_)
+            if place is not None:
+                return place
         if is_out or type_ not in (INT, REAL):
             return self.expression(type_, 1)
         return self.expression(choices.weighted(((4, type_), (1, INT), (1, REAL))), 1)
@@ -147,11 +156,11 @@ class Expressions(Functions):
         if depth <= 0:
             return self.atom(type_)
         way = self.choices.below(100)
-        if 80 <= way < 90:
+        if 75 <= way < 84:
             found = self.scope.callable(type_, self.left() - 1)
             if found:
                 return self.call_of(self.choices.pick(found))
-        elif way >= 90:
+        elif way >= 84:
             value = self.function_value(type_, depth - 1)
             if value is not None:
                 return value
@@ -248,8 +257,8 @@ class Expressions(Functions):
         way = choices.below(10)
         if way >= 8:
             return self._of_constants(depth)
-        if way < 3:
-            return self._near(choices.pick((INT, INT, REAL)))
+        if way < 4:
+            return self._near(choices.pick((INT, REAL)))
         if way < 6:
             left, right = choices.pick(((INT, INT), (REAL, REAL), (INT, REAL), (CHAR, CHAR)))
         elif way < 7:
@@ -263,7 +272,7 @@ class Expressions(Functions):
         """A comparison of numbers that are equal or nearly so."""
         choices = self.choices
         left = self.atom(type_)
-        others = (left, f"{left}+1", f"{left}-1", "0", "1", "2", f"{left}*1.0")
+        others = (left, left, left, f"{left}+1", f"{left}-1", "0", "1", "2", f"{left}*1.0")
         return f"{left} {choices.pick(_ORDERS)} {choices.pick(others)}"
 
     def _of_constants(self, depth: int) -> str:

@@ -181,7 +181,7 @@ _READABLE: Final[Mapping[Type, tuple[str, ...]]] = {
 _MAKERS: Final[Mapping[Type, tuple[tuple[int, _Maker], ...]]] = {
     INT: (
         (3, Functions._length),
-        (2, Functions._declared_length),
+        (4, Functions._declared_length),
         (3, Functions._add),
         (3, Functions._find),
         (5, _system("$TIMER[?]", "$OV_PRO", "$ADVANCE", "$ERR.NUMBER", "$APO.CPTP", "$DATE.YEAR")),
@@ -203,7 +203,7 @@ _MAKERS: Final[Mapping[Type, tuple[tuple[int, _Maker], ...]]] = {
         (2, Functions._clear),
         (8, Functions._parse),
         (8, _system("$IN[?]", "$OUT[?]", "$FLAG[?]", "$CYCFLAG[?]", "$TIMER_FLAG[?]")),
-        (2, Functions._asked),
+        (4, Functions._asked),
         (2, _system("$TIMER_STOP[?]", "$STOPNOAPROX", "$ON_PATH")),
     ),
     VAR_STATE: ((1, Functions._state),),

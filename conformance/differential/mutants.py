@@ -374,6 +374,14 @@ def _guard(_state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
     return here.after
 
 
+def _into_first_cell(state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
+    def operation() -> Operation:
+        state.cells[state.fp] = state.stack.pop()
+        return here.after
+
+    return operation
+
+
 def _indices_exchanged(op: Op) -> tuple[str, Change]:
     """With two indices and more the last two are exchanged."""
 
@@ -436,18 +444,6 @@ def _line_place_kept(rules: Rules, state: State) -> Rule:
         def operation() -> Operation | None:
             before[:] = [state.statement]
             return right()
-
-        return operation
-
-    return made
-
-
-def _case_keeps(_rules: Rules, state: State) -> Rule:
-    """The selector stays on the stack where it fits."""
-
-    def made(here: Here, constant: int, target: int) -> Operation:
-        def operation() -> Operation:
-            return here.body[target] if state.stack[-1] == constant else here.after
 
         return operation
 
@@ -621,7 +617,6 @@ _OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
     ],
     "CASE": [
         ("the constant is one more", _operands(lambda n, to: (n + 1, to), Op.CASE)),
-        ("keeps the selector", _case_keeps),
         ("always fits", _case_always),
         ("never fits", _taking(0, goes=False)),
     ],
@@ -660,10 +655,8 @@ _OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
             ),
         )
     ],
-    "DROP": [
-        ("keeps the value", _instead(_guard)),
-        ("drops one more", _behind(lambda stack: stack and stack.pop(), Op.DROP)),
-    ],
+    # That it drops nothing or too much would not be seen: nothing lies below, and all goes later.
+    "DROP": [("puts the value into the first cell", _instead(_into_first_cell))],
     "STORE_LOCAL": _stored_not(Op.STORE_LOCAL),
     "STORE_DATA": _stored_not(Op.STORE_DATA),
     "STORE": [*_stored_not(Op.STORE), ("stores another value", _before(_other_value, Op.STORE))],

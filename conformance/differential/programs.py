@@ -49,10 +49,14 @@ def seeded(seed: int, number: int, size: Size | None = None) -> Sample:
 
 
 def generate(choices: Choices, size: Size | None = None) -> Sample:
-    """A program that the checker finds no error in, and that ends."""
-    return _Programs(choices, size or Size()).sample()
+    """A program that the checker finds no error in, and that ends; most are small."""
+    return _Programs(choices, size or choices.weighted(_SIZES)).sample()
 
 
+_SIZES: Final = (
+    (7, Size(budget=250, others=60, statements=3, routines=2)),
+    (3, Size()),
+)
 _TABLES: Final[tuple[Type, ...]] = (
     Array(INT, (4,)),
     Array(INT, (2, 3)),
@@ -151,7 +155,7 @@ class _Programs:
         word = "GLOBAL " if is_public else ""
         for type_ in (*self._some(_PLAIN, 3), *self._some(_STRUCTURED, 1)):
             lines += self._datum(scope, type_, word)
-        tables = self._some(_TABLES, 1)
+        tables = self._some(_TABLES, 2)
         if is_public and not scope.arrays(CHAR, 1):
             tables.append(Array(CHAR, (12,)))
         for type_ in tables:
@@ -237,7 +241,8 @@ class _Programs:
         if self.choices.chance(10):
             code.channel()
         code.statements()
-        code.statements()
+        if self.size.routines > 1:
+            code.statements()
         return "\n".join([f"DEF {name}()", *head, *code.lines, "END", ""])
 
     def _routine(
@@ -253,7 +258,7 @@ class _Programs:
         head = self._declare(code, parameters)
         if not choices.chance(4):
             self._begin(code)
-            code.statements(4)
+            code.statements(min(self.size.statements, 4))
         if is_for_interrupts and choices.chance(25):
             code.write("RESUME")
         if result is not None and not choices.chance(4):
@@ -261,7 +266,9 @@ class _Programs:
             code.returned()
         cost = code.spent + 2
         text = _written(name, parameters, result, [*head, *code.lines], is_global=is_global)
-        return text, Routine(name, tuple(parameters), result, cost, is_for_interrupts)
+        given = tuple(parameters)
+        needs = code.passes_arrays
+        return text, Routine(name, given, result, cost, is_for_interrupts, needs_arrays=needs)
 
     def _recursive(self, name: str, scope: Scope, *, is_library: bool) -> tuple[str, Routine]:
         """A routine that calls itself as often as its first parameter tells."""
@@ -292,7 +299,7 @@ class _Programs:
         choices = self.choices
         found = []
         for number in range(choices.below(2 if is_short else 4)):
-            if not is_short and choices.chance(30):
+            if not is_short and choices.chance(40):
                 found.append(Parameter(f"P{number}", choices.pick(_OPEN), is_out=True))
             else:
                 type_ = choices.pick((*_PLAIN, POINT, POSES[0], POSES[3], AXIS_TYPES[2]))
@@ -353,6 +360,7 @@ class _Programs:
 
 _OPEN: Final[tuple[Type, ...]] = (
     Array(INT, (None,)),
+    Array(CHAR, (None,)),
     Array(INT, (None, None)),
     Array(REAL, (None,)),
     Array(CHAR, (None,)),

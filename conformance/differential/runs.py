@@ -141,6 +141,7 @@ class _Driver:
         #: For each action that runs: the depth it was entered at, and the one RESUME goes back to.
         self.inside: list[tuple[int, int]] = []
         self.entered = 0
+        self.is_over = False
 
     def run(self) -> None:
         """Run to the end, or until there were too many requests."""
@@ -152,14 +153,24 @@ class _Driver:
             if isinstance(request, Fail | Crash):
                 return
             if isinstance(request, End):
-                if not self.inside:
+                if self.inside:
+                    self.inside.pop()
+                elif not self._is_entered_late(request):
                     return
-                self.inside.pop()
-            elif isinstance(request, Resume) and self.inside:
+            elif isinstance(request, Resume) and self.inside and not self.is_over:
                 self._unwind()
             elif not self._interferes(request):
                 self.known.note(request)
                 reply = self.world.reply(request)
+
+    def _is_entered_late(self, end: End) -> bool:
+        """Whether an action comes after the program's end, while the arm would still move."""
+        actions = [one.action for one in self.known.interrupts.values()] + self.known.actions
+        if self.is_over or not actions or self.world.below(3):
+            return False
+        self.is_over = True
+        self._enter(actions[self.world.below(len(actions))], end.at.depth, end.at.depth)
+        return True
 
     def _unwind(self) -> None:
         depth = self.inside[-1][1]

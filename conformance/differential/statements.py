@@ -73,6 +73,8 @@ class Statements(Motions):
                 return self.read(CHAR) or self.expression(INT, 1)
             return self.expression(INT, depth)
         if type_ == REAL and choices.chance(25):
+            if choices.chance(20):  # more than a REAL can hold
+                return f"{self._operand(INT, 1)} B_OR 16777217"
             return self.expression(INT, depth)
         if type_ == CHAR and self.risks():
             return '""'  # the checker lets it stand for a letter
@@ -109,7 +111,7 @@ class Statements(Motions):
     def branch(self) -> bool:
         """IF."""
         self.spend()
-        self.write(f"IF {self.truth()} THEN")
+        self.write(f"IF {self.truth(self.choices.between(1, 2))} THEN")
         with self.block():
             self.statements(3)
         if self.choices.chance(50):

@@ -176,7 +176,10 @@ class WorldStatements(Expressions):
         for _ in range(self.choices.between(0, 3)):
             type_, formats = self.choices.pick(_FORMATS)
             pattern += self.choices.pick(("", " ", "x=", "%%")) + self.choices.pick(formats)
-            values += f", {self.text() if type_ == TEXT else self.expression(type_, 1)}"
+            if type_ == COLOUR:  # nothing would tell which enumeration a constant is of
+                values += f", {self.read(COLOUR) or 'TRUE'}"
+            else:
+                values += f", {self.text() if type_ == TEXT else self.expression(type_, 1)}"
         self.spend(2)
         self.write(f"{offset}={self.choices.pick(('0', '0', '1', '3', '99'))}")
         self.write(f'SWRITE({text}, {state}, {offset}, "{pattern}"{values})')
@@ -219,7 +222,7 @@ class WorldStatements(Expressions):
             value = constant(choices, kind)
         else:
             family = POSES if kind in POSES else AXIS_TYPES
-            other = self.read(choices.pick(family)) if choices.chance(20) else None
+            other = self.read(choices.pick(family)) if choices.chance(40) else None
             value = other or self.expression(kind, 2)
         self.write(f"{found}={value}")
         return True

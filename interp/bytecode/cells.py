@@ -13,6 +13,7 @@ import struct
 from bisect import bisect_right
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 from grammar.types import (
     BOOL,
@@ -267,13 +268,25 @@ def value_at(cells: Sequence[Raw | None], address: int, type_: Type) -> Value | 
             ]
             return StructureValue(shown(type_), members)  # type: ignore[arg-type]  # a structure
         case Array(element=element):
-            width = size(element)
-            places = range(address, address + size(type_), width)
-            found = [value_at(cells, place, element) for place in places]
+            found = _elements_at(cells, address, type_, element)
             return ArrayValue(shown(type_), found)  # type: ignore[arg-type]  # an array
     raw = cells[address]
     assert isinstance(type_, Plain), "what has a size is made of scalars"
     return None if raw is None else value_of(raw, type_)
+
+
+def _elements_at(
+    cells: Sequence[Raw | None], address: int, type_: Array, element: Type
+) -> list[Any]:
+    """The elements of an array; those of numbers and letters quickly, as texts are frequent."""
+    count = size(type_)
+    if element == CHAR:
+        letters: Any = cells[address : address + count]
+        return [None if raw is None else chr(raw) for raw in letters]
+    if isinstance(element, Scalar):
+        return list(cells[address : address + count])
+    places = range(address, address + count, size(element))
+    return [value_at(cells, place, element) for place in places]
 
 
 def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
@@ -283,6 +296,11 @@ def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
     """
     if value is None:
         return [None] * size(type_)
+    if isinstance(value, str) and isinstance(type_, Array) and type_.element == CHAR:
+        length = size(type_)
+        if len(type_.sizes) == 1:  # else it cannot be
+            given: list[Raw | None] = [ord(letter) for letter in value[:length]]
+            return given + [None] * (length - len(given))
     return _flattened(converted(value, shown(type_)), type_)
 
 

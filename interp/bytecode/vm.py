@@ -174,6 +174,7 @@ class Machine:
         height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
         operation: Operation | None = self._threads.entries[number]
         self._push_frame(number, serial, lambda: None)
+        self._services.counter.guard = Guard.OFF  # it holds for a statement, and this is none
         state.reader = read
         state.most_calls += 1
         self._services.entered += 1

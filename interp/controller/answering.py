@@ -12,11 +12,13 @@ from typing import Any
 
 from interp.controller.clock import microseconds
 from interp.controller.entering import Entering
+from interp.controller.interrupts import module_name
 from interp.controller.messages import own_fault
 from interp.controller.routines import Routines
 from interp.controller.tasks import Blocked, Task
 from interp.controller.world import Setup
 from interp.faults import Fault, fault
+from interp.rendering import to_json
 from interp.requests import (
     BrakeArm,
     Confirm,
@@ -100,8 +102,6 @@ class Answering(Entering):
 
     def _read(self, task: Task, request: Read) -> Any:
         path = request.path
-        if path[0] == "$OUT_C":
-            path = ("$OUT", *path[1:])
         if self.variables.stops(str(path[0]), is_write=False):
             return self.when_reached(task, request, lambda: self.variables.read(path))
         return self.variables.read(path)
@@ -135,8 +135,7 @@ class Answering(Entering):
         if delay <= 0:  # an earlier switch would need the future (unconfirmed)
             self.put(request.path, value)
             return
-        path, at, name = request.path, request.at, task.name
-        self.agenda.add(self.clock.now + delay, lambda: self.put_at(name, at, path, value))
+        self.later(self.clock.now + delay, lambda: self.put(request.path, value))
 
     def _note_error(self, task: Task, request: Write) -> None:
         """ON_ERROR_PROCEED tells what it took: its number and place [TYP-13, FCT-07]."""
@@ -148,12 +147,14 @@ class Answering(Entering):
             return
         error.set("INT_PRIO", task.level.priority if task.level else 0)
         error.set("LINE_NR", request.at.line)
-        for name, text in (("MODULE", _module(request.at.file)), ("UP_NAME", task.routine)):
+        for name, text in (("MODULE", module_name(request.at.file)), ("UP_NAME", task.routine)):
             part: Any = error.get(name)
             set_text(part, text.upper())
         self.variables.put(("$ERR",), error)
         self.variables.put(("$ERR", "INTERPRETER"), self.routines.interpreter(task))
         self.variables.put(("$ERR", "INT_TYPE"), self.routines.level_type(task))
+        if task.level is not None and task.level.call is not None:  # [TRG-12]
+            self.variables.put(("$ERR", "TRIGGER_TYPE"), self.routines.trigger_type())
 
     def _invoke(self, task: Task, request: Invoke) -> Any:
         return self.routines.call(task, request)
@@ -168,7 +169,7 @@ class Answering(Entering):
         def begin() -> Any:
             if request.seconds <= 0:  # [CTL-12]
                 return None
-            self.trace.tell(task.name, "wait", request.at, seconds=request.seconds)
+            self.trace.tell(task.name, "wait", request.at, seconds=to_json(request.seconds))
             end = self.clock.tick_after(microseconds(request.seconds))
             return self.wait_until(request, end, lambda: None)
 
@@ -222,7 +223,7 @@ class Answering(Entering):
 
     def _confirm(self, _task: Task, request: Confirm) -> None:
         """CONFIRM acknowledges a message; 0 all of them (unconfirmed)."""
-        self.board.acknowledge(request.number or None)
+        self.press("CONFIRM", request.number or None)
 
     # --------------------------------------------------------------------------- motions
 
@@ -261,11 +262,6 @@ class Answering(Entering):
 
     def _switch_signal(self, task: Task, request: SwitchSignal) -> Any:
         return self.when_reached(task, request, lambda: self.switch_signal(task, request))
-
-
-def _module(file: str) -> str:
-    """The name of a module by its file."""
-    return file.replace("\\", "/").rpartition("/")[2].partition(".")[0]
 
 
 _Answer = Callable[[Answering, Task, Any], Any]

@@ -10,14 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final, Literal
 
 from interp.controller.answering import Answering
-from interp.controller.interrupts import Interrupts
+from interp.controller.interrupts import Interrupts, interrupt_list
 from interp.controller.profile import Profile
 from interp.controller.script import Script
 from interp.controller.tasks import Blocked, Task
 from interp.controller.trace import TaskSink, Trace
+from interp.controller.variables import Computed
 from interp.controller.world import Setup
 from interp.executor import Executor
 from interp.faults import BudgetExhausted, RuntimeFailure
@@ -82,7 +84,7 @@ class Controller(Answering):
         setup = Setup(profile, script, trace, machine, values or {}, following)
         super().__init__(core(self.switch), setup)
         self._stop = script.stop
-        self.variables.put(("$ADVANCE",), profile.advance)
+        self._was_put(("$OV_PRO",), self.variables.read(("$OV_PRO",)))
         self.robot = self._task("robot", executor, sink)
         self._tasks = [self.robot]
         if submit is not None:
@@ -99,6 +101,8 @@ class Controller(Answering):
         interrupts = Interrupts(most["interrupts"], most["active_interrupts"])
         if sink is not None:
             sink.left = interrupts.forget
+        listed = "$RINT_LIST" if name == "robot" else "$SINT_LIST"
+        self.variables.connect([listed], Computed(partial(interrupt_list, interrupts)))
         return Task(name, executor, sink, interrupts)
 
     # ------------------------------------------------------------------------------ the run
@@ -192,7 +196,7 @@ class Controller(Answering):
             if task.is_over:
                 continue
             needs_ticks = needs_ticks or bool(task.signals) or task.interrupts.is_watched
-            if task.blocked is not None:
+            if task.blocked is not None and not self._is_held(task):
                 times.append(task.blocked.wake)
         if needs_ticks or self._waits is not None:
             times.append(self.clock.next_tick)
@@ -265,7 +269,8 @@ class Controller(Answering):
         """A fault that nothing took: its message, and the arm stops on its path."""
         task.is_over = True
         error = request.fault
-        slug, number = getattr(error, "slug", None), getattr(error, "number", None)
+        slug = getattr(error, "slug", "budget" if isinstance(error, BudgetExhausted) else "link")
+        number = getattr(error, "number", None)
         if number is not None:
             kind = "state" if task is self.robot else "notification"
             self.say(task.name, request.at, number, str(error), kind)
@@ -311,7 +316,7 @@ class Controller(Answering):
 
     def _halt_arm(self, *, is_hard: bool = False) -> None:
         self.has_stopped = False
-        if self.core.pending() and not self._is_braked():
+        if self.moves and not self._has_halted_arm:
             self._has_halted_arm = True
             self.core.brake(self.clock.now, is_hard=is_hard)
 
@@ -319,9 +324,6 @@ class Controller(Answering):
         if self._has_halted_arm and not self._is_stopped and not self.board.waiting:
             self._has_halted_arm = False
             self.core.proceed(self.clock.now)
-
-    def _is_braked(self) -> bool:
-        return self._has_halted_arm or any(level.has_braked for level in self.robot.levels)
 
     # ------------------------------------------------------------------ STOP WHEN PATH [SPL-06]
 

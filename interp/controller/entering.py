@@ -56,7 +56,7 @@ class Entering(Moving):
         task.blocked, task.reply = None, None
 
     def _level(self, task: Task, kind: LevelKind, priority: int, at: Any, **more: Any) -> Level:
-        base: Value = self.variables.read(("$BASE",))
+        base: Value | None = self.variables.read(("$BASE",)) if kind == "interrupt" else None
         return Level(kind, priority, at, task.executor.depth, task.blocked, base, **more)
 
     def leave(self, task: Task) -> Any:
@@ -92,7 +92,10 @@ class Entering(Moving):
 
     def _pop(self, task: Task) -> None:
         level = task.levels.pop()
-        if level.kind == "interrupt" and level.base is not None:  # [INT-13]
+        if task.levels and level.has_moved:  # where that one has braked, it has to go back
+            task.levels[-1].has_moved = True
+            task.levels[-1].motions |= level.motions
+        if level.base is not None:  # [INT-13]
             self.variables.put(("$BASE",), level.base)
         if level.kind != "cycle" and level.priority != ALWAYS:
             self.trace.tell(task.name, "interrupt_leave", level.at, priority=level.priority)
@@ -118,7 +121,8 @@ class Entering(Moving):
         if not task.interrupts.is_watched:
             return
         running = sum(level.interrupt is not None for level in task.levels)
-        if task.interrupts.watch(lambda code: self.holds(task, code), running):
+        come = task.interrupts.watch(lambda code: self.holds(task, code), running)
+        if come and task.name == "robot":
             self.positions.keep("INT")
 
     def dispatch(self, task: Task) -> None:
@@ -173,8 +177,7 @@ class Entering(Moving):
         if level is None or level.kind != "interrupt" or task.name == "submit":
             raise own_fault("brake_place")
         self.trace.tell(task.name, "brake", request.at, mode=request.mode)
-        moves = self.core.pending() > 0 and not any(one.has_braked for one in task.levels)
-        if level.motions or moves:
+        if self.moves:
             level.has_braked = True
             self.has_stopped = False
             self.core.brake(self.clock.now, is_hard=request.mode is not None)
@@ -221,7 +224,7 @@ class Entering(Moving):
         task.triggers.clear()
         if task.name == "submit":
             return None
-        is_moving = self.core.next_time() is not None and self.core.pending() > 0
+        is_moving = self.moves
         self.has_stopped = False
         self.core.discard(self.clock.now)
         self.fired.clear()

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final, Literal
 
+from grammar.predefined import System
+from grammar.types import Array, Structure
 from interp.controller.messages import own_fault
 from interp.requests import At, Code, DeclareInterrupt
+from interp.values import ArrayValue, StructureValue, set_text, zero
 
-__all__ = ["Interrupt", "Interrupts", "is_usable"]
+__all__ = ["Interrupt", "Interrupts", "interrupt_list", "is_usable", "module_name"]
 
 #: Numbers that programs may use; 3 is the system's own, in files that come with a controller
 #: [INT-02]. For those of triggers see TRG-06.
@@ -49,8 +53,17 @@ class Interrupt:
         return self.at.depth
 
 
+#: Elements of the list of interrupts.
+_LISTED: Final = 64
+#: INT_STATE in the list of interrupts; the codes are ours (unconfirmed).
+_STATES: Final = {"off": 0, "on": 1, "held": 2}
+
+
 class Interrupts:
-    """The declarations of a program, by number: at most ``most``, ``active`` of them at work."""
+    """The declarations of a program: at most ``most``, ``active`` of them at work.
+
+    They come in the order of their numbers, the highest priority first.
+    """
 
     def __init__(self, most: int, active: int) -> None:
         self._most = most
@@ -58,7 +71,7 @@ class Interrupts:
         self._by_number: dict[int, Interrupt] = {}
 
     def __iter__(self) -> Iterator[Interrupt]:
-        return iter(sorted(self._by_number.values(), key=lambda one: one.number))
+        return iter(self._by_number.values())
 
     @property
     def is_watched(self) -> bool:
@@ -74,6 +87,7 @@ class Interrupts:
         self._by_number[request.number] = Interrupt(
             request.number, request.at, request.is_global, request.condition, request.action
         )
+        self._by_number = dict(sorted(self._by_number.items()))
 
     def switch(self, action: str, number: int | None, holds: Callable[[Code], bool]) -> None:
         """ON, OFF, ENABLE or DISABLE; ``holds`` gives a condition as it is now."""
@@ -81,6 +95,8 @@ class Interrupts:
             chosen = list(self)
         elif number in self._by_number:
             chosen = [self._by_number[number]]
+        elif action in ("OFF", "DISABLE"):  # there is nothing to switch off (unconfirmed)
+            return
         else:
             raise own_fault("interrupt_unknown")
         for one in chosen:
@@ -128,3 +144,29 @@ class Interrupts:
     def next(self) -> Interrupt | None:
         """The one with the highest priority that has come and may run [INT-05]."""
         return next((one for one in self if one.has_come and one.state == "on"), None)
+
+
+def interrupt_list(interrupts: Interrupts) -> ArrayValue:
+    """$RINT_LIST and $SINT_LIST: what is declared, in the order of numbers [INT-17].
+
+    Entries without an interrupt have the number 0; INT_TYPE is 0 (unconfirmed).
+    """
+    entry = System.load().types["INT_INFO"]
+    assert isinstance(entry, Structure)
+    found = zero(Array(entry, (_LISTED,)))
+    assert isinstance(found, ArrayValue)
+    for place, one in enumerate(islice(interrupts, _LISTED), start=1):
+        info = found.get(place)
+        assert isinstance(info, StructureValue)
+        info.set("INT_PRIO", one.number)
+        info.set("INT_STATE", _STATES[one.state])
+        info.set("PROG_LINE", one.at.line)
+        name = info.get("PROG_NAME")
+        assert isinstance(name, ArrayValue)
+        set_text(name, module_name(one.at.file))
+    return found
+
+
+def module_name(file: str) -> str:
+    """The name of a module by its file, in upper case."""
+    return file.replace("\\", "/").rpartition("/")[2].partition(".")[0].upper()

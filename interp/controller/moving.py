@@ -20,7 +20,7 @@ from interp.controller.world import Setup, World
 from interp.faults import Fault
 from interp.rendering import to_json
 from interp.requests import At, Code, Move, MoveSpline, Path, SetTrigger, Value
-from interp.robot.arm import Place, Position
+from interp.robot.arm import Motion, Place, Position
 from interp.robot.commands import (
     CallCommand,
     CoreEvent,
@@ -30,11 +30,16 @@ from interp.robot.commands import (
 )
 from interp.robot.core import ControlCore
 from interp.robot.frames import Pose
+from interp.values import EnumValue
 
 __all__ = ["Call", "Moving", "PlannedPoint"]
 
 #: What triggers that call a routine may have as PRIO [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
+#: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].
+_FARTHEST: Final = 10_000_000
+_PATHS: Final = frozenset({"LIN", "CIRC", "SLIN", "SCIRC"})
+_STATUS_BITS: Final = 7
 _KINDS: Final = {
     "started": "motion_start",
     "ended": "motion_end",
@@ -120,6 +125,9 @@ class Moving(World):
         if isinstance(request, MoveSpline):
             if task.levels:
                 raise own_fault("spline_place")
+            for item in request.items:
+                if isinstance(item, SetTrigger):
+                    self._check_trigger(item)
             built = self.builder.block(request, triggers)
         else:
             built = self.builder.build(request, triggers)
@@ -189,19 +197,27 @@ class Moving(World):
         """A trigger for the next motion. Raises `Fault`."""
         if task.levels or task.name == "submit":
             raise message_fault(1409)
-        if request.priority not in (None, -1) and request.priority not in _PRIORITIES:
-            raise own_fault("trigger_priority")
+        self._check_trigger(request)
         waiting = len(task.triggers) + len(self._outputs) + len(self._calls)
         if waiting >= self.profile.most["triggers"]:
             raise message_fault(1524)
         task.triggers.append(request)
 
+    @staticmethod
+    def _check_trigger(request: SetTrigger) -> None:
+        """Its priority, and that it lies within 10,000,000 ms and mm [TRG-03 to TRG-06]."""
+        if request.priority not in (None, -1) and request.priority not in _PRIORITIES:
+            raise own_fault("trigger_priority")
+        if max(abs(request.place), abs(request.delay)) > _FARTHEST:
+            raise own_fault("trigger_range")
+
     def output_in_main_run(self, task: Task, at: At, path: Path, value: Value) -> None:
         """$OUT_C: written when the motion planned last ends or is at its apex [ADV-11]."""
         plain: Path = ("$OUT", *path[1:])
-        number = max((number for number, way in self._ways.items() if way.task is task), default=0)
-        if number and self.own_pending(task):
-            self.variables.read(plain)
+        own = self._ways if task.level is None else task.level.motions
+        number = max(own, default=0)
+        if number and task.name == "robot":
+            self.variables.read(plain)  # whether there is such an output
             self._at_end[number].append((task, at, plain, value))
         else:
             self.put_at(task.name, at, plain, value)
@@ -215,6 +231,11 @@ class Moving(World):
         if task.name == "submit":
             return 0
         return self.core.pending() if task.level is None else len(task.level.motions)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the arm is on its way, and not standing behind a brake."""
+        return self.core.arm.next_event() is not None
 
     def hold_up(self) -> None:
         """The advance run has been stopped behind the motions that are planned."""
@@ -297,10 +318,26 @@ class Moving(World):
         self._gone(motion.number, task, keeps=True)
         for owner, at, path, value in self._at_end.pop(motion.number, ()):
             self.put_at(owner.name, at, path, value)
+        if self._is_other_way(motion):
+            self.say_number(motion.at, 2936)
         if event.arm is not None and event.arm.is_exact_unwanted:
             number = 1442 if way.is_held_up else 1123  # [ADV-12]
             stops = self.variables.read(("$STOPNOAPROX",)) is True
             self.say_number(motion.at, number, "acknowledgement" if stops else "notification")
+
+    def _is_other_way(self, motion: Motion) -> bool:
+        """Whether a path motion has ended with another Status or Turn than programmed [POS-10].
+
+        Bits 3 and 4 of the Status mean nothing [POS-06].
+        """
+        checks = self.variables.read(("$CP_STATMON",))
+        if not isinstance(checks, EnumValue) or motion.kind not in _PATHS or self.machine is None:
+            return False
+        status, turn = self.positions.status_turn(self.where()[0])
+        is_other = "S" in motion.target and (int(motion.target["S"]) ^ status) & _STATUS_BITS != 0
+        has_turned = "T" in motion.target and int(motion.target["T"]) != turn
+        word = checks.name.upper()
+        return (word != "NONE" and is_other) or (word == "CHECK_TS" and has_turned)
 
     def _gone(self, number: int, task: Task, *, keeps: bool = False) -> None:
         del self._ways[number]

@@ -98,11 +98,15 @@ class Positions:
     def shown(self, where: Where) -> StructureValue:
         """A position as $POS_ACT shows it: the point of the tool in the base, Status and Turn."""
         axes, flange = where
-        status = 0
-        if self._kinematics is not None:
-            status = int(self._kinematics.status(axes[:ROBOT_AXES]))
+        status, turn = self.status_turn(axes)
         point = self._placement().point(flange)
-        return pose_value(point, status, turn_of(axes[:ROBOT_AXES]), axes[ROBOT_AXES:])
+        return pose_value(point, status, turn, axes[ROBOT_AXES:])
+
+    def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
+        """Status and Turn of axes; a Status of 0 where there is no machine data."""
+        robot = axes[:ROBOT_AXES]
+        status = 0 if self._kinematics is None else int(self._kinematics.status(robot))
+        return status, turn_of(robot)
 
     def flange(self, axes: Sequence[float]) -> Pose:
         """The flange in front of the robot's foot for axes in degrees."""

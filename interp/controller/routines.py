@@ -28,6 +28,7 @@ from interp.values import (
     converted,
     copied,
     known,
+    single,
     text_of,
 )
 
@@ -211,6 +212,10 @@ class Routines:
         """Whether a program runs or an interrupt, for $ERR."""
         return _word("INT_TYP_E", "I_INTERRUPT" if task.levels else "I_NORMAL")
 
+    def trigger_type(self) -> EnumValue:
+        """How a trigger has fired, for $ERR; none is ever replayed."""
+        return _word("TRIGGER_UP_TYPE", "TRG_REGULAR")
+
     # ------------------------------------------------------------------------------ the robot
 
     def _stop_robot(self, task: Task, request: Invoke) -> Any:
@@ -286,7 +291,8 @@ class Routines:
 
     def _fine(self, _task: Task, request: Invoke) -> Any:
         """GETSYSSTATE: known, and 0: nothing is the matter (unconfirmed)."""
-        return True, (request.arguments[0], 0, 0.0)
+        # A number of its own: executors see by identity whether an argument was changed.
+        return True, (request.arguments[0], 0, single(0.0))
 
     def _zero(self, _task: Task, request: Invoke) -> Any:
         """SYNC: there is nobody to synchronise with."""

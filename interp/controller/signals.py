@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from interp.controller.clock import Agenda, Appointment, Clock
+from interp.controller.clock import Appointment, Clock
 from interp.controller.profile import Profile
 from interp.faults import fault
 from interp.requests import Path, Value
@@ -25,12 +25,16 @@ _LONGEST: Final = 3.0
 
 #: Told of a change: the array, the index, the new value.
 Changed = Callable[[str, int, Value], None]
+Later = Callable[[int, Callable[[], None]], Appointment]
 
 
 class Signals:
-    """All of them by the names of their arrays; ``changed`` is told of every change."""
+    """All of them by the names of their arrays.
 
-    def __init__(self, profile: Profile, clock: Clock, agenda: Agenda, changed: Changed) -> None:
+    ``later`` does something at a time, in µs; ``changed`` is told of every change.
+    """
+
+    def __init__(self, profile: Profile, clock: Clock, later: Later, changed: Changed) -> None:
         sizes = profile.sizes
         self._digital = {
             "$IN": [False] * (sizes["inputs"] + 1),
@@ -43,7 +47,7 @@ class Signals:
         if sizes["inputs"] >= ALWAYS_TRUE:
             self._digital["$IN"][ALWAYS_TRUE] = True
         self._clock = clock
-        self._agenda = agenda
+        self._later = later
         self._changed = changed
         self._pulses: dict[int, tuple[bool, Appointment]] = {}
 
@@ -94,7 +98,7 @@ class Signals:
             del self._pulses[number]
             self.put(("$OUT", number), not level)
 
-        self._pulses[number] = level, self._agenda.add(end, over)
+        self._pulses[number] = level, self._later(end, over)
 
     def _end_pulse(self, number: int) -> None:
         running = self._pulses.pop(number, None)

@@ -83,6 +83,7 @@ class Variables:
         }
         self._twice = frozenset(self._twins.values())
         self._snapshot: Snapshot | None = None
+        self._values["$ADVANCE"] = profile.advance
         for name, data in profile.values.items():
             self._values[name] = self._initial(name, data)
         for name, value in (given or {}).items():

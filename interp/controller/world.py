@@ -12,7 +12,7 @@ from typing import Final
 from grammar.predefined import System
 from grammar.types import Enumeration, Structure
 from interp.controller.channels import COMMANDS, Channels
-from interp.controller.clock import Agenda, Clock
+from interp.controller.clock import Agenda, Appointment, Clock
 from interp.controller.messages import Board
 from interp.controller.motions import placement_of
 from interp.controller.playing import Player
@@ -24,6 +24,7 @@ from interp.controller.timers import Timers, date_members
 from interp.controller.trace import Task as TaskName
 from interp.controller.trace import Trace
 from interp.controller.variables import Computed, Variables
+from interp.rendering import to_json
 from interp.requests import At, Path, Value
 from interp.robot.core import ControlCore
 from interp.robot.following import Following
@@ -66,7 +67,7 @@ class World:
         self.agenda = Agenda()
         self.board = Board()
         self.variables = Variables(profile, setup.values)
-        self.signals = Signals(profile, self.clock, self.agenda, self._signal_changed)
+        self.signals = Signals(profile, self.clock, self.later, self._signal_changed)
         self.timers = Timers(self.clock, profile.sizes["timers"])
         self.following = setup.following
         #: Whose doing it is what changes now.
@@ -87,6 +88,7 @@ class World:
         """Have the variables answered that are more than a value."""
         variables = self.variables
         variables.connect(["$IN", "$OUT", "$ANIN", "$ANOUT"], self.signals)
+        variables.connect(["$OUT_C"], _Outputs(self.signals))
         variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
         computed: Mapping[str, Callable[[], Value]] = {
             "$DATE": self._date,
@@ -167,7 +169,7 @@ class World:
     def _signal_changed(self, name: str, place: int, value: Value) -> None:
         task, at = self.acting
         kind = _SIGNAL_KINDS[name]
-        self.trace.tell(task, kind, at, signal=name, number=place, value=value)
+        self.trace.tell(task, kind, at, signal=name, number=place, value=to_json(value))
         self.player.changed(name)
 
     def put(self, path: Path, value: Value) -> None:
@@ -190,6 +192,17 @@ class World:
             self.core.override(self.clock.now, float(value))
         if path[0] not in _SIGNAL_KINDS:
             self.player.changed(str(path[0]))
+
+    def later(self, time: int, action: Callable[[], None]) -> Appointment:
+        """Have something done at a time, on behalf of the line that acts now."""
+        owner = self.acting
+
+        def act() -> None:
+            before, self.acting = self.acting, owner
+            action()
+            self.acting = before
+
+        return self.agenda.add(time, act)
 
     def put_at(self, task: TaskName, at: At | None, path: Path, value: Value) -> None:
         """Write a system variable on behalf of a line that has asked for it earlier."""
@@ -232,6 +245,21 @@ class World:
 
     def _sent(self, channel: str, text: str) -> None:
         self.player.received(channel, text)
+
+
+@dataclass(frozen=True, slots=True)
+class _Outputs:
+    """$OUT_C is read as $OUT; when it is written is the main run's affair [ADV-11]."""
+
+    signals: Signals
+
+    def read(self, path: Path) -> Value:
+        """What the output has."""
+        return self.signals.read(("$OUT", *path[1:]))
+
+    def write(self, path: Path, value: Value) -> None:
+        """The output itself."""
+        self.signals.write(("$OUT", *path[1:]), value)
 
 
 def _empty_structure(name: str) -> StructureValue:

@@ -154,7 +154,7 @@ int krl_compose(krl_cell *target, const krl_cell *left, const krl_cell *right, i
     return KRL_FINE;
 }
 
-int krl_invert(krl_cell *target, const krl_cell *pose)
+int krl_invert(krl_cell *target, const krl_cell *pose, int32_t size)
 {
     double one[6], m[9], place[3];
     float result[6];
@@ -168,5 +168,6 @@ int krl_invert(krl_cell *target, const krl_cell *pose)
             return KRL_FAULT_OVERFLOW;
     angles(back, result + 3);
     write_pose(target, result);
+    memset(target + 6, 0, (size_t)(size - 6) * sizeof *target);
     return KRL_FINE;
 }

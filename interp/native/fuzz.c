@@ -143,8 +143,8 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
 {
     int is_begun = 0, open = machine->open;
     for (int i = 0; i < STOPS; i++) {
-        if (!krl_reserve(machine))
-            return;
+        if (!krl_ready(machine))
+            abort();
         struct krl_stopped stopped = krl_run(machine, step, is_begun);
         is_begun = 0;
         stops++;
@@ -246,9 +246,14 @@ static int try_image(const uint8_t *data, size_t length)
     if (!krl_load(&machine, image, length, draw(2) != 0, &why))
         return 0;
     accepted++;
-    machine.most_calls = DEPTH;
-    for (int32_t code = 0; code < machine.program.code_count && krl_reserve(&machine); code++) {
+    if (!krl_settle(&machine, DEPTH, NULL))
+        abort();
+    for (int32_t code = 0; code < machine.program.code_count; code++) {
         int statements = STATEMENTS;
+        machine.fp = machine.first;
+        machine.open = 0;
+        if (!krl_ready(&machine))
+            abort();
         krl_begin(&machine, code);
         machine.left = PER_SLICE;
         runs++;

@@ -9,6 +9,7 @@ int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, i
     memset(machine, 0, sizeof *machine);
     machine->is_told = is_told;
     machine->left = 1;
+    machine->checksum = krl_checksum(image, length);
     if (!krl_read_image(&machine->program, image, length, why))
         return 0;
     if (!krl_verify(&machine->program, why) || !krl_translate(machine, why)) {
@@ -28,52 +29,80 @@ void krl_unload(struct krl_machine *machine)
 {
     free(machine->steps);
     free(machine->arrays);
-    free(machine->cells);
     free(machine->calls);
+    if (machine->memory != NULL && --machine->memory->users == 0) {
+        free(machine->memory->cells);
+        free(machine->memory);
+    }
     krl_free_program(&machine->program);
     memset(machine, 0, sizeof *machine);
 }
 
 /* Frames begin within the one before, behind its variables: together they have no more cells than
  * KRL_MAX_CELLS and all their places on the stack, nor than so many of the largest. */
-int krl_reserve(struct krl_machine *machine)
+static int64_t frames_need(const struct krl_machine *machine, int64_t frames)
 {
-    int64_t frames = (machine->most_calls > machine->open ? machine->most_calls : machine->open) + 2;
     int64_t sparse = KRL_MAX_CELLS + frames * machine->most_stack;
     int64_t dense = frames * machine->most_whole;
-    int64_t cells = machine->program.data_cells + (dense < sparse ? dense : sparse) + 1;
-    if (frames > KRL_MOST_CALLS + 2 || cells > INT32_MAX / (int64_t)sizeof(krl_cell))
+    return (dense < sparse ? dense : sparse) + 1;
+}
+
+/* Makes the memory larger. Zeros that nobody has looked at cost nothing. */
+static int extend(struct krl_memory *memory, int64_t count)
+{
+    krl_cell *cells = count > INT32_MAX / (int64_t)sizeof *cells ? NULL : calloc((size_t)count, sizeof *cells);
+    if (cells == NULL)
         return 0;
-    if (frames > machine->call_capacity) {
-        struct krl_call *calls = realloc(machine->calls, (size_t)frames * sizeof *calls);
-        if (calls == NULL)
-            return 0;
-        machine->calls = calls;
-        machine->call_capacity = (int32_t)frames;
-    }
-    if (cells > machine->cell_count) {
-        /* Zeros that nobody has looked at cost no memory: what is there is copied, and no more. */
-        krl_cell *found = calloc((size_t)cells, sizeof *found);
-        if (found == NULL)
-            return 0;
-        if (machine->cells != NULL)
-            memcpy(found, machine->cells,
-                   (size_t)(machine->fp + machine->routines[machine->code].whole) * sizeof *found);
-        free(machine->cells);
-        machine->cells = found;
-        machine->cell_count = (int32_t)cells;
-    }
+    if (memory->cells != NULL)
+        memcpy(cells, memory->cells, (size_t)memory->count * sizeof *cells);
+    free(memory->cells);
+    memory->cells = cells;
+    memory->count = (int32_t)count;
     return 1;
+}
+
+static void fill_data(struct krl_machine *machine)
+{
+    const struct krl_program *program = &machine->program;
+    for (int32_t i = 0; i < program->initial_count; i++)
+        machine->memory->cells[program->initial[i].address] = program->initial[i].cell;
+}
+
+int krl_settle(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside)
+{
+    int64_t frames = (int64_t)most_calls + KRL_MOST_ENTERED + 2;
+    if (most_calls < 0 || most_calls > KRL_MOST_CALLS || (beside != NULL && beside->checksum != machine->checksum))
+        return 0;
+    machine->most_calls = most_calls;
+    machine->calls = calloc((size_t)frames, sizeof *machine->calls);
+    machine->memory = beside != NULL ? beside->memory : calloc(1, sizeof *machine->memory);
+    if (machine->calls == NULL || machine->memory == NULL)
+        return 0;
+    machine->memory->users++;
+    machine->call_capacity = (int32_t)frames;
+    machine->first = beside != NULL ? machine->memory->count : machine->program.data_cells;
+    if (!extend(machine->memory, machine->first + frames_need(machine, frames)))
+        return 0;
+    machine->end = machine->memory->count;
+    if (beside == NULL)
+        fill_data(machine);
+    return 1;
+}
+
+int krl_ready(struct krl_machine *machine)
+{
+    machine->cells = machine->memory->cells;
+    return machine->most_calls < machine->call_capacity && machine->open < machine->call_capacity &&
+           machine->fp >= machine->first &&
+           machine->fp + machine->routines[machine->code].whole <= machine->end;
 }
 
 void krl_begin(struct krl_machine *machine, int32_t code)
 {
-    const struct krl_program *program = &machine->program;
-    memset(machine->cells, 0, (size_t)(program->data_cells + machine->routines[code].whole) * sizeof(krl_cell));
-    for (int32_t i = 0; i < program->initial_count; i++)
-        machine->cells[program->initial[i].address] = program->initial[i].cell;
+    memset(machine->cells + machine->first, 0, (size_t)machine->routines[code].whole * sizeof(krl_cell));
     machine->code = code;
-    machine->fp = machine->extent = program->data_cells;
+    machine->fp = machine->first;
+    machine->extent = machine->program.data_cells;
     machine->statement = -1;
     machine->serial = machine->serials = 1;
     machine->open = 0;
@@ -85,7 +114,7 @@ int krl_open(struct krl_machine *machine, int32_t code)
 {
     const struct krl_routine *caller = &machine->routines[machine->code], *callee = &machine->routines[code];
     int32_t extent = machine->extent + caller->frame;
-    if (callee->frame > KRL_MAX_CELLS - extent || !krl_reserve(machine))
+    if (callee->frame > KRL_MAX_CELLS - extent || machine->open >= machine->call_capacity - 1)
         return 0;
     machine->calls[machine->open++] =
         (struct krl_call){-1,

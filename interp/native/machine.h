@@ -51,7 +51,15 @@ struct krl_call {
     int32_t top;    /* of a frame that Python has made: what it was before */
 };
 
-enum { KRL_MOST_CALLS = 1 << 20 };
+/* Cells: the data lists, then the frames of each machine that shares them, in a range of its own. */
+struct krl_memory {
+    krl_cell *cells;
+    int32_t count;
+    int32_t users;
+};
+
+/* Of so many calls there may be at most; and of actions entered at once. */
+enum { KRL_MOST_CALLS = 1 << 20, KRL_MOST_ENTERED = 64 };
 
 struct krl_machine {
     struct krl_program program;
@@ -63,8 +71,11 @@ struct krl_machine {
     int32_t most_whole; /* the most cells that any frame takes */
     int32_t most_stack;
 
-    krl_cell *cells;
-    int32_t cell_count;
+    struct krl_memory *memory;
+    krl_cell *cells; /* those of the memory, which may move between two runs */
+    int32_t first;   /* cell of the frames */
+    int32_t end;     /* behind the last */
+    uint32_t checksum;
     struct krl_call *calls;
     int32_t call_capacity;
 
@@ -105,14 +116,19 @@ int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, i
              struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 
-/* Makes room for all frames that can come. 0 where there is no memory. */
-int krl_reserve(struct krl_machine *machine);
+/* Gives a machine its memory, so much that nothing is allotted later: its own, with the data lists as
+ * the image has them, or the end of that of another machine of the same image, which stays where it
+ * is for those who look at it between two runs. 0 where there is none, or the images differ. */
+int krl_settle(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside);
 
-/* Begins with a code object: the first frame, with no value in any cell. */
+/* Looks where the memory is now. 0 where there are more calls than there is room for. */
+int krl_ready(struct krl_machine *machine);
+
+/* Begins with a code object: the first frame, with no value in any cell. It has to be ready. */
 void krl_begin(struct krl_machine *machine, int32_t code);
 
 /* Opens a call of a code object from outside, behind all that is in use; its variables have no
- * values. 0 where the frames have too many cells, or there is no memory. */
+ * values. 0 where the frames have too many cells. */
 int krl_open(struct krl_machine *machine, int32_t code);
 
 /* Forgets the frame that runs and goes back to the one before. */
@@ -138,9 +154,9 @@ enum krl_function { KRL_ABS, KRL_SQRT, KRL_SIN, KRL_COS, KRL_TAN, KRL_ACOS, KRL_
 enum krl_function krl_function_of(struct krl_text name, int32_t arguments);
 int krl_compute(enum krl_function function, float one, float other, float *result);
 
-/* `target` gets the pose left:right, whose cells are `size` many; they may be the same. */
+/* `target` gets the pose left:right, or the inverse, in `size` cells; they may be the same. */
 int krl_compose(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
-int krl_invert(krl_cell *target, const krl_cell *pose);
+int krl_invert(krl_cell *target, const krl_cell *pose, int32_t size);
 
 enum krl_text_function {
     KRL_STRLEN, KRL_STRDECLLEN, KRL_STRCLEAR, KRL_STRADD, KRL_STRCOPY, KRL_STRCOMP, KRL_STRFIND,

@@ -103,7 +103,9 @@ class _State(Core):
 
     base = 0  # where nothing lies on the stack that is not the frame's
 
-    def __init__(self, _image: bytes, _is_told: bool, _most_calls: int) -> None:
+    def __init__(
+        self, _image: bytes, _is_told: bool, _most_calls: int, _beside: Core | None
+    ) -> None:
         self.stack = _Stack(self)
         self.calls = _Calls(self)
         self.reader: Reader | None = None
@@ -218,12 +220,16 @@ class Machine(vm.Machine):
         limits: Limits | None = None,
         sink: Sink | None = None,
         random: Callable[[], float] | None = None,
+        *,
+        beside: vm.Machine | None = None,
     ) -> None:
         self._is_told = sink is not None
-        super().__init__(verified, routine, limits, sink, random)
+        super().__init__(verified, routine, limits, sink, random, beside=beside)
 
     def _made_state(self, program: Program, limits: Limits) -> State:
-        return cast("State", _State(write_image(program), self._is_told, limits.depth))
+        beside = cast("_State", self._together[0]._state) if self._together else None
+        image = write_image(program)
+        return cast("State", _State(image, self._is_told, limits.depth, beside))
 
     def _made_ready(self, program: Program) -> Threads:
         state = cast("_State", self._state)

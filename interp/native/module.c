@@ -14,6 +14,17 @@ struct core {
     struct krl_machine machine;
 };
 
+/* The type, for the one interpreter that this module is loaded into. */
+static PyTypeObject *core_type;
+
+static int is_ready(struct core *core)
+{
+    if (krl_ready(&core->machine))
+        return 1;
+    PyErr_SetString(PyExc_MemoryError, "there is no room for so many calls");
+    return 0;
+}
+
 static PyObject *refused(const struct krl_refusal *why)
 {
     PyErr_SetString(PyExc_ValueError, why->text);
@@ -22,15 +33,17 @@ static PyObject *refused(const struct krl_refusal *why)
 
 static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
 {
-    static char *names[] = {"image", "is_told", "most_calls", NULL};
+    static char *names[] = {"image", "is_told", "most_calls", "beside", NULL};
     const char *image;
     Py_ssize_t length;
     int is_told, most_calls;
+    PyObject *beside;
     struct krl_refusal why;
-    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#pi", names, &image, &length, &is_told, &most_calls))
+    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#piO", names, &image, &length, &is_told,
+                                     &most_calls, &beside))
         return NULL;
-    if (most_calls < 0 || most_calls > KRL_MOST_CALLS) {
-        PyErr_SetString(PyExc_ValueError, "so many calls cannot be open");
+    if (beside != Py_None && !PyObject_TypeCheck(beside, core_type)) {
+        PyErr_SetString(PyExc_TypeError, "beside is a machine or None");
         return NULL;
     }
     allocfunc allot = (allocfunc)PyType_GetSlot(type, Py_tp_alloc);
@@ -41,12 +54,13 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
         Py_DECREF(core);
         return refused(&why);
     }
-    core->machine.most_calls = most_calls;
-    if (!krl_reserve(&core->machine)) {
+    struct krl_machine *other = beside == Py_None ? NULL : &((struct core *)beside)->machine;
+    if (!krl_settle(&core->machine, most_calls, other)) {
         Py_DECREF(core);
-        return PyErr_NoMemory();
+        PyErr_SetString(PyExc_MemoryError, "there is no room for so many calls, or the images differ");
+        return NULL;
     }
-    krl_begin(&core->machine, 0);
+    core->machine.fp = core->machine.first;
     return (PyObject *)core;
 }
 
@@ -104,7 +118,7 @@ static Py_ssize_t place_of(struct core *core, PyObject *key)
     Py_ssize_t place = PyNumber_AsSsize_t(key, PyExc_IndexError);
     if (place == -1 && PyErr_Occurred())
         return -1;
-    if (place < 0 || place >= core->machine.cell_count) {
+    if (place < 0 || place >= core->machine.memory->count) {
         PyErr_SetString(PyExc_IndexError, "there is no such cell");
         return -1;
     }
@@ -121,7 +135,7 @@ static int range_of(struct core *core, PyObject *key, Py_ssize_t *start, Py_ssiz
         PyErr_SetString(PyExc_ValueError, "cells are taken one behind the other");
         return 0;
     }
-    *count = PySlice_AdjustIndices(core->machine.cell_count, start, &stop, step);
+    *count = PySlice_AdjustIndices(core->machine.memory->count, start, &stop, step);
     return 1;
 }
 
@@ -131,13 +145,13 @@ static PyObject *core_get(PyObject *self, PyObject *key)
     Py_ssize_t start, count;
     if (!PySlice_Check(key)) {
         start = place_of(core, key);
-        return start < 0 ? NULL : object_of(core->machine.cells[start]);
+        return start < 0 ? NULL : object_of(core->machine.memory->cells[start]);
     }
     if (!range_of(core, key, &start, &count))
         return NULL;
     PyObject *found = PyList_New(count);
     for (Py_ssize_t i = 0; found != NULL && i < count; i++) {
-        PyObject *object = object_of(core->machine.cells[start + i]);
+        PyObject *object = object_of(core->machine.memory->cells[start + i]);
         if (object == NULL || PyList_SetItem(found, i, object) < 0)
             Py_CLEAR(found);
     }
@@ -157,7 +171,7 @@ static int core_set(PyObject *self, PyObject *key, PyObject *value)
         start = place_of(core, key);
         if (start < 0 || !cell_of(value, &cell))
             return -1;
-        core->machine.cells[start] = cell;
+        core->machine.memory->cells[start] = cell;
         return 0;
     }
     if (!range_of(core, key, &start, &count))
@@ -170,7 +184,7 @@ static int core_set(PyObject *self, PyObject *key, PyObject *value)
         krl_cell cell;
         if (!cell_of(PyList_GetItem(value, i), &cell))
             return -1;
-        core->machine.cells[start + i] = cell;
+        core->machine.memory->cells[start + i] = cell;
     }
     return 0;
 }
@@ -189,7 +203,7 @@ static PyObject *core_begin(PyObject *self, PyObject *arguments)
 {
     struct core *core = (struct core *)self;
     int code;
-    if (!PyArg_ParseTuple(arguments, "i", &code) || !is_code(core, code))
+    if (!PyArg_ParseTuple(arguments, "i", &code) || !is_code(core, code) || !is_ready(core))
         return NULL;
     krl_begin(&core->machine, code);
     Py_RETURN_NONE;
@@ -235,8 +249,8 @@ static PyObject *core_run(PyObject *self, PyObject *arguments)
         PyErr_SetString(PyExc_IndexError, "the step is not one of the code object that runs");
         return NULL;
     }
-    if (!krl_reserve(&core->machine))
-        return PyErr_NoMemory();
+    if (!is_ready(core))
+        return NULL;
     struct krl_stopped stopped = krl_run(&core->machine, step, is_begun);
     return PyLong_FromLong((long)stopped.at << 3 | (long)stopped.why);
 }
@@ -247,8 +261,8 @@ static PyObject *core_open(PyObject *self, PyObject *arguments)
     int code;
     if (!PyArg_ParseTuple(arguments, "i", &code) || !is_code(core, code))
         return NULL;
-    if (!krl_reserve(&core->machine))
-        return PyErr_NoMemory();
+    if (!is_ready(core))
+        return NULL;
     return PyBool_FromLong(krl_open(&core->machine, code));
 }
 
@@ -311,7 +325,7 @@ static PyGetSetDef core_getset[] = {
 };
 
 static PyType_Slot core_slots[] = {
-    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, is_told, most_calls)."},
+    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, is_told, most_calls, beside)."},
     {Py_tp_new, core_new},
     {Py_tp_dealloc, core_dealloc},
     {Py_tp_methods, core_methods},
@@ -328,12 +342,8 @@ static PyType_Spec core_spec = {
 
 static int execute(PyObject *module)
 {
-    PyObject *type = PyType_FromSpec(&core_spec);
-    if (type == NULL)
-        return -1;
-    int status = PyModule_AddObjectRef(module, "Core", type);
-    Py_DECREF(type);
-    return status;
+    core_type = (PyTypeObject *)PyType_FromSpec(&core_spec);
+    return core_type == NULL ? -1 : PyModule_AddObjectRef(module, "Core", (PyObject *)core_type);
 }
 
 static PyModuleDef_Slot module_slots[] = {

@@ -1,12 +1,13 @@
 /* The interpreter: what each step does.
  *
- * Where the compiler has labels as values, each step goes straight to the next one; else there is
- * one switch. Each step is there twice: as it is, and with the beginning of a statement before it.
+ * Where the compiler has labels as values, each step goes straight to the next one; else, or with
+ * KRL_SWITCH, there is one switch. Each step is there twice: as it is, and with the beginning of a
+ * statement before it.
  */
 #include "machine.h"
 #include "steps.h"
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(KRL_SWITCH)
 #define KRL_THREADED 1
 #define UNLIKELY(condition) __builtin_expect(!!(condition), 0)
 #else
@@ -156,8 +157,7 @@ static void receive(struct krl_machine *machine, const struct krl_routine *calle
     case 2 * KRL_STEP_##name + 1:                                                                  \
         BEGIN_STATEMENT();                                                                         \
         /* fall through */                                                                         \
-    case 2 * KRL_STEP_##name:                                                                      \
-    do_##name:
+    case 2 * KRL_STEP_##name:
 #define GO() goto dispatch
 #endif
 #define NEXT()                                                                                     \
@@ -609,7 +609,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     }
     STEP(INVERT)
     {
-        fault = krl_invert(cells + krl_int_in(B), cells + krl_int_in(A));
+        fault = krl_invert(cells + krl_int_in(B), cells + krl_int_in(A), pc->c);
         if (UNLIKELY(fault != KRL_FINE))
             goto failed;
         NEXT();
@@ -790,12 +790,13 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
             goto finished;
         machine->top = machine->calls[machine->open - 1].result;
         cells[machine->top++] = b;
-        goto do_RETURN;
+        goto returning;
     }
     STEP(RETURN)
     {
         if (machine->open == 0)
             goto finished;
+    returning:;
         const struct krl_call *call = &machine->calls[--machine->open];
         machine->code = call->code;
         fp = cells + call->fp;

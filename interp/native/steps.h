@@ -57,7 +57,7 @@
     X(FILL_ARRAY)     /* view a from view b, c cells each, d dimensions */                         \
     X(SET_TEXT)       /* view a, text b */                                                         \
     X(COMPOSE)        /* where a leads from b and c, d cells */                                    \
-    X(INVERT)         /* where b leads from a */                                                   \
+    X(INVERT)         /* where b leads from a, c cells */                                          \
     X(ADD_INT) X(SUB_INT) X(MUL_INT) X(DIV_INT) X(ADD_INT_K) X(MUL_INT_K) X(DIV_INT_K)             \
     X(NEG_INT) X(NOT_BITS) X(AND_BITS) X(OR_BITS) X(EXOR_BITS) X(AND_BITS_K)                       \
     X(ADD_REAL) X(SUB_REAL) X(MUL_REAL) X(DIV_REAL)                                                \

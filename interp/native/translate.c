@@ -34,6 +34,7 @@ struct translator {
     struct krl_machine *machine;
     const struct krl_program *program;
     const struct krl_code *code;
+    struct krl_routine *routine;
     struct krl_refusal *why;
     struct krl_step *steps;
     int32_t count;
@@ -669,14 +670,14 @@ static int all_reals(const struct krl_entry *entry)
     return entry->result == KRL_TYPE_REAL;
 }
 
-/* INV_POS of a pose, into a pose: six cells. */
+/* INV_POS of a pose, into a pose. */
 static int is_inversion(const struct translator *at, const struct krl_entry *entry)
 {
     static const char name[] = "INV_POS";
     if (entry->name.length != sizeof name - 1 || memcmp(entry->name.bytes, name, sizeof name - 1) != 0 ||
         entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||
         entry->parts[0].handed.mode != KRL_BY_REFERENCE || entry->result < 0 ||
-        at->program->types[entry->result].size != 6)
+        at->program->types[entry->result].size < 6)
         return 0;
     for (int32_t place = 0; place < 6; place++)
         if (krl_kind_at(at->program, entry->result, place) != KRL_TYPE_REAL ||
@@ -704,6 +705,7 @@ static void builtin(struct translator *at, int32_t place)
     if (is_inversion(at, entry)) {
         struct krl_step *step = consume(at, KRL_STEP_INVERT, 2);
         step->b = step->a + 1;
+        step->c = at->program->types[entry->result].size;
         return;
     }
     enum krl_text_function function = krl_text_function_of(at->program, entry);
@@ -717,14 +719,23 @@ static void builtin(struct translator *at, int32_t place)
     cross(at, entry, place);
 }
 
+/* The program can be told to go on at any statement, where the stack is empty. */
+static void start_here(struct translator *at, int32_t place)
+{
+    at->result = -1;
+    at->routine->steps[place] = at->count;
+}
+
 static void line(struct translator *at, int32_t place)
 {
-    if (at->machine->is_told)
+    if (at->machine->is_told) {
+        start_here(at, place);
         python(at, KRL_MATTER_INSTRUCTION, place);
-    else {
+    } else {
         if (at->line >= 0)
             emit(at, KRL_STEP_NOP);
         at->line = place;
+        start_here(at, place);
     }
 }
 
@@ -905,9 +916,10 @@ static void instruction(struct translator *at, int32_t place)
 
 /* ---------------------------------------------------------------------------- code objects */
 
-static void code(struct translator *at, struct krl_routine *routine)
+static void code(struct translator *at)
 {
     const struct krl_code *code = at->code;
+    struct krl_routine *routine = at->routine;
     int is_reached = 0;
     at->height = 0;
     at->line = at->result = -1;
@@ -982,7 +994,8 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
     }
     for (int32_t number = 0; number < program->code_count && !at.is_wrong; number++) {
         at.code = &program->codes[number];
-        code(&at, &machine->routines[number]);
+        at.routine = &machine->routines[number];
+        code(&at);
     }
     machine->steps = at.steps;
     machine->step_count = at.count;

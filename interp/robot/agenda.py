@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import ArmEvent, EventKind, Motion, Place
-from interp.robot.timeline import MICROSECOND, Key, Leg, Section, Timeline, micros
+from interp.robot.blending import wants_blend
+from interp.robot.timeline import MICROSECOND, Key, Section, Timeline, micros
 
 __all__ = ["Passage", "events_of"]
 
@@ -101,7 +102,7 @@ def events_of(
         if seconds is not None and (kind, key) not in passage.taken:
             time = max(micros(seconds), now)
             is_unwanted = (
-                kind == "motion_end" and bool(passage.motion.criteria) and passage.out is None
+                kind == "motion_end" and passage.out is None and wants_blend(passage.motion)
             )
             event = ArmEvent(time, kind, passage.number, key, is_unwanted)
             found.append((time, rank if rank >= 0 else _RANK[kind], event))
@@ -145,7 +146,6 @@ class _Clock:
     def __init__(self, passage: Passage, timeline: Timeline) -> None:
         self._passage = passage
         self._timeline = timeline
-        self._legs: dict[Key, list[Leg]] = {}
 
     @property
     def start(self) -> float | None:
@@ -165,9 +165,7 @@ class _Clock:
 
     def time(self, section: Section, u: float) -> float | None:
         """When a section's parameter is passed, in seconds; ``None`` if not as planned today."""
-        legs = self._legs.get(section.key)
-        if legs is None:
-            legs = self._legs[section.key] = list(self._timeline.of(section.key))
+        legs = self._timeline.of(section.key)
         if not legs:
             return self._beside(section, u)
         if u <= legs[0].stretch.start:

@@ -15,7 +15,7 @@ import numpy as np
 
 from interp.robot.arm import Approximation, Motion
 from interp.robot.course import Blend, Way
-from interp.robot.curve import BlendedAxes, CourseCurve, Curve
+from interp.robot.curve import BlendedAxes, BlendedOthers, CourseCurve, Curve
 from interp.robot.kinematics import Array
 from interp.robot.limits import AxisLimits, Ceiling, PathLimits, ceiling_of
 from interp.robot.machine import ROBOT_AXES, CartesianLimits, Machine
@@ -29,6 +29,8 @@ _HALF = 0.5
 _SMALLEST = 1e-6
 """Share of a path below which there is nothing to blend."""
 _METRE = 1000.0
+_SHARE = 0.2
+"""Of an axis's acceleration for changes of speed: a blend is short, and bends all along."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,33 +94,27 @@ def blend_of(
     [BLD-15]. Raises `Fault` where the blend leads out of the working range.
     """
     axes = first.axis_limits.widest(second.axis_limits)
-    leaving, joining = first.pieces[-1], second.pieces[0]
-    one, other = leaving.curve.course, joining.curve.course
-    same_frames = first.motion.settings.placement == second.motion.settings.placement
-    if one is None or other is None or not same_frames:
-        curve: Curve = BlendedAxes(leaving.curve, zone.before, joining.curve, zone.after)
-        return curve, ceiling_of(curve, limits, axes, _tool_limits(first, second, curve, machine))
-    course = Blend(one, zone.before, other, zone.after)
-    corner = leaving.curve.axes(np.array([1.0 - zone.before]))[0]
-    others = _BlendedOthers(BlendedAxes(leaving.curve, zone.before, joining.curve, zone.after))
-    curve = CourseCurve(
-        leaving.curve.arm, leaving.curve.placement, course, corner[:ROBOT_AXES], others
-    )
-    return curve, ceiling_of(curve, limits, axes, _path_limits(first, second, course, machine))
+    one, other = first.pieces[-1].curve, second.pieces[0].curve
+    course = _common_course(first, second, zone)
+    if course is None or not isinstance(one, CourseCurve) or not isinstance(other, CourseCurve):
+        curve: Curve = BlendedAxes(one, zone.before, other, zone.after)
+        paths = _tool_limits(first, second, curve, machine)
+    else:
+        (start,) = one.axes(np.array([1.0 - zone.before]))
+        others = BlendedOthers(one.others, zone.before, other.others, zone.after)
+        curve = CourseCurve(one.arm, one.placement, course, start[:ROBOT_AXES], others)
+        paths = _path_limits(first, second, course, machine)
+    return curve, ceiling_of(curve, limits, axes, paths, _SHARE)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _BlendedOthers:
-    """The external axes of a blend of axes."""
-
-    blend: BlendedAxes
-
-    def at(self, u: Array) -> Array:
-        return self.blend.axes(u)[:, ROBOT_AXES:]
-
-    def rates(self, u: Array) -> tuple[Array, Array]:
-        first, second = self.blend.rates(u)
-        return first[:, ROBOT_AXES:], second[:, ROBOT_AXES:]
+def _common_course(first: Track, second: Track, zone: Zone) -> Blend | None:
+    """The blend of two paths of the tool, if both are such and in the same frames."""
+    one, other = first.pieces[-1].curve.course, second.pieces[0].curve.course
+    if one is None or other is None:
+        return None
+    if first.motion.settings.placement != second.motion.settings.placement:
+        return None
+    return Blend(one, zone.before, other, zone.after)
 
 
 # ---------------------------------------------------------------------------------------- zones
@@ -174,8 +170,7 @@ def _turning_share(curve: Curve, share: float) -> float:
     (travel,), _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
     reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
-    with np.errstate(divide="ignore"):
-        return float((share * reach / np.abs(travel)).min())
+    return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
 
 
 def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]
+from scipy.interpolate import CubicSpline
 
 from interp.faults import Fault
 from interp.robot.arm import Motion, Settings, SplinePart
@@ -65,18 +65,18 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
     knot = _knot(placement.in_path(placement.point(before.flange)))
     target, segments, externals = before, [], [before.axes[ROBOT_AXES:]]
     for part in motion.parts:
-        pose = target.pose(part.target, placement, False, None)
-        following = _knot(placement.in_path(pose))
+        components = target.components_of(part.target, placement)
+        following = _knot(placement.in_path(Pose.of(*components)))
         segment = _segment(part, knot, following, target, settings)
         externals.append(target.externals(part.target, False))
         axes = np.concatenate((target.axes[:ROBOT_AXES], externals[-1]))
-        target, knot = target.reached(axes, pose, placement), segment.end
+        target, knot = target.reached(axes, components, placement), segment.end
         segments.append(segment)
     pieces = _pieces(tracks, motion, segments, np.array(externals), before.axes)
     track = Track(motion, with_ranges(motion, pieces), tracks.limits)
-    axes = pieces[-1].curve.axes(np.ones(1))[0]
+    axes = pieces[-1].curve.end
     is_told = motion.parts[-1].angle is None
-    point = Pose.of(*target.point(placement)) if is_told else None
+    point = target.components if is_told else None
     return track, before.reached(axes, point, placement)
 
 
@@ -87,7 +87,8 @@ def _segment(
     if part.kind != "SCIRC":
         return Segment(part.kind, start, end)
     placement = settings.placement
-    middle = placement.in_path(before.pose(part.auxiliary or {}, placement, False, None))
+    components = before.components_of(part.auxiliary or {}, placement)
+    middle = placement.in_path(Pose.of(*components))
     circle = circle_through(start.position, np.array(middle.position), end.position, part.angle)
     (place,) = circle.at(np.ones(1))
     return Segment(part.kind, start, Knot(place, end.rotation), circle)
@@ -111,6 +112,8 @@ def _pieces(
         travelled = externals[number : number + len(chain) + 1]
         for place, course in enumerate(courses):
             settings = motion.parts[number].settings or motion.settings
+            # Wrist axes in step would change their speed at each point, so they are not [ORI-03].
+            settings = replace(settings, orientation="#VAR")
             others = _others(courses, travelled, place)
             length = max(course.length, *np.degrees(course.angles))
             if (
@@ -122,7 +125,7 @@ def _pieces(
                 piece = tracks.along(course, axes, others, "SPL", settings)
                 if place:
                     piece = replace(piece, gear=courses[place - 1].length / course.length)
-                axes = piece.curve.axes(np.ones(1))[0, :ROBOT_AXES]
+                axes = piece.curve.end[:ROBOT_AXES]
             pieces.append(piece)
             number += 1
     return tuple(pieces)

@@ -400,11 +400,12 @@ class ControlCore:
             return
         if left == 1:
             self._finish(command, State.CANCELLED, "cancelled")
-        else:
-            self._cancel_ring()
+            return
+        while (stuck := self._stuck()) is not None:
+            self._finish(stuck, State.CANCELLED, "cancelled")
 
-    def _cancel_ring(self) -> None:
-        """Cancel the first of commands that wait for one another and for nothing else."""
+    def _stuck(self) -> Command | None:
+        """The first of commands that wait for one another and for nothing else."""
         waiting = [one for one in self._chances if one.state is State.LINKED]
         coming = {command for _, _, effect, command in self._due if effect == "start"}
         starts = [
@@ -418,6 +419,4 @@ class ControlCore:
             - coming
         ):
             coming |= more
-        stuck = next((one for one in waiting if one not in coming), None)
-        if stuck is not None:
-            self._finish(stuck, State.CANCELLED, "cancelled")
+        return next((one for one in waiting if one not in coming), None)

@@ -12,17 +12,19 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]
+from scipy.interpolate import CubicSpline
 
 from interp.faults import Fault
 from interp.robot.course import Course, poses_of
 from interp.robot.kinematics import Arm, Array, matrix_of
 from interp.robot.machine import ROBOT_AXES
 from interp.robot.placement import IpoMode, Placement
+from interp.robot.table import Table
 from interp.robot.targets import check_limits, follow
 
 __all__ = [
     "BlendedAxes",
+    "BlendedOthers",
     "CourseCurve",
     "Curve",
     "InStep",
@@ -68,6 +70,11 @@ class Curve(Protocol):
         """Parameters ``(n,)`` from 0 to 1, close enough to see all of the curve."""
         ...
 
+    @property
+    def end(self) -> Array:
+        """The axes at u = 1, ``(axes,)``."""
+        ...
+
     def axes(self, u: Array) -> Array:
         """Axes at parameters."""
         ...
@@ -102,8 +109,29 @@ class InStep:
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Others.rates`."""
-        shape = (len(u), len(self.start))
-        return np.broadcast_to(self.end - self.start, shape), np.zeros(shape)
+        zeros = np.zeros((len(u), len(self.start)))
+        return zeros + (self.end - self.start), zeros
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlendedOthers:
+    """External axes of a blend, as `BlendedAxes` has all of them."""
+
+    first: Others
+    before: float
+    second: Others
+    after: float
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        corner = self.first.at(np.ones(1))
+        axes: Array = self.first.at(one) - corner + self.second.at(other)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        return _blended_rates(self, u)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,6 +163,12 @@ class JointSpline:
 
     course = None
     is_straight = False
+
+    @cached_property
+    def end(self) -> Array:
+        """See `Curve.end`."""
+        end: Array = self.part.at(np.ones(1))[0]
+        return end
 
     @property
     def grid(self) -> Array:
@@ -203,39 +237,25 @@ class BlendedAxes:
         return self.first.placement
 
     @cached_property
-    def corner(self) -> Array:
-        """The axes at the point between."""
-        axes: Array = self.first.axes(np.ones(1))[0]
-        return axes
+    def end(self) -> Array:
+        """See `Curve.end`."""
+        end: Array = self.axes(np.ones(1))[0]
+        return end
 
     @property
     def grid(self) -> Array:
         """See `Curve.grid`."""
         return np.linspace(0.0, 1.0, _FEWEST)
 
-    def _parameters(self, u: Array) -> tuple[Array, Array]:
-        return 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
-
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
-        one, other = self._parameters(u)
-        axes: Array = self.first.axes(one) - self.corner + self.second.axes(other)
+        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        axes: Array = self.first.axes(one) - self.first.end + self.second.axes(other)
         return axes
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Curve.rates`."""
-        one, other = self._parameters(u)
-        one_rate, other_rate = 2.0 * self.before * (1.0 - u)[:, None], 2.0 * self.after * u[:, None]
-        first, first_bend = self.first.rates(one)
-        second, second_bend = self.second.rates(other)
-        rates: tuple[Array, Array] = (
-            first * one_rate + second * other_rate,
-            first_bend * one_rate**2
-            - 2.0 * self.before * first
-            + second_bend * other_rate**2
-            + 2.0 * self.after * second,
-        )
-        return rates
+        return _blended_rates(self, u)
 
 
 class CourseCurve:
@@ -257,22 +277,21 @@ class CourseCurve:
         self._course = course
         self._before = matrix_of(placement.before)
         self._after = matrix_of(placement.after)
-        self._others = others
+        self.others = others
         self.grid, axes = self._points(start)
-        self._table = CubicSpline(self.grid, axes)
+        self._table = Table(axes)
+        self.end: Array = np.concatenate((axes[-1], others.at(np.ones(1))[0]))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
-        robot = self._beside(u, self._table(u))
-        return np.concatenate((robot, self._others.at(u)), axis=1)
+        robot = self._beside(u, self._table.at(u))
+        return np.concatenate((robot, self.others.at(u)), axis=1)
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Curve.rates`."""
-        first, second = self._others.rates(u)
-        return (
-            np.concatenate((self._table(u, 1), first), axis=1),
-            np.concatenate((self._table(u, 2), second), axis=1),
-        )
+        first, second = self._table.rates(u)
+        others, bends = self.others.rates(u)
+        return np.concatenate((first, others), axis=1), np.concatenate((second, bends), axis=1)
 
     def _beside(self, u: Array, references: Array) -> Array:
         """The six axes exactly, from some beside them."""
@@ -313,6 +332,21 @@ class CourseCurve:
         for values in (axes.min(axis=0), axes.max(axis=0)):
             check_limits(self.arm.machine.axes, values.tolist())
         return grid, axes
+
+
+def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> tuple[Array, Array]:
+    """First and second derivatives of a blend by u, from those of both its parts."""
+    one, other = 1.0 - blend.before * (1.0 - u) ** 2, blend.after * u * u
+    one_rate, other_rate = 2.0 * blend.before * (1.0 - u)[:, None], 2.0 * blend.after * u[:, None]
+    first, first_bend = blend.first.rates(one)
+    second, second_bend = blend.second.rates(other)
+    return (
+        first * one_rate + second * other_rate,
+        first_bend * one_rate**2
+        - 2.0 * blend.before * first
+        + second_bend * other_rate**2
+        + 2.0 * blend.after * second,
+    )
 
 
 def tool_positions(curve: Curve, u: Array) -> Array:

@@ -26,7 +26,8 @@ _MARGIN = 0.97
 """Share of a limit that is used, for what lies between samples."""
 _ROUNDING = 1.0 - 1e-9
 _SHARE = 0.5
-"""Share of an axis's acceleration that a change of speed may take on a curve; the rest bends it."""
+"""Share of an axis's acceleration that a change of speed may take on a curve; the rest is left for
+the bends of the curve."""
 _UNEVEN = 1.25
 """Ratio of speeds within a stretch above which it is worth cutting."""
 _SHORTEST = 4  # samples of a stretch
@@ -109,7 +110,9 @@ class Stretch:
 
     def between(self, start: float, end: float) -> Stretch:
         """The part of it between two parameters."""
-        return replace(self, start=start, end=end)
+        if start <= self.start and end >= self.end:
+            return self
+        return replace(self, start=max(start, self.start), end=min(end, self.end))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +124,7 @@ class Ceiling:
     def between(self, start: float, end: float) -> tuple[Stretch, ...]:
         """The stretches of a part of the curve, cut at its ends."""
         parts = (
-            stretch.between(max(stretch.start, start), min(stretch.end, end))
+            stretch.between(start, end)
             for stretch in self.stretches
             if stretch.end > start and stretch.start < end
         )
@@ -143,6 +146,7 @@ def ceiling_of(
     machine: AxisLimits,
     programmed: AxisLimits,
     paths: Sequence[PathLimits],
+    share: float = _SHARE,
 ) -> Ceiling:
     """The bounds of a curve.
 
@@ -154,8 +158,7 @@ def ceiling_of(
     first, second = (np.abs(rates) for rates in curve.rates(grid))
     per_axis = _least(programmed.acceleration / _positive(first))
     wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
-    share = 1.0 if curve.is_straight else _SHARE
-    acceleration = np.minimum(share * per_axis, wanted)
+    acceleration = np.minimum((1.0 if curve.is_straight else share) * per_axis, wanted)
     velocity = _least(machine.velocity / _positive(first))
     if not curve.is_straight:
         left = programmed.acceleration - first * acceleration[:, None]

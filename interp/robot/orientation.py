@@ -19,6 +19,7 @@ from interp.robot.kinematics import Array
 __all__ = ["Carried", "Orientation", "Turning", "about", "angle_between", "turning"]
 
 _PARALLEL = 1e-12
+_MANY = 3  # dimensions of an array of matrices
 _DIRECTION = np.array([1.0, 0.0, 0.0])
 
 
@@ -56,12 +57,12 @@ class Turning:
 
     def at(self, u: Array) -> Array:
         """See `Orientation.at`."""
-        turned: Array = np.broadcast_to(self.start, (len(u), 3, 3))
+        turned = self.start
         if self.swivel:
             turned = turned @ about(self.axis, u * self.swivel)
         if self.twist:
             turned = turned @ about(_DIRECTION, u * self.twist)
-        return turned
+        return turned if turned.ndim == _MANY else np.tile(turned, (len(u), 1, 1))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

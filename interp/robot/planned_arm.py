@@ -20,11 +20,10 @@ from interp.robot.arm import ArmEvent, Motion, Position, Samples
 from interp.robot.blending import blend_of, zone_of
 from interp.robot.blocks import block
 from interp.robot.frames import Pose
+from interp.robot.journey import Journey
 from interp.robot.kinematics import Array
 from interp.robot.machine import ROBOT_AXES, Machine
-from interp.robot.profile import Profile, standing
 from interp.robot.programmed import Programmed, check_start
-from interp.robot.schedule import State, Step, braking, schedule
 from interp.robot.targets import check_limits
 from interp.robot.timeline import (
     MICROSECOND,
@@ -39,8 +38,6 @@ from interp.robot.tracks import Track, Tracks
 
 __all__ = ["PlannedArm"]
 
-_THERE = 1e-9
-"""Of u: a section whose rest is shorter has been travelled."""
 _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
 
 
@@ -66,6 +63,7 @@ class _Mark:
     is_braked: bool
     stopped: ArmEvent | None
     has_begun: bool
+    now: int
 
 
 class PlannedArm:
@@ -89,6 +87,7 @@ class PlannedArm:
         #: What brakes interrupted, while other motions are on [INT-09].
         self._kept: list[_Plan] = []
         self._timeline = Timeline(axes)
+        self._journey = Journey(self._timeline)
         self._override = 1.0
         self._is_braked = False
         self._stopped: ArmEvent | None = None
@@ -139,6 +138,7 @@ class PlannedArm:
             self._is_braked,
             self._stopped,
             self._has_begun,
+            self._now,
         )
 
     def rewind(self, mark: object) -> None:
@@ -148,7 +148,7 @@ class PlannedArm:
         self._plan, self._kept = mark.plan, list(mark.kept)
         self._timeline.restore(0, mark.legs)
         self._is_braked, self._stopped = mark.is_braked, mark.stopped
-        self._has_begun = mark.has_begun
+        self._has_begun, self._now = mark.has_begun, mark.now
         self._agenda = None
 
     def _append_blended(self, track: Track, programmed: Programmed) -> bool:
@@ -161,7 +161,8 @@ class PlannedArm:
         if zone is None or body.number != passage.number:
             return False
         leaves = 1.0 - zone.before
-        if leaves < body.start or self._reached(body) > leaves:
+        reached = self._journey.reached(body, self._now * MICROSECOND)
+        if leaves < body.start or reached > leaves:
             return False
         try:
             curve, ceiling = blend_of(
@@ -253,6 +254,11 @@ class PlannedArm:
         return self._agenda
 
     # ------------------------------------------------------------------------------ where it is
+
+    def target(self) -> Position:
+        """Where the motion planned last leads, or where the arm stands if there was none."""
+        programmed = self._plan.programmed
+        return Position(tuple(programmed.axes.tolist()), programmed.flange)
 
     def position(self, time: int) -> Position:
         """See `interp.robot.arm.Arm.position`."""
@@ -374,150 +380,40 @@ class PlannedArm:
         legs = self._timeline.legs
         return max(legs[-1].ends if legs else 0.0, self._now * MICROSECOND)
 
-    # ------------------------------------------------------------------------------- scheduling
-
     def _observe(self, now: int) -> None:
         """Time has gone on: what was travelled is no longer ahead."""
         self._now = max(self._now, now)
         route = self._plan.route
-        travelled = 0
-        while travelled < len(route) and self._is_travelled(route[travelled]):
-            travelled += 1
-        if travelled:
-            self._plan = replace(self._plan, route=route[travelled:])
-
-    def _is_travelled(self, section: Section) -> bool:
-        legs = list(self._timeline.of(section.key))
-        if not legs:
-            leg = self._timeline.leg_at(self._now * MICROSECOND)
-            return section.is_used_up and leg is not None and leg.section.key > section.key
-        last = legs[-1]
-        return last.ends <= self._now * MICROSECOND and last.last >= section.end - _THERE
-
-    def _reached(self, section: Section) -> float:
-        """How far a section has been travelled by now."""
-        leg = self._timeline.leg_at(self._now * MICROSECOND)
-        if leg is None or leg.section.key != section.key:
-            return section.start
-        return leg.state(self._now * MICROSECOND).u
+        ahead = self._journey.ahead(route, self._now * MICROSECOND)
+        if len(ahead) < len(route):
+            self._plan = replace(self._plan, route=ahead)
 
     def _left_at(self, plan: _Plan) -> Array:
         """The axes where a plan was interrupted."""
         if not plan.route:
             return plan.programmed.axes
         section = plan.route[0]
-        axes: Array = section.curve.axes(np.array([self._stood_at(section)]))[0]
+        axes: Array = section.curve.axes(np.array([self._journey.stood_at(section)]))[0]
         return axes
-
-    def _stood_at(self, section: Section) -> float:
-        """The parameter at which a section was left standing."""
-        legs = list(self._timeline.of(section.key))
-        return legs[-1].last if legs else section.start
 
     def _reschedule(self, route: Sequence[Section], *, is_strict: bool = False) -> bool:
         """Lay legs for a route from now on; with ``is_strict`` only if no seam is overrun."""
-        if not route:
-            return True
+        self._agenda = None
         if self._override == 0.0:
             return not is_strict
         time = self._now * MICROSECOND
-        leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time:
-            state = State(self._stood_at(route[0]), 0.0, 0.0)
-            return self._lay(route, state, max(time, self._timeline_end(time)), None, is_strict)
-        if leg.section.key == route[0].key:
-            laid = self._lay(route, leg.state(time), time, leg, is_strict)
-            if laid or is_strict:
-                return laid
-        # The acceleration cannot be taken back before the leg ends; so it is travelled first.
-        rest, state = _behind(leg, route)
-        return not rest or self._lay(rest, state, leg.ends, None, is_strict)
-
-    def _timeline_end(self, time: float) -> float:
-        leg = self._timeline.leg_at(time)
-        return leg.ends if leg is not None else 0.0
-
-    def _lay(
-        self,
-        route: Sequence[Section],
-        state: State,
-        begins: float,
-        leg: Leg | None,
-        is_strict: bool,
-    ) -> bool:
-        """Schedule a route from a state on and put its legs behind what is kept of the timeline."""
-        entries = _entries(route, state.u)
-        steps = _steps(entries)
-        planned = None
-        if leg is not None and steps and _goes_on(leg, steps[0], self._override):
-            planned = leg.state(leg.ends).speed
-        profiles: list[Profile | None] | None = []
-        if steps:
-            profiles = schedule(steps, state, self._override, planned=planned, is_strict=is_strict)
-        if profiles is None:
-            return False
-        if profiles and profiles[0] is None and leg is not None:
-            begins = leg.ends
-        self._timeline.cut(begins)
-        queue = iter(profiles)
-        for section, step in entries:
-            profile = standing(0.0) if step is None else next(queue)
-            if profile is None:
-                continue
-            stretch = step.stretch if step is not None else section.ceiling.stretches[0]
-            ends = begins + profile.duration
-            self._timeline.append(Leg(section, stretch, profile, begins, ends))
-            begins = ends
-        self._agenda = None
-        return True
+        return self._journey.go(route, time, self._override, is_strict=is_strict)
 
     def _halt(self, override: float, *, is_hard: bool) -> None:
         """Stop on the path."""
-        time = self._now * MICROSECOND
-        leg = self._timeline.leg_at(time)
         self._agenda = None
-        if leg is None or leg.ends <= time or not self._plan.route:
-            self._timeline.cut(time)
-            return
-        begins, legs = self._ramp_down(leg, time, override, is_hard)
-        self._timeline.cut(begins)
-        for each in legs:
-            self._timeline.append(each)
-
-    def _ramp_down(
-        self, leg: Leg, time: float, override: float, is_hard: bool
-    ) -> tuple[float, list[Leg]]:
-        """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
-        route: Sequence[Section] = self._plan.route
-        while route and route[0].key < leg.section.key:
-            route = route[1:]
-        begins, state = time, leg.state(time)
-        entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
-        profiles = braking(_steps(entries), state, override, is_hard=is_hard)
-        if profiles is None:  # it cannot before the leg ends
-            begins = leg.ends
-            route, state = _behind(leg, route)
-            entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
-            profiles = braking(_steps(entries), state, override, is_hard=is_hard) or []
-        legs, start = [], begins
-        for (section, step), profile in zip(entries, profiles, strict=False):
-            if step is not None:
-                legs.append(Leg(section, step.stretch, profile, start, start + profile.duration))
-                start += profile.duration
-        return begins, legs
+        self._journey.halt(self._plan.route, self._now * MICROSECOND, override, is_hard=is_hard)
 
     def _stop_from(self, time: float) -> tuple[Key, float] | None:
         """Where a brake at a time would end; ``None`` where the arm stands then."""
-        leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time or self._is_braked:
+        if self._is_braked:
             return None
-        _, legs = self._ramp_down(leg, time, self._override or 1.0, is_hard=False)
-        last = legs[-1] if legs else leg
-        return last.section.key, last.last
-
-
-def _steps(entries: Sequence[tuple[Section, Step | None]]) -> list[Step]:
-    return [step for _, step in entries if step is not None]
+        return self._journey.stop_from(self._plan.route, time, self._override or 1.0)
 
 
 def _sections(track: Track) -> tuple[Section, ...]:
@@ -534,43 +430,3 @@ def _sections(track: Track) -> tuple[Section, ...]:
         )
         for part, piece in enumerate(track.pieces)
     )
-
-
-def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], State]:
-    """What of a route is left when a leg has ended, and the state there."""
-    speed = leg.state(leg.ends).speed
-    if route[0].key != leg.section.key or leg.last < route[0].end - _THERE:
-        return tuple(route), State(leg.last, speed, 0.0)
-    rest = list(route[1:])
-    while rest and rest[0].is_used_up:
-        speed *= rest.pop(0).gear
-    if not rest:
-        return (), State(leg.last, 0.0, 0.0)
-    return tuple(rest), State(rest[0].start, speed * rest[0].gear, 0.0)
-
-
-def _entries(route: Sequence[Section], start: float) -> list[tuple[Section, Step | None]]:
-    """The steps of a route from a parameter of its first section on; ``None`` for a motion of none.
-
-    A section that two blends have used up has no step; its gear goes on to the next.
-    """
-    entries: list[tuple[Section, Step | None]] = []
-    gear = 1.0
-    for place, section in enumerate(route):
-        if section.is_still:
-            entries.append((section, None))
-            gear = 1.0
-            continue
-        steps = section.steps(start if place == 0 else section.start)
-        gear *= section.gear
-        for number, step in enumerate(steps):
-            entries.append((section, replace(step, gear=gear if number == 0 else 1.0)))
-            gear = 1.0
-    return entries
-
-
-def _goes_on(leg: Leg, step: Step, override: float) -> bool:
-    """Whether the leg under way is one with all the bounds that are in force now."""
-    own, other = leg.stretch, step.stretch
-    is_whole = leg.last >= own.end - _THERE
-    return is_whole and own.end == other.end and own.bounds(override) == other.bounds(override)

@@ -43,13 +43,13 @@ class Profile:
     def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
         """From a speed on, with pieces of duration, acceleration at their start, and jerk."""
         time = position = 0.0
-        knots = []
+        knots: list[tuple[float, ...]] = []
         for duration, acceleration, jerk in pieces:
             knots.append((time, position, speed, acceleration, jerk))
             position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
             speed += duration * (acceleration + duration * jerk / 2.0)
             time += duration
-        self.knots: list[tuple[float, ...]] = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
+        self.knots = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
         #: Seconds from start to end, the position and the speed there.
         self.duration, self.length, self.final = time, position, speed
 

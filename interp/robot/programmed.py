@@ -28,9 +28,13 @@ _EXTERNALS = tuple(f"E{i}" for i in range(1, 7))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """Where a PTP motion leads. ``is_singular`` is message 2868, a notification [POS-08]."""
+    """Where a PTP motion leads; ``components`` where it was told as a point.
+
+    ``is_singular`` is message 2868, a notification [POS-08].
+    """
 
     axes: Array
+    components: tuple[float, ...] | None = None
     is_singular: bool = False
 
 
@@ -67,9 +71,11 @@ class Programmed:
         """The flange in front of the robot's foot."""
         return Pose.from_matrix(self.arm.forward(self.axes[:ROBOT_AXES]).tolist())
 
-    def reached(self, axes: Array, point: Pose | None, placement: Placement) -> Programmed:
-        """The next target."""
-        return Programmed(self.arm, axes, point.components if point else None, placement)
+    def reached(
+        self, axes: Array, components: tuple[float, ...] | None, placement: Placement
+    ) -> Programmed:
+        """The next target, with its components where a point was told."""
+        return Programmed(self.arm, axes, components, placement)
 
     def point(self, placement: Placement) -> tuple[float, ...]:
         """X, Y, Z, A, B, C of the target in given frames."""
@@ -86,10 +92,14 @@ class Programmed:
         check_limits(self.arm.machine.externals, values.tolist())
         return values
 
-    def pose(
-        self, target: Target, placement: Placement, is_relative: bool, reference: str | None
-    ) -> Pose:
-        """The point of a Cartesian target; a target of axes is the point where they lead.
+    def components_of(
+        self,
+        target: Target,
+        placement: Placement,
+        is_relative: bool = False,
+        reference: str | None = None,
+    ) -> tuple[float, ...]:
+        """X, Y, Z, A, B, C of a Cartesian target; one of axes is the point where they lead.
 
         Relative to #TOOL the target is a frame told in the last point; relative to #BASE each
         component adds to that of the last point [MOT-14].
@@ -98,15 +108,16 @@ class Programmed:
         if has_axes(target):
             axes = self._axes(target, is_relative)
             flange = Pose.from_matrix(self.arm.forward(axes[:ROBOT_AXES]).tolist())
-            return placement.point(flange)
+            return placement.point(flange).components
         before = self.point(placement)
-        if is_relative:
-            change = [target.get(name, 0.0) for name in _COMPONENTS]
-            if reference == "#TOOL":
-                return Pose.of(*before) @ Pose.of(*change)
-            return Pose.of(*(one + other for one, other in zip(before, change, strict=True)))
-        given = zip(_COMPONENTS, before, strict=True)
-        return Pose.of(*(target.get(name, value) for name, value in given))
+        if not is_relative:
+            return tuple(
+                target.get(name, value) for name, value in zip(_COMPONENTS, before, strict=True)
+            )
+        change = [target.get(name, 0.0) for name in _COMPONENTS]
+        if reference == "#TOOL":
+            return (Pose.of(*before) @ Pose.of(*change)).components
+        return tuple(one + other for one, other in zip(before, change, strict=True))
 
     def goal(self, motion: Motion, target: Target, placement: Placement) -> Goal:
         """The axes of a PTP target. Raises `Fault` 1366, 1447, or 1422 for what is no number."""
@@ -114,17 +125,17 @@ class Programmed:
         if has_axes(target) or not any(name in target for name in (*_COMPONENTS, "S", "T")):
             return Goal(self._axes(target, motion.is_relative))
         externals = self.externals(target, motion.is_relative)
-        point = self.pose(target, placement, motion.is_relative, motion.reference)
+        components = self.components_of(target, placement, motion.is_relative, motion.reference)
         found = ptp_target(
             self.arm,
-            placement.flange(point),
+            placement.flange(Pose.of(*components)),
             self.axes[:ROBOT_AXES].tolist(),
             status=_bits(target, "S") if not motion.is_relative else None,
             turn=_bits(target, "T") if not motion.is_relative else None,
             preference=TargetStatus.SOURCE,
         )
         is_singular = bool({Singularity.OVERHEAD, Singularity.WRIST} & set(found.singularities))
-        return Goal(np.concatenate((found.axes, externals)), is_singular)
+        return Goal(np.concatenate((found.axes, externals)), components, is_singular)
 
     def _axes(self, target: Target, is_relative: bool) -> Array:
         axes = self.axes.copy()

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline  # type: ignore[import-untyped]
-from scipy.spatial.transform import Rotation, RotationSpline  # type: ignore[import-untyped]
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation, RotationSpline
 
 from interp.robot.circle import Circle
 from interp.robot.course import Arc, Course, Line, Way

@@ -120,28 +120,27 @@ class Timeline:
         self.start = start
         self.legs: list[Leg] = []
         self._begins: list[float] = []
+        self._of: dict[Key, list[Leg]] = {}
 
     def append(self, leg: Leg) -> None:
         """A leg behind all others."""
         self.legs.append(leg)
         self._begins.append(leg.begins)
+        self._of.setdefault(leg.section.key, []).append(leg)
 
     def cut(self, time: float) -> list[Leg]:
         """Forget what comes after a time; returns the legs that were ahead or under way."""
         place = bisect_right(self._begins, time)
         if place and self.legs[place - 1].ends > time:
             place -= 1
-        removed = self.legs[place:]
-        del self.legs[place:]
-        del self._begins[place:]
+        removed = self._dropped(place)
         if removed and removed[0].begins < time:
             self.append(replace(removed[0], ends=time))
         return removed
 
     def restore(self, count: int, legs: Sequence[Leg]) -> None:
         """The first so many legs, and others behind them."""
-        del self.legs[count:]
-        del self._begins[count:]
+        self._dropped(count)
         for leg in legs:
             self.append(leg)
 
@@ -150,18 +149,32 @@ class Timeline:
         count = 0
         while count + 1 < len(self.legs) and self.legs[count + 1].begins < time:
             count += 1
+        kept = self.legs[count:]
         if count:
-            del self.legs[:count]
-            del self._begins[:count]
+            self._dropped(0)
+            for leg in kept:
+                self.append(leg)
+
+    def _dropped(self, place: int) -> list[Leg]:
+        """The legs from a place on, which are then no longer in it."""
+        removed = self.legs[place:]
+        for leg in removed:
+            own = self._of[leg.section.key]
+            own.remove(leg)
+            if not own:
+                del self._of[leg.section.key]
+        del self.legs[place:]
+        del self._begins[place:]
+        return removed
 
     def leg_at(self, time: float) -> Leg | None:
         """The last leg that begins at a time or before; ``None`` if the arm has not moved yet."""
         place = bisect_right(self._begins, time)
         return self.legs[place - 1] if place else None
 
-    def of(self, key: Key) -> Iterator[Leg]:
+    def of(self, key: Key) -> Sequence[Leg]:
         """The legs of a section, in their order."""
-        return (leg for leg in self.legs if leg.section.key == key)
+        return self._of.get(key, ())
 
     def axes_at(self, time: float) -> Array:
         """All axes at a time."""

@@ -113,27 +113,23 @@ class Tracks:
         ceiling = ceiling_of(curve, self.limits, limits, self.reduced(curve, settings))
         piece = Piece(curve, ceiling, is_still=is_still)
         track = Track(motion, (piece,), limits, goal.is_singular)
-        components = None
-        if any(name in motion.target for name in "XYZABC"):
-            components = before.pose(
-                motion.target, settings.placement, motion.is_relative, motion.reference
-            )
-        return track, before.reached(goal.axes, components, settings.placement)
+        return track, before.reached(goal.axes, goal.components, settings.placement)
 
     def _line(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         placement = motion.settings.placement
         start = matrix_of(placement.in_path(placement.point(before.flange)))
         point = self._point(motion, motion.target, before)
-        end = matrix_of(placement.in_path(point))
+        end = matrix_of(placement.in_path(Pose.of(*point)))
         course = Line(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
         return self._along(motion, before, course, point)
 
     def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         placement = motion.settings.placement
         start = matrix_of(placement.in_path(placement.point(before.flange)))
-        auxiliary = placement.in_path(self._point(motion, motion.auxiliary or {}, before))
+        middle = Pose.of(*self._point(motion, motion.auxiliary or {}, before))
+        auxiliary = placement.in_path(middle)
         point = self._point(motion, motion.target, before)
-        end = matrix_of(placement.in_path(point))
+        end = matrix_of(placement.in_path(Pose.of(*point)))
         circle = circle_through(
             start[:3, 3], np.array(auxiliary.position), end[:3, 3], motion.angle
         )
@@ -141,7 +137,7 @@ class Tracks:
         return self._along(motion, before, course, point)
 
     def _along(
-        self, motion: Motion, before: Programmed, course: Course, point: Pose
+        self, motion: Motion, before: Programmed, course: Course, point: tuple[float, ...]
     ) -> tuple[Track, Programmed]:
         """The track of a course; its last pose is the target, except for an angle of its own."""
         settings = motion.settings
@@ -154,7 +150,7 @@ class Tracks:
         others = InStep(before.axes[ROBOT_AXES:], externals)
         piece = self.along(course, before.axes[:ROBOT_AXES], others, motion.kind, settings)
         track = Track(motion, (piece,), self.limits)
-        axes = piece.curve.axes(np.ones(1))[0]
+        axes = piece.curve.end
         reached = point if motion.angle is None else None
         return track, before.reached(axes, reached, settings.placement)
 
@@ -179,9 +175,9 @@ class Tracks:
         curve = JointLine(self.arm, settings.placement, axes, axes)
         return Piece(curve, ceiling_of(curve, self.limits, self.limits, ()), is_still=True)
 
-    def _point(self, motion: Motion, target: Target, before: Programmed) -> Pose:
+    def _point(self, motion: Motion, target: Target, before: Programmed) -> tuple[float, ...]:
         placement = motion.settings.placement
-        return before.pose(target, placement, motion.is_relative, motion.reference)
+        return before.components_of(target, placement, motion.is_relative, motion.reference)
 
     # ----------------------------------------------------------------------------------- limits
 

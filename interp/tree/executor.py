@@ -51,8 +51,8 @@ class _Active:
 class TreeExecutor:
     """Runs a checked program from a routine of its first file on; see `interp.executor.Executor`.
 
-    ``routine`` is the first one where it is not given. ``beside`` is an executor of the same program
-    whose data lists it shares. Raises `LinkError` where it cannot begin.
+    ``routine`` is the first one where it is not given. ``beside`` is an executor of the same
+    program whose data lists it shares. Raises `LinkError` where it cannot begin.
     """
 
     def __init__(
@@ -129,6 +129,7 @@ class TreeExecutor:
         """
         handed, guard = self._run.handed(code), self._run.guard
         depth, cells = self._run.depth, self._run.cells
+        self._run.guard = Guard.OFF  # it holds for a statement, which this is no part of
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
         stack = [_Active(Statements(self._run, frame).truth(node), frame)]

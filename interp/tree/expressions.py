@@ -28,6 +28,7 @@ from interp.builtins import BUILTINS, WORLD, Surroundings, call
 from interp.faults import LinkError, fault
 from interp.inspection import Seen
 from interp.operators import apply, apply_unary
+from interp.phrases import is_variable
 from interp.requests import At, Invoke, Read, StopAdvance, Write
 from interp.tree.names import find_text
 from interp.tree.places import Local, Place, Remote, element, fresh, member, of_type, sized
@@ -296,7 +297,7 @@ class Expressions:
         type_, name = self.run.program.type_of(parameter), parameter.symbol.key
         if argument is None:
             return fresh(type_, name)
-        if not is_in and self._is_variable(argument):
+        if not is_in and is_variable(self.frame.unit, argument):
             place = yield from self.place(argument)
             if isinstance(place, Remote):
                 return place
@@ -307,15 +308,6 @@ class Expressions:
         made = fresh(sized(type_, value), name)
         made.set(value)
         return made
-
-    def _is_variable(self, node: ast.Expression) -> bool:
-        """Whether it is something that can be changed."""
-        while isinstance(node, ast.Subscript | ast.Member):
-            node = node.base
-        if not isinstance(node, ast.Variable):
-            return False
-        found = self.frame.unit.found(node.name)
-        return found is None or found.symbol.kind is not Kind.CONSTANT
 
     def _predefined(self, node: ast.Call, *, is_value: bool) -> Steps[Any]:
         """Call what the controller brings along; what is passed :OUT is assigned afterwards."""
@@ -329,7 +321,7 @@ class Expressions:
                 is_out, type_ = parameters[number].is_out, parameters[number].type
             else:
                 is_out, type_ = name in WORLD or BUILTINS[name].changes_more, UNKNOWN
-            if argument is not None and is_out and self._is_variable(argument):
+            if argument is not None and is_out and is_variable(self.frame.unit, argument):
                 place = yield from self.place(argument)
                 value = yield from self.read(place)
             elif argument is not None:

@@ -6,9 +6,8 @@ What is to be done or looked at later is handed over as a `interp.requests.Code`
 from __future__ import annotations
 
 from grammar import ast
-from grammar.symbols import SignalSymbol
-from grammar.walk import walk
 from interp.faults import LinkError
+from interp.phrases import is_constant_output, signal_name
 from interp.requests import (
     BrakeArm,
     DeclareInterrupt,
@@ -30,18 +29,6 @@ from interp.tree.run import Steps
 from interp.values import Value, copied, text_of
 
 __all__ = ["Motions"]
-
-_CONSTANT = (
-    ast.IntegerLiteral,
-    ast.RealLiteral,
-    ast.BoolLiteral,
-    ast.BitLiteral,
-    ast.StringLiteral,
-    ast.EnumConstant,
-    ast.Unary,
-    ast.Parenthesised,
-    ast.Name,
-)
 
 
 class Motions(Expressions):
@@ -137,10 +124,7 @@ class Motions(Expressions):
         self, action: ast.Assignment | ast.CallStatement
     ) -> Steps[tuple[Path, Value] | None]:
         """The assignment of a literal to a system variable with literal indices, if it is one."""
-        if not isinstance(action, ast.Assignment):
-            return None
-        parts = [action.value, *_indices(action.target)]
-        if not all(isinstance(one, _CONSTANT) for part in parts for one in walk(part)):
+        if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return None
         place = yield from self.place(action.target)
         if not isinstance(place, Remote):
@@ -188,23 +172,8 @@ class Motions(Expressions):
         yield SwitchSignal(*(self.at(), node.keyword, False, name, None, None, None, None))
 
     def _signal_name(self, node: ast.Expression) -> str:
-        """The signal, or else the system variable, in an expression, by its name here."""
-        names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
-        for name in names:
-            found = self.frame.unit.found(name)
-            if found is not None and isinstance(found.symbol, SignalSymbol):
-                return name.key
-        for name in names:
-            if name.key.startswith("$"):
-                return name.key
-        raise LinkError("nothing tells which signal is meant")
-
-
-def _indices(node: ast.Expression) -> list[ast.Expression]:
-    """All indices in what is written to."""
-    found: list[ast.Expression] = []
-    while isinstance(node, ast.Subscript | ast.Member):
-        if isinstance(node, ast.Subscript):
-            found += [one for one in node.indices if one is not None]
-        node = node.base
-    return found
+        """The signal that is meant, by its name here."""
+        name = signal_name(self.frame.unit, node)
+        if name is None:
+            raise LinkError("nothing tells which signal is meant")
+        return name

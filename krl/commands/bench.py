@@ -1,7 +1,6 @@
 """`krl bench`: how good and how fast the tools themselves are."""
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,32 +11,25 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.bench_arm import arm
+from krl.commands.bench_fuzz import fuzz
+from krl.commands.bench_mutation import mutation
+from krl.commands.bench_real_code import real_code
+from krl.commands.bench_vm import bench_vm
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
 
 __all__ = ["app"]
 
 _DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
-_NEGATIVES = Path("corpus", "negatives")
-_AIMS = (
-    ("mutants", ""),
-    ("detected", "0.99"),
-    ("rule_top1", "0.85"),
-    ("rule_top5", "0.97"),
-    ("item_top1", "0.65"),
-    ("item_top5", "0.90"),
-    ("repair_top1", "0.80"),
-    ("repair_top5", "0.92"),
-    ("clusters_per_cause", "1.3"),
-    ("false_accept", "0.005"),
-    ("reproducer_median_tokens", "6"),
-    ("seconds_per_mutant", ""),
-)
 _MB = 1_000_000
 _LARGEST = 2_000
 
 app = typer.Typer(help="Measure the tools themselves.")
+app.command("mutation")(mutation)
+app.command("vm")(bench_vm)
 app.command("arm")(arm)
+app.command("fuzz")(fuzz)
+app.command("real-code")(real_code)
 
 
 @app.callback()
@@ -129,73 +121,6 @@ def check(
         _write(record, json_file)
     _print_check(record)
     return FINE
-
-
-@app.command("mutation")
-def mutation(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="[PATH]...", help="Programs; default: those in corpus/programs."),
-    ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
-    grammar: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
-    ] = None,
-    negatives: Annotated[
-        Path, typer.Option(metavar="DIR", help="Programs that must stay rejected.")
-    ] = _NEGATIVES,
-    singles: Annotated[
-        int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
-    ] = 0,
-    multiple: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
-    ] = 200,
-    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
-) -> int:
-    """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
-    from grammar import GrammarError, read_file
-    from grammar.generate import GRAMMAR
-    from recovery.assessment import examine
-    from recovery.ingest import IngestError
-    from recovery.negatives import NegativeError, load
-    from recovery.specimens import choose, material_for
-
-    roots = paths or [_DEFAULT_CORPUS[0]]
-    try:
-        whole = read_file(grammar or GRAMMAR)
-        material = material_for(whole, roots, load(negatives), seed)
-        chosen = choose(whole, singles, multiple, seed)
-        with progress_bar("assessing", len(chosen)) as bar:
-            record = examine(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
-    except (GrammarError, IngestError, NegativeError) as error:
-        raise Unusable(str(error)) from error
-    record = {
-        "bench": "mutation",
-        "grammar": (grammar or GRAMMAR).name,
-        "shown": len(material.shown),
-        "held_out": len(material.held_out),
-        **record,
-    }
-    kinds = record["by_kind"]
-    if json_file is not None:
-        _write(record, json_file)
-    console = Console(highlight=False)
-    console.print(
-        _table(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
-    )
-    shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
-    rows = [(kind, *(_plain(figures[n]) for n in shown)) for kind, figures in kinds.items()]
-    console.print(_table(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
-    return FINE
-
-
-def _plain(value: float | None) -> str:
-    return "–" if value is None else f"{value:g}"
 
 
 def _sizes(given: str) -> list[float]:

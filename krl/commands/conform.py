@@ -69,9 +69,7 @@ def conform(
         return _import(words[1:], json_file)
     cases = _cases(words)
     if list_:
-        for case in cases:
-            typer.echo(f"{case.name:42} {','.join(case.rules):22} {case.title}")
-        return FINE
+        return _list(cases, json_file)
     executors = _chosen(executor, "executor")
     robots = _chosen(robot, "robot")
     begun = time.perf_counter()
@@ -81,6 +79,29 @@ def conform(
     _tell(results, seconds)
     failed = any(one.verdict == "fail" for one in results)
     return FINDINGS if failed else FINE
+
+
+def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
+    """The cases, with what a recording needs to know of them."""
+    from krl.writing import write_json
+
+    for case in cases:
+        typer.echo(f"{case.name:42} {','.join(case.rules):22} {case.title}")
+    if json_file is not None:
+        told = [
+            {
+                "case": case.name,
+                "digest": case.digest,
+                "phase": case.phase,
+                "rules": list(case.rules),
+                "title": case.title,
+                "io": list(case.io),
+                "files": [source.path for source in case.sources],
+            }
+            for case in cases
+        ]
+        write_json({"cases": told}, json_file)
+    return FINE
 
 
 def _cases(words: Sequence[str]) -> "list[Case]":

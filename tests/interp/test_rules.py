@@ -7,6 +7,7 @@ variable that receives it, the value as JSON or the fault behind ``!``, and the 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,20 +15,25 @@ import pytest
 
 from grammar.source import Source
 from interp.builtins import BUILTINS
-from interp.events import Recorder
-from interp.executors import Prepared, available
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.verify import Verified, verify
+from interp.bytecode.vm import Machine
+from interp.events import Recorder, Sink
+from interp.executor import Executor
 from interp.faults import Fault
+from interp.native import AVAILABLE
 from interp.operators import BINARY, UNARY
-from interp.program import Limits, load
+from interp.program import CheckedProgram, load
 from interp.rendering import to_json
 from interp.requests import Fail
 from interp.stub import StubWorld, run
+from interp.tree import TreeExecutor
 
 _TABLE = Path(__file__).parent / "data" / "rules.tsv"
 _ROWS = [line.split("\t") for line in _TABLE.read_text(encoding="utf-8").splitlines()[1:]]
-_PROGRAM = """DEF main()
+_PROGRAM = """DEF CASE_{number}()
 DECL {type} R
-DECL INT I,J,BIG,OFF,N[2,3]
+DECL INT I,J,BIG,OFS,N[2,3]
 DECL REAL X,Y
 DECL BOOL T,F
 DECL CHAR C,S[8],U[8]
@@ -61,33 +67,49 @@ END
 """
 
 
-def _outcome(executor: str, type_: str, expression: str, before: str) -> Any:
+@pytest.fixture(scope="module")
+def program() -> CheckedProgram:
+    """One routine for each row of the table."""
+    routines = [
+        _PROGRAM.format(
+            number=number, type=row[1], expression=row[2], before=row[4].replace(" ~ ", "\n")
+        )
+        for number, row in enumerate(_ROWS)
+    ]
+    return load([Source("".join(routines), "main.src")], "main.src", strict=False)
+
+
+@pytest.fixture(scope="module")
+def verified(program: CheckedProgram) -> Verified:
+    """The same as bytecode."""
+    return verify(compile_program(program).program)
+
+
+@pytest.mark.parametrize(
+    "number", range(len(_ROWS)), ids=[f"{row[0].replace(' ', ',')}:{row[2]}" for row in _ROWS]
+)
+def test_rules(program: CheckedProgram, verified: Verified, number: int) -> None:
+    """The expression has the value, or the fault, that its rules tell, on every executor."""
+    expected = _ROWS[number][3]
+    wanted = expected if expected.startswith("!") else json.loads(expected)
+    name = f"CASE_{number}"
+    assert wanted == _outcome(lambda sink: TreeExecutor(program, name, sink=sink))
+    assert wanted == _outcome(lambda sink: Machine(verified, name, sink=sink))
+    if AVAILABLE:
+        from interp.native.machine import Machine as NativeMachine
+
+        assert wanted == _outcome(lambda sink: NativeMachine(verified, name, sink=sink))
+
+
+def _outcome(make: Callable[[Sink], Executor]) -> Any:
     """The value that the variable receives, or the slug of the fault."""
-    lines = before.replace(" ~ ", "\n")
-    text = _PROGRAM.format(type=type_, expression=expression, before=lines)
     recorder = Recorder()
-    prepared = Prepared(load([Source(text, "main.src")], "main.src", strict=False))
-    ended = run(prepared.executor(executor, Limits(), recorder), StubWorld()).last
+    ended = run(make(recorder), StubWorld()).last
     if isinstance(ended, Fail):
         assert isinstance(ended.fault, Fault), ended.fault
         return f"!{ended.fault.slug}"
-    return to_json(next(one.value for one in reversed(recorder.events) if one.path == ("R",)))
-
-
-@pytest.mark.parametrize("executor", available())
-@pytest.mark.parametrize(
-    ("rules", "type_", "expression", "expected", "before"),
-    _ROWS,
-    ids=[f"{row[0].replace(' ', ',')}:{row[2]}" for row in _ROWS],
-)
-def test_rules(
-    executor: str, rules: str, type_: str, expression: str, expected: str, before: str
-) -> None:
-    """The expression has the value, or the fault, that its rules tell."""
-    found = _outcome(executor, type_, expression, before)
-    wanted = expected if expected.startswith("!") else json.loads(expected)
-    assert wanted == found, rules
-    assert type(wanted) is type(found), rules
+    value = next(one.value for one in reversed(recorder.events) if one.path == ("R",))
+    return to_json(value)
 
 
 def test_every_operator_and_function_has_its_rules() -> None:

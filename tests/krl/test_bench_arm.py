@@ -8,6 +8,8 @@ import pytest
 from krl.cli import main
 
 pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("ruckig")
+pytest.importorskip("scipy")
 
 
 def test_the_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

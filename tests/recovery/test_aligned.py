@@ -45,3 +45,20 @@ def test_the_order_of_the_phrases_does_not_matter() -> None:
 def test_phrases_without_much_in_common_are_not_made_one() -> None:
     """Two different statements give nothing."""
     assert [] == common("HALT", "WAIT SEC 1")
+
+
+def test_operands_that_no_rule_reads_alike_are_parts_of_their_own() -> None:
+    """Each word keeps the operand it comes with, and parts keep their order."""
+    assert "SLIN (FOR assignment | SEC expression)" in common("SLIN FOR A=1", "SLIN SEC 5")
+    assert "HOLD target expression?" not in common("HOLD A C_DIS", "HOLD A")
+
+
+def test_a_word_that_is_a_name_elsewhere_is_a_word_between_operands() -> None:
+    """DELAY may be a name; beside another operand it is none, and `DELAY = 1` assigns nothing."""
+    grammar = Recognizer(read_file(GRAMMAR))
+    phraser = Phraser(grammar)
+    kinds = [[(k, None) for k in grammar.kinds(t)[:-1]] for t in ("HALT A DELAY=1", "HALT B")]
+    assert ("HALT", "variable", "(DELAY '=' number)?") in [
+        tuple("variable" if s in ("name", "variable", "expression") else s for s in symbols)
+        for symbols in common_phrases(phraser, kinds)
+    ]

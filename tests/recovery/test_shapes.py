@@ -196,3 +196,9 @@ def test_the_order_of_files_does_not_matter() -> None:
         "SWITCH=1 2",
     )
     assert titles(*programs) == titles(*programs[::-1])[::-1]
+
+
+def test_a_word_that_alone_comes_behind_a_keyword_is_one() -> None:
+    """`BRAKE F` in several files, and never another name there: F is meant as a keyword."""
+    assert 4 * ["BRAKE … F"] == titles(*each(*["BRAKE F"] * 4))
+    assert only_names(["BRAKE F", "BRAKE G", "BRAKE H", "BRAKE I"], "F")

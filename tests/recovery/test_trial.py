@@ -14,6 +14,7 @@ from grammar.edits import (
     Insert,
     MakeOptional,
     RemoveAlternative,
+    RemoveElement,
     Widen,
     apply,
 )
@@ -230,3 +231,25 @@ def test_edits_that_make_no_grammar_mend_nothing(edits: list[Edit]) -> None:
     """An edit that does not fit, or that no recogniser could read, is no error and no mend."""
     assert edited(RECOGNIZER, edits) is None
     assert Outcome(frozenset(), frozenset()) == trial().outcome(edits)
+
+
+def test_a_line_is_tried_behind_what_lets_it_begin_in_every_way() -> None:
+    """A second routine follows a routine: what leads there through a data list does not count."""
+    text = "DEFDAT A\nENDDAT\n", "DEF A()\nEND\nDEF B(X)\nEND\n"
+    whole = read_file(GRAMMAR)
+    grammar = apply(whole, [RemoveElement("procedure", (1, 5))])
+    found = survey_texts([(f"{n}.src", t) for n, t in enumerate(text)], grammar)
+    form = found.forms[found.files[1].failures[0].form]
+    trial = Trial(Recognizer(grammar), [Line(form, ())])
+    edit = Insert("procedure", (1, 5), "parameters?")
+    assert frozenset([0]) == trial.outcome([edit]).mended
+
+
+def test_two_readings_are_told() -> None:
+    """A word that is read as it is and by a rule has two readings; the rule alone gives one."""
+    grammar = read_file(GRAMMAR)
+    found = survey_texts([("a.src", "DEF A()\nHALT C_DIS\nEND\n")], grammar)
+    form = found.forms[found.files[0].failures[0].form]
+    trial = Trial(Recognizer(grammar), [Line(form, ())])
+    assert trial.is_ambiguous([Insert("halt", (1, 2), "(C_DIS | criterion)?")], [0])
+    assert not trial.is_ambiguous([Insert("halt", (1, 2), "criterion?")], [0])

@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from grammar import ast
 from grammar.predefined import Parameter, System
 from grammar.scopes import Found
-from grammar.symbols import Kind, Space
+from grammar.symbols import Space
 from grammar.types import CHAR, REAL, UNKNOWN, Array, Type
 from grammar.walk import walk
 from interp.builtins import BUILTINS, FUNCTIONS, WORLD
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
+from interp.bytecode.compiler.changes import may_change
 from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
@@ -48,6 +49,7 @@ from interp.bytecode.program import (
     Mode,
     Program,
 )
+from interp.phrases import is_variable
 from interp.program import Routine
 from interp.variables import (
     MOST_CELLS,
@@ -130,6 +132,11 @@ class Calls(Expressions):
             if not is_complete_parameter(type_):
                 name = formals.found[place].symbol.name
                 raise self.refuse(str(untyped_parameter(name, routine.name)))
+            if self._needs_no_copy(routine, formals, place, argument):
+                assert argument is not None, "something is passed"
+                self.value(argument, type_)
+                bindings.append(None)
+                continue
             bindings.append(self._passed(type_, argument, formals.is_in[place], later))
         if self.context.tables.cells + cells_of_routine(program, routine) > MOST_CELLS:
             raise self.fail("stack")
@@ -138,6 +145,27 @@ class Calls(Expressions):
             self.refer(kept)
             return Block(kept.type)
         return None if result is None else Scalar(result)
+
+    def _needs_no_copy(
+        self, routine: Routine, formals: Formals, place: int, argument: ast.Expression | None
+    ) -> bool:
+        """Whether a formal array of this routine is passed on :IN to one that does not change it.
+
+        What else could change it meanwhile is not looked at (unconfirmed).
+        """
+        type_, symbol = formals.types[place], formals.found[place].symbol
+        if not isinstance(type_, Array) or None not in type_.sizes or not formals.is_in[place]:
+            return False
+        while isinstance(argument, ast.Subscript) and argument.indices[0] is None:
+            argument = argument.base
+        found = (
+            self.context.unit.found(argument.name) if isinstance(argument, ast.Variable) else None
+        )
+        given = None if found is None else self.context.variables.get(found.symbol)
+        if not isinstance(given, FormalView):
+            return False
+        is_alike = given == FormalView(given.offset, self.closed(type_.element), len(type_.sizes))
+        return is_alike and not may_change(routine, symbol)
 
     def _passed(
         self,
@@ -150,7 +178,7 @@ class Calls(Expressions):
         is_view = isinstance(type_, Array) and (not is_in or None in type_.sizes)
         if argument is None:
             self._left_out(type_, is_in, is_view)
-        elif not is_in and self._is_variable(argument):
+        elif not is_in and is_variable(self.context.unit, argument):
             place = self.place(argument)
             if isinstance(place, Remote):
                 return self._bound(place)
@@ -209,12 +237,12 @@ class Calls(Expressions):
         value = self.value(argument, type_)
         if value == Block(type_) and is_copied_by_call:
             return
-        self.writer.insert(behind, *self._reference(kept))
         if isinstance(type_, Plain):
-            self.writer.insert(behind, *self._reference(kept))
             self.convert(value, type_)
-            self.emit(Op.STORE)
+            self.emit(Op.STORE_LOCAL, kept.offset)
+            self.refer(kept)
             return
+        self.writer.insert(behind, *self._reference(kept))
         self.store_block(type_, value, behind + 1)
         self.refer(kept)
 
@@ -244,15 +272,6 @@ class Calls(Expressions):
         self.store_block(made, value, behind + 1)
         self.refer(kept)
         self.as_view(Block(made))
-
-    def _is_variable(self, node: ast.Expression) -> bool:
-        """Whether it is something that can be changed."""
-        while isinstance(node, ast.Subscript | ast.Member):
-            node = node.base
-        if not isinstance(node, ast.Variable):
-            return False
-        found = self.context.unit.found(node.name)
-        return found is None or found.symbol.kind is not Kind.CONSTANT
 
     # ----------------------------------------------------------------------- the controller's
 
@@ -313,7 +332,7 @@ class Calls(Expressions):
             is_out, type_ = parameter.is_out, parameter.type
         else:
             is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
-        if is_out and self._is_variable(argument):
+        if is_out and is_variable(self.context.unit, argument):
             return self._changed(self.place(argument))
         value = self.value(argument, type_)
         if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
@@ -343,8 +362,11 @@ class Calls(Expressions):
         value = self.read(place)
         assert isinstance(value, Scalar | Block), "what is read has a known type"
         kept = Cells(self.writer.temporary(value.type), value.type)
-        self.writer.insert(behind, *self._reference(kept))
-        self.emit(*((Op.STORE,) if isinstance(value, Scalar) else self._copy(value.type)))
+        if isinstance(value, Scalar):
+            self.emit(Op.STORE_LOCAL, kept.offset)
+        else:
+            self.writer.insert(behind, *self._reference(kept))
+            self.emit(*self._copy(value.type))
         path = self.pushed_path(place)
         self.refer(kept)
         return Changed(Input(Mode.REF, self.number(value.type)), None, path)

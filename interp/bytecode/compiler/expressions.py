@@ -167,6 +167,8 @@ class Expressions(Memory):
             if number != INT_MIN:
                 last.operands = (-number,)
                 return value
+        for step in selection.conversions[0]:
+            self.emit(Op[step.name.upper()])
         self._apply(selection.primitive)
         return self._result(selection, value)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from grammar import ast
-from grammar.symbols import SignalSymbol
 from grammar.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
 from grammar.walk import walk
 from interp.bytecode._generated.opcodes import Op
@@ -32,22 +31,11 @@ from interp.bytecode.program import (
 )
 from interp.faults import Fault, LinkError
 from interp.operators import apply_unary
+from interp.phrases import is_constant_output, signal_name
 from interp.values import EnumValue, constant, converted, integer, letters, single
 from interp.values import Value as Known
 
 __all__ = ["Motions"]
-
-_CONSTANT = (
-    ast.IntegerLiteral,
-    ast.RealLiteral,
-    ast.BoolLiteral,
-    ast.BitLiteral,
-    ast.StringLiteral,
-    ast.EnumConstant,
-    ast.Unary,
-    ast.Parenthesised,
-    ast.Name,
-)
 
 
 class Motions(Calls):
@@ -198,10 +186,7 @@ class Motions(Calls):
 
     def _output(self, action: ast.Assignment | ast.CallStatement) -> Argument:
         """The assignment of a literal to a system variable with literal indices, if it is one."""
-        if not isinstance(action, ast.Assignment):
-            return Constant(None)
-        parts = [action.value, *_indices(action.target)]
-        if not all(isinstance(one, _CONSTANT) for part in parts for one in walk(part)):
+        if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return Constant(None)
         before = self.writer.here
         place = self.place(action.target)
@@ -297,23 +282,8 @@ class Motions(Calls):
         self.ask("SwitchSignal", *words, *[Constant(None)] * 4)
 
     def _signal_name(self, node: ast.Expression) -> str:
-        """The signal, or else the system variable, in an expression, by its name here."""
-        names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
-        for name in names:
-            found = self.context.unit.found(name)
-            if found is not None and isinstance(found.symbol, SignalSymbol):
-                return name.key
-        for name in names:
-            if name.key.startswith("$"):
-                return name.key
-        raise self.unlinked("nothing tells which signal is meant")
-
-
-def _indices(node: ast.Expression) -> list[ast.Expression]:
-    """All indices in what is written to."""
-    found: list[ast.Expression] = []
-    while isinstance(node, ast.Subscript | ast.Member):
-        if isinstance(node, ast.Subscript):
-            found += [one for one in node.indices if one is not None]
-        node = node.base
-    return found
+        """The signal that is meant, by its name here."""
+        name = signal_name(self.context.unit, node)
+        if name is None:
+            raise self.unlinked("nothing tells which signal is meant")
+        return name

@@ -213,6 +213,8 @@ class Project:
                 means = owner.unit.found(one.name)
                 if means is not None and means.symbol in owner.variables:
                     found[means.symbol] = None
+            elif isinstance(one, ast.Call) and one.name.key in _BY_TEXT:
+                found.update(dict.fromkeys(_named_by_text(owner, one)))
         return list(found)
 
     def _captured(self, writer: Writer, symbol: Symbol, place: Place) -> Place:
@@ -239,3 +241,16 @@ class Project:
             else:
                 steps.append(step)
         return Remote(tuple(steps), place.type)
+
+
+#: Functions that are given the name of a variable as a text [TYP-18].
+_BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
+
+
+def _named_by_text(owner: Context, call: ast.Call) -> list[Symbol]:
+    """The variables of the owner that such a call may mean: of a text that is known, the one."""
+    match call.arguments:
+        case (ast.StringLiteral(text=text),):
+            wanted = text.partition("[")[0].partition(".")[0].strip().upper()
+            return [symbol for symbol in owner.variables if symbol.key == wanted]
+    return list(owner.variables)

@@ -1,7 +1,8 @@
-"""`krl asm` and `krl disasm`: text to image and back, and one line for whatever is wrong."""
+"""`krl compile`, `asm`, `disasm`, `bench real-code`, and one line for whatever is wrong."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -57,3 +58,60 @@ def test_folders_are_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert 2 == main(["disasm", str(tmp_path)])
     assert 2 == main(["asm", str(source), "-o", str(tmp_path)])
     assert 3 == capsys.readouterr().err.count("a folder, not a file")
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A program with its data list; gives the program."""
+    source = tmp_path / "main.src"
+    source.write_text("DEF main()\nN=N+1\nGone(N)\nEND\n", encoding="utf-8")
+    data = "DEFDAT main\nINT N=4\nENDDAT\n"
+    source.with_suffix(".dat").write_text(data, encoding="utf-8")
+    return source
+
+
+def test_compiled_programs_round_trip(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file is compiled with its project; its image is disassembled and assembled to itself."""
+    image, text = tmp_path / "main.krlb", tmp_path / "main.kasm"
+    assert 1 == main(["compile", str(project)])
+    told = capsys.readouterr()
+    assert "main.src:3: Gone is declared nowhere" in told.err
+    assert "1 code objects" in told.out
+    assert 0 == main(["disasm", str(image)])
+    text.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert "data MAIN.N INT = 4" in text.read_text(encoding="utf-8")
+    assert 0 == main(["asm", str(text), "-o", str(tmp_path / "again.krlb")])
+    assert image.read_bytes() == (tmp_path / "again.krlb").read_bytes()
+
+
+def test_strict_compiling(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With --strict nothing is written while the checker finds an error."""
+    project.write_text("DEF main()\nN=TRUE\nEND\n", encoding="utf-8")
+    assert 2 == main(["compile", str(project), "--strict"])
+    assert 1 == capsys.readouterr().err.count("\n")
+    assert not project.with_suffix(".krlb").exists()
+
+
+def test_real_code(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each routine has its line in the record: how far it came, how it ended on each executor."""
+    project.write_text(
+        "DEF main()\nN=N+1\nEND\nDEF lost()\nGone()\nEND\n"
+        "DEF wrong()\nN=TRUE\nEND\nDEFFCT INT half(K:IN)\nINT K\nRETURN 1/(K-1)\nENDFCT\n",
+        encoding="utf-8",
+    )
+    record = tmp_path / "record.json"
+    command = ["bench", "real-code", str(project.parent), "--executor", "tree", "--executor", "vm"]
+    assert 0 == main([*command, "--json", str(record)])
+    assert "0 routines on which executors differ" in capsys.readouterr().out
+    found = json.loads(record.read_text(encoding="utf-8"))
+    assert ["runs", "unlinked", "errors", "runs"] == [one["stage"] for one in found["trials"]]
+    assert {"end": 1, "unlinked": 1, "fault": 1} == found["endings"]["vm"]
+    assert (4, 3, 0) == (found["routines"], found["ran"], found["differences"])
+
+
+def test_unknown_executors(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """An executor that is not there is told."""
+    assert 2 == main(["bench", "real-code", str(project), "--executor", "abacus"])
+    assert "there is no abacus here" in capsys.readouterr().err

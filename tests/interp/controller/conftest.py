@@ -12,12 +12,12 @@ import pytest
 
 from grammar.source import Source
 from interp.controller import Controller, Outcome, Profile, Script, Trace, TraceEvent
+from interp.executors import Prepared
 from interp.faults import Fault
 from interp.program import Limits, load
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
 from interp.robot.core import ControlCore
 from interp.robot.frames import IDENTITY
-from interp.tree import TreeExecutor
 
 SECOND = 1_000_000
 BLEND = 100_000  # µs before and after an approximated point
@@ -118,7 +118,8 @@ class SecondArm:
             if blends:
                 after = queue.motions[index + 1][1].number
                 events.append((end + BLEND, ArmEvent(0, "blend_end", after)))
-            for one in (*motion.places, *motion.stop_places):
+            inner = [place for part in motion.parts for place in part.places]
+            for one in (*motion.places, *inner, *motion.stop_places):
                 at = (
                     one.position * SECOND if one.kind == "DISTANCE" else SECOND + one.position * 1e3
                 )
@@ -277,6 +278,8 @@ def made(
     submit: str | None = None,
     files: dict[str, str] | None = None,
     limits: Limits | None = None,
+    executor: str = "tree",
+    core: type[ControlCore] = ControlCore,
     **more: Any,
 ) -> tuple[Controller, Trace, SecondArm]:
     """A controller for ``main.src`` and other files."""
@@ -286,15 +289,15 @@ def made(
     trace = Trace(is_full=True)
     sink = trace.sink("robot")
     limits = limits or Limits(per_slice=profile.statements)
-    executor = TreeExecutor(program, limits=limits, sink=sink)
+    runs = Prepared(program).executor(executor, limits, sink)
     beside, beside_sink = None, None
     if submit is not None:
         beside_sink = trace.sink("submit")
-        beside = executor.companion(submit, beside_sink)
+        beside = runs.companion(submit, beside_sink)
     arm = SecondArm()
     controller = Controller(
-        executor,
-        lambda switch: ControlCore(arm, switch, 1),
+        runs,
+        lambda switch: core(arm, switch, 1),
         profile=profile,
         script=Script.read(script),
         trace=trace,

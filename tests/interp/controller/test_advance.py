@@ -190,6 +190,12 @@ def test_output_in_step(go: Go) -> None:
     assert [0.0, 0.0, 0.0] == ran.times("motion_planned")
 
 
+def test_output_in_step_is_read(go: Go) -> None:
+    """Read, $OUT_C is what the output has [ADV-11]."""
+    text = "DEF main()\nBOOL B\n$OUT[3]=TRUE\nB=$OUT_C[3]\nWAIT FOR $OUT_C[3]\nEND\n"
+    assert True is go(text).last("B")
+
+
 def test_output_in_step_without_motion(go: Go) -> None:
     """Where nothing is on its way $OUT_C acts at once [ADV-11]."""
     assert [(0.0, 1, True)] == go("DEF main()\n$OUT_C[1]=TRUE\nEND\n").outputs()
@@ -213,12 +219,20 @@ def test_first_motion_with_status(go: Go) -> None:
     assert "end" == go(text).outcome.ending
 
 
-@pytest.mark.parametrize(("frame", "number"), [("$BASE", 1419), ("$TOOL", 1516)])
+@pytest.mark.parametrize(("frame", "number"), [("$TOOL", 1419), ("$BASE", 1516)])
 def test_frames_are_needed(go: Go, frame: str, number: int) -> None:
     """A Cartesian motion without tool or base is a message [MOT-15]."""
-    ran = go(program(f"{frame}=$NULLFRAME", "LIN {X 1}"))
+    ran = go(program(f"{frame}=NONE", "LIN {X 1}", declarations="FRAME NONE\n"))
     assert [number] == ran.messages()
     assert "fault" == ran.outcome.ending
+
+
+def test_frames_at_the_start(go: Go) -> None:
+    """A profile says whether there are any before a program sets them [MOT-15]."""
+    profile = Profile.load()
+    assert [] == go(program("LIN {X 1}"), profile=profile).messages()
+    profile = replace(profile, values={**profile.values, "$TOOL": False})
+    assert [1419] == go(program("LIN {X 1}"), profile=profile).messages()
 
 
 def test_coincidence_run(go: Go) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from interp.controller import Profile
+from interp.values import text_of
 
 Go = Callable[..., Any]
 
@@ -143,9 +144,23 @@ def test_numbers(go: Go, number: int) -> None:
 
 
 def test_unknown_number(go: Go) -> None:
-    """Only what is declared is switched [INT-07]."""
-    ran = go(program("INTERRUPT ON 7\n"))
-    assert "interrupt_unknown" == ran.outcome.error.slug
+    """Only what is declared is switched on; what is not there may be switched off [INT-07]."""
+    assert "interrupt_unknown" == go(program("INTERRUPT ON 7\n")).outcome.error.slug
+    assert "end" == go(program("INTERRUPT OFF 7\n")).outcome.ending
+
+
+def test_list(go: Go) -> None:
+    """$RINT_LIST has what is declared: number, line, module [INT-17]."""
+    text = program(
+        "INTERRUPT DECL 20 WHEN $IN[1] DO A()\nINTERRUPT DECL 7 WHEN $IN[1] DO A()\n"
+        "INTERRUPT ON 7\n",
+        "DEF A()\nEND\n",
+    )
+    entries = [go(text).value("$RINT_LIST", place) for place in (1, 2, 3)]
+    assert [(7, 4), (20, 3), (0, 0)] == [
+        (one.get("INT_PRIO"), one.get("PROG_LINE")) for one in entries
+    ]
+    assert "MAIN" == text_of(entries[0].get("PROG_NAME"))
 
 
 def test_too_many(go: Go) -> None:
@@ -207,6 +222,34 @@ def test_motion_in_a_braked_routine(go: Go) -> None:
     assert [(1, 0.0), (2, 1.0), (3, 1.51), (4, 2.51)] == started
     assert [3.51] == ran.times("interrupt_leave")
     assert [4.01] == ran.times("motion_end", motion=2)
+    assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
+
+
+NESTED_MOTIONS = program(
+    "INTERRUPT DECL 20 WHEN $IN[1] DO STOPS()\nINTERRUPT DECL 10 WHEN $IN[2] DO MOVES()\n"
+    "INTERRUPT ON\n" + HOME + "PTP {A1 100}\n",
+    "DEF STOPS()\nBRAKE\nWAIT SEC 0.5\nEND\nDEF MOVES()\nPTP {A1 -30}\nEND\n",
+)
+
+
+def test_motion_in_a_routine_above_a_braked_one(go: Go) -> None:
+    """Whoever has moved the arm, the routine that braked takes it back [INT-09]."""
+    ran = go(NESTED_MOTIONS, "t=1.5 IN[1]=TRUE\nt=1.6 IN[2]=TRUE")
+    started = [(one.fields["motion"], one.time / 1e6) for one in ran.told("motion_start")]
+    assert [(1, 0.0), (2, 1.0), (3, 1.608), (4, 2.608)] == started
+    assert [4.108] == ran.times("motion_end", motion=2)
+    assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
+
+
+def test_brake_of_a_routine_that_moves(go: Go) -> None:
+    """A higher priority stops the motion of a routine, which then goes on with it [INT-09]."""
+    text = NESTED_MOTIONS.replace("WAIT SEC 0.5", "PTP {A1 -30}\nWAIT SEC 0")
+    text = text.replace("DEF MOVES()\nPTP {A1 -30}", "DEF MOVES()\nBRAKE\nWAIT SEC 0.12")
+    ran = go(text, "t=1.5 IN[1]=TRUE\nt=2 IN[2]=TRUE")
+    assert ["brake", "brake", "proceed", "proceed"] == ran.arm.calls
+    assert [2.004] == ran.times("brake")[1:]
+    assert [2.136] == ran.times("interrupt_leave", priority=10)
+    assert [2.642] == ran.times("motion_end", motion=3)  # 1.51, a second, and 0.132 of standing
     assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
 
 

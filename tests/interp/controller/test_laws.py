@@ -62,7 +62,7 @@ def test_nesting(go: Go, events: list[tuple[int, float]]) -> None:
     assert [] == stack
     assert "end" == ran.outcome.ending
     assert 6 == ran.last("I")
-    assert [None] * 6 == list(ran.value("$BASE").members)  # as the program left it
+    assert [0.0] * 6 == list(ran.value("$BASE").members)  # as the program left it
     assert [1, 2, 3] == [one.fields["motion"] for one in ran.told("motion_end")]
 
 

@@ -70,6 +70,7 @@ def test_pulse(go: Go) -> None:
     """PULSE goes on while the program does, in tenths of a second [IOT-07]."""
     ran = go(program("PULSE($OUT[4],TRUE,0.26)\n$OUT[5]=TRUE\nWAIT SEC 1\n"))
     assert [(0.0, 4, True), (0.0, 5, True), (0.3, 4, False)] == ran.outputs()
+    assert ["main.src:5", "main.src:6", "main.src:5"] == [one.place for one in ran.told("out")]
 
 
 def test_pulse_through_a_signal(go: Go) -> None:

@@ -124,6 +124,14 @@ def test_operator(go: Go) -> None:
     assert ["brake", "proceed"] == ran.arm.calls
 
 
+def test_wait_while_stopped(go: Go) -> None:
+    """A wait that is over while the operator has stopped the program ends with START."""
+    ran = go(program("WAIT SEC 0.1\nI=1\n"), "t=0.05 press STOP\nt=1 press START")
+    assert [1.0] == ran.times("assign", name="I")
+    times = [one.time for one in ran.events]
+    assert sorted(times) == times
+
+
 def test_override(go: Go) -> None:
     """$OV_PRO scales the speed; 0 stops the arm until it is raised [MOT-09]."""
     text = program("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {A1 1}\n")

@@ -103,12 +103,27 @@ def test_priorities(go: Go, priority: int) -> None:
     assert "trigger_priority" == go(call(priority)).outcome.error.slug
 
 
+@pytest.mark.parametrize("place", ["DISTANCE=0 DELAY=20000000", "PATH=-1.0E+08 DELAY=0"])
+def test_range(go: Go, place: str) -> None:
+    """Places and delays have a limit [TRG-03, TRG-04]."""
+    ran = go(program(f"TRIGGER WHEN {place} DO $OUT[1]=TRUE\nLIN {{X 1}}\n"))
+    assert "trigger_range" == ran.outcome.error.slug
+
+
 def test_call_waits_for_a_higher_priority(go: Go) -> None:
     """A trigger's routine waits while one of a higher priority runs [TRG-06, INT-05]."""
     text = call(20).replace(HOME, "INTERRUPT DECL 5 WHEN $IN[1] DO LONG()\nINTERRUPT ON 5\n" + HOME)
     ran = go(text + "DEF LONG()\nWAIT SEC 0.3\nEND\n", "t=0.95 IN[1]=TRUE")
     assert [0.96, 1.26] == ran.times("interrupt_enter")
     assert [1.03] == ran.times("trigger")
+
+
+def test_error_in_a_trigger(go: Go) -> None:
+    """$ERR tells that it is one of a trigger [TRG-12]."""
+    text = call(8).replace("N=N+1\n", "ON_ERROR_PROCEED\n$OUT[N]=TRUE\n")
+    ran = go(text)
+    assert "#TRG_REGULAR" == repr(ran.value("$ERR", "TRIGGER_TYPE"))
+    assert 1444 == ran.value("$ERR", "NUMBER")
 
 
 def test_too_many(go: Go) -> None:

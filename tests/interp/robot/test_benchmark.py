@@ -1,6 +1,13 @@
 """The program of the bench: motions as real ones are, and the strategies compared on it."""
 
+import pytest
+
 from interp.robot.batch import BatchCore
+
+pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("ruckig")
+pytest.importorskip("scipy")
+
 from interp.robot.benchmark import drive, motions
 
 

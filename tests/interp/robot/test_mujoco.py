@@ -17,13 +17,15 @@ from interp.robot.models import default_machine
 from interp.robot.motions import Motions
 from interp.robot.mujoco_model import Box
 from interp.robot.placement import Placement
-from interp.robot.planned_arm import PlannedArm
 from interp.robot.robots import RobotFault, make_robot
 from interp.robot.targets import follow, solve
 
 pytest.importorskip("mujoco")
+pytest.importorskip("ruckig")
+pytest.importorskip("scipy")
 
 from interp.robot.mujoco import MujocoRobot
+from interp.robot.planned_arm import PlannedArm
 
 Array = npt.NDArray[np.float64]
 HOME = (0.0, -70.0, 100.0, 0.0, 30.0, 0.0)

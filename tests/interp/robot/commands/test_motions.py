@@ -40,9 +40,9 @@ def test_a_member_that_no_target_has() -> None:
 @pytest.mark.parametrize("robot", ["none", "kinematic", "mujoco"])
 def test_the_example(robot: str) -> None:
     """The gas comes on at the microsecond at which the ignition ends, on every robot."""
-    pytest.importorskip("py_opw_kinematics")
-    if robot == "mujoco":
-        pytest.importorskip("mujoco")
+    needed = ["py_opw_kinematics", "ruckig", "scipy"] + ["mujoco"] * (robot == "mujoco")
+    for module in needed:
+        pytest.importorskip(module)
     done = subprocess.run(
         [sys.executable, str(EXAMPLE), robot],
         cwd=EXAMPLE.parents[1],

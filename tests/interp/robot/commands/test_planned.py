@@ -16,6 +16,8 @@ from interp.robot.motions import Motions
 from interp.robot.placement import Placement
 
 pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("ruckig")
+pytest.importorskip("scipy")
 
 from interp.robot.planned_arm import PlannedArm
 

@@ -1,24 +1,21 @@
 """The reference of rules, ``docs/semantics.md``: what KRL means, how sure that is, what is done.
 
-Made of the statements in ``docs/semantics.tsv``, the tiers in ``system/rules.tsv`` and the codes in
-``codes.tsv``. Run ``python -m grammar.semantics`` after a change to any of them; a test tells when
-the page is stale.
+Made of the registry (`conformance.registry`) and of the codes of findings (`grammar.codes`). Run
+``python -m conformance.semantics`` after a change to either; a test tells when the page is stale.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from conformance.registry import Rule, registry
 from grammar.codes import by_slug
-from grammar.rules import is_confirmed, tiers
+from grammar.rules import is_confirmed
 
-__all__ = ["PAGE", "UNUSED", "Rule", "page", "rules"]
+__all__ = ["PAGE", "UNUSED", "codes_of", "page"]
 
-_DOCS = Path(__file__).parents[1] / "docs"
-PAGE = _DOCS / "semantics.md"
-_TABLE = _DOCS / "semantics.tsv"
+PAGE = Path(__file__).parents[1] / "docs" / "semantics.md"
 
 #: Codes that no check gives yet: where $OUT_C is not allowed is not documented.
 UNUSED = frozenset({"KSS2352"})
@@ -29,7 +26,7 @@ _TODAY = {
     "tables": "tables",
     "check": "checked",
     "lint": "lint",
-    "run": "running: not yet",
+    "run": "running",
 }
 
 _TOPICS: Mapping[str, tuple[str, str]] = {
@@ -56,7 +53,8 @@ _TOPICS: Mapping[str, tuple[str, str]] = {
 _HEAD = """\
 # Semantics
 
-<!-- Made by grammar/semantics.py from semantics.tsv, rules.tsv and codes.tsv. Do not edit. -->
+<!-- Made by conformance/semantics.py from conformance/rules.toml and grammar/codes.tsv. Do not
+edit. -->
 
 What KRL means, as far as it could be found out, and what the workbench does about it today. There
 is no public specification. Each rule says how well it is known, where from, and what is done.
@@ -68,8 +66,8 @@ recollection of a manual that could not be read again. `X`: a page of unknown or
 
 **What is done.** *grammar*: `KRL.g4` reads it, or refuses what is wrong. *tables*: it is in the
 tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` tells, with
-these codes. *lint*: `krl check --stops` tells. *running: not yet*: it is about programs that run;
-the interpreters are to come.
+these codes. *lint*: `krl check --stops` tells. *running*: the interpreters and the controller act on it.
+What shows it are the cases of the judge: `krl conform RULE` runs them.
 """
 
 _SOURCES = """\
@@ -92,50 +90,25 @@ _SOURCES = """\
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """A rule: its statement in our words, its tier, its sources, and what is done for it.
-
-    ``today`` are words of `_TODAY`; ``codes`` those of findings that rest on it.
-    """
-
-    id: str
-    tier: str
-    today: tuple[str, ...]
-    source: str
-    statement: str
-    codes: tuple[str, ...]
-
-    @property
-    def topic(self) -> str:
-        """The first part of its ID."""
-        return self.id.partition("-")[0]
-
-
-def rules() -> list[Rule]:
-    """All rules, in the order of the table. Raises `KeyError` for one without a tier."""
-    codes: dict[str, list[str]] = {}
+def codes_of() -> Mapping[str, tuple[str, ...]]:
+    """The codes of findings that rest on each rule, by its ID."""
+    found: dict[str, tuple[str, ...]] = dict.fromkeys(registry(), ())
     for code in by_slug().values():
         for rule in code.rules:
             if code.code not in UNUSED:
-                codes.setdefault(rule, []).append(code.code)
-    found = []
-    for row in _TABLE.read_text(encoding="utf-8").splitlines()[1:]:
-        id_, today, source, statement = row.split("\t")
-        its = tuple(codes.get(id_, ()))
-        found.append(Rule(id_, tiers()[id_], tuple(today.split()), source, statement, its))
+                found[rule] += (code.code,)
     return found
 
 
 def page() -> str:
     """The page as it should be."""
-    all_rules = rules()
     by_topic: dict[str, list[Rule]] = {topic: [] for topic in _TOPICS}
-    for rule in all_rules:
+    codes = codes_of()
+    for rule in registry().values():
         by_topic[rule.topic].append(rule)
     parts = [_HEAD, _overview(by_topic)]
     for topic, (title, about) in _TOPICS.items():
-        rows = "\n".join(map(_row, by_topic[topic]))
+        rows = "\n".join(_row(rule, codes[rule.id]) for rule in by_topic[topic])
         parts.append(
             f"## {title}\n\n{about}\n\n| rule | tier | | today | source |\n"
             f"| --- | --- | --- | --- | --- |\n{rows}\n"
@@ -168,12 +141,12 @@ def _counts(its: list[Rule]) -> Iterator[int]:
     yield sum(rule.today == ("run",) for rule in its)
 
 
-def _row(rule: Rule) -> str:
+def _row(rule: Rule, codes: tuple[str, ...]) -> str:
     words = []
     for word in rule.today:
         told = _TODAY[word]
         if word in ("check", "lint"):
-            wanted = [code for code in rule.codes if code.startswith("KRL6") == (word == "lint")]
+            wanted = [code for code in codes if code.startswith("KRL6") == (word == "lint")]
             told += f" ({', '.join(wanted)})" if wanted else ""
         words.append(told)
     source = "–" if rule.source == "-" else rule.source

@@ -1,0 +1,125 @@
+"""`krl bench mutation`: how well the search for causes finds its way back."""
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.door import FINE, Unusable
+from krl.progress import progress_bar
+
+__all__ = ["mutation"]
+
+_PROGRAMS = Path("corpus", "programs")
+_NEGATIVES = Path("corpus", "negatives")
+_AIMS = (
+    ("mutants", ""),
+    ("detected", "0.99"),
+    ("rule_top1", "0.85"),
+    ("rule_top5", "0.97"),
+    ("item_top1", "0.65"),
+    ("item_top5", "0.90"),
+    ("repair_top1", "0.80"),
+    ("repair_top5", "0.92"),
+    ("clusters_per_cause", "1.3"),
+    ("false_accept", "0.005"),
+    ("same_ranking", "1"),
+    ("reproducer_median_tokens", "6"),
+    ("seconds_per_mutant", ""),
+)
+
+
+def mutation(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[PATH]...", help="Programs; default: those in corpus/programs."),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    grammar: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
+    ] = None,
+    negatives: Annotated[
+        Path, typer.Option(metavar="DIR", help="Programs that must stay rejected.")
+    ] = _NEGATIVES,
+    singles: Annotated[
+        int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
+    ] = 0,
+    multiple: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
+    ] = 200,
+    repeated: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Mutants whose ranking is worked out again.")
+    ] = 6,
+    runs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="How often it is worked out.")
+    ] = 10,
+    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
+    from grammar import GrammarError, read_file
+    from grammar.generate import GRAMMAR
+    from recovery.assessment import examine
+    from recovery.ingest import IngestError
+    from recovery.negatives import NegativeError, load
+    from recovery.specimens import choose, material_for
+    from recovery.stability import rankings, same_ranking
+
+    try:
+        whole = read_file(grammar or GRAMMAR)
+        material = material_for(whole, paths or [_PROGRAMS], load(negatives), seed)
+        chosen = choose(whole, singles, multiple, seed)
+        again = chosen[:: max(1, len(chosen) // repeated)][:repeated] if repeated else []
+        with progress_bar("assessing", len(chosen)) as bar:
+            record = examine(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
+        with progress_bar("repeating", runs) as bar:
+            same = same_ranking(rankings(material, again, runs, bar)) if again else None
+    except (GrammarError, IngestError, NegativeError) as error:
+        raise Unusable(str(error)) from error
+    record = {
+        "bench": "mutation",
+        "grammar": (grammar or GRAMMAR).name,
+        "shown": len(material.shown),
+        "held_out": len(material.held_out),
+        **record,
+        "same_ranking": same,
+        "repeated": len(again),
+        "runs": runs,
+    }
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    console = Console(highlight=False)
+    console.print(
+        _table(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
+    )
+    shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
+    rows = [
+        (kind, *(_plain(figures[n]) for n in shown)) for kind, figures in record["by_kind"].items()
+    ]
+    console.print(_table(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
+    return FINE
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else f"{value:g}"
+
+
+def _table(columns: Sequence[str], rows: Sequence[tuple[str, ...]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for place, heading in enumerate(columns):
+        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
+    for row in rows:
+        table.add_row(*row)
+    return table

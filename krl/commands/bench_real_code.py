@@ -1,0 +1,208 @@
+"""`krl bench real-code`: every routine of a corpus on every executor."""
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from grammar.source import Source
+    from interp.trials import Trial, Unread
+
+__all__ = ["real_code"]
+
+_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
+_MOST_REASONS = 8
+_STAGES = (
+    ("errors", "the checker finds an error"),
+    ("uncalled", "nothing tells what to call it with"),
+    ("unlinked", "it names what no file has"),
+    ("refused", "it is not compiled whole"),
+    ("unverified", "it does not verify"),
+)
+_ENDINGS = (
+    ("end", "to its end"),
+    ("fault", "to a fault"),
+    ("unlinked", "to what no file has"),
+    ("budget", "out of statements"),
+    ("stopped", "waits on and on"),
+    ("crash", "a defect of ours"),
+)
+
+
+def real_code(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Files, folders, .zip archives; default: the programs in corpus/.",
+        ),
+    ] = None,
+    executors: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--executor", metavar="NAME", help="tree, vm, native; default: all that are here."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="What inputs are drawn from.")] = 1,
+    statements: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Statements that a routine may run.")
+    ] = 3_000,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+) -> int:
+    """Try every routine of real programs: does it link, compile, verify, run, and alike everywhere?
+
+    Routines with parameters are called with small values. The world is a stub: motions take no
+    time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
+    actions entered, and some requests fail. Exit status 1 where executors differ.
+    """
+    from interp.executors import available
+    from interp.trials import Effort, Trial, Unread, trials
+
+    chosen = list(dict.fromkeys(executors or available()))
+    for name in chosen:
+        if name not in available():
+            raise Unusable(f"--executor: there is no {name} here, but {', '.join(available())}")
+    sources = _sources(paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()])
+    tried: list[Trial] = []
+    unread: list[Unread] = []
+    with progress_bar("trying routines") as bar:
+        effort = Effort(statements=statements, seed=seed)
+        for one in trials(sources, chosen, effort, bar.expect):
+            bar()
+            if isinstance(one, Unread):
+                unread.append(one)
+            else:
+                tried.append(one)
+    record = _record(chosen, len(sources), tried, unread)
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    _print(record)
+    return FINDINGS if record["differences"] else FINE
+
+
+def _sources(roots: Sequence[Path]) -> "list[Source]":
+    from grammar.source import Source
+    from recovery.decode import decode
+    from recovery.ingest import Found, IngestError, Skipped, discover, read
+
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    found = []
+    try:
+        for one in discover(roots):
+            data = read(one) if isinstance(one, Found) else one
+            text = data.reason if isinstance(data, Skipped) else decode(data)
+            if not isinstance(text, str):
+                found.append(Source(text.text, one.path))
+    except IngestError as error:
+        raise Unusable(str(error)) from error
+    return found
+
+
+def _record(
+    executors: Sequence[str], files: int, tried: "Sequence[Trial]", unread: "Sequence[Unread]"
+) -> dict[str, Any]:
+    checked = [one for one in tried if one.stage != "errors"]
+    ran = [one for one in tried if one.endings is not None]
+    endings = {
+        name: dict(Counter(one.endings[name] for one in ran if one.endings is not None))
+        for name in executors
+    }
+    return {
+        "bench": "real-code",
+        "executors": list(executors),
+        "files": files,
+        "unread": [asdict(one) for one in unread],
+        "routines": len(tried),
+        "checked": len(checked),
+        "links": sum(one.stage not in ("errors", "unlinked", "uncalled") for one in tried),
+        "compiles": sum(one.stage in ("runs", "unlinked") for one in tried),
+        "verifies": sum(one.stage not in ("errors", "unverified") for one in tried),
+        "ran": len(ran),
+        "endings": endings,
+        "differences": sum(bool(one.differences) for one in ran),
+        "trials": [asdict(one) for one in tried],
+    }
+
+
+# -- in the terminal -------------------------------------------------------------------------------
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    console.print(
+        f"{record['files']:,} files, {len(record['unread']):,} of them not readable; "
+        f"{record['routines']:,} routines",
+        soft_wrap=True,
+    )
+    shares = _table("of the routines", "", "")
+    for name, words in (
+        ("checked", "check without an error"),
+        ("links", "of these name nothing that no file has"),
+        ("compiles", "of these compile whole"),
+        ("verifies", "of these verify"),
+        ("ran", "ran"),
+    ):
+        of = record["routines"] if name in ("checked", "ran") else record["checked"]
+        shares.add_row(words, f"{record[name]:,}", _share(record[name], of))
+    console.print(shares)
+    ran = _table("of those that ran", *record["executors"])
+    for ending, words in _ENDINGS:
+        counts = [record["endings"][name].get(ending, 0) for name in record["executors"]]
+        if any(counts):
+            ran.add_row(words, *(f"{count:,}  {_share(count, record['ran'])}" for count in counts))
+    console.print(ran)
+    for line in _reasons(record["trials"]):
+        console.print(line, soft_wrap=True, markup=False)
+    console.print(f"{record['differences']:,} routines on which executors differ", soft_wrap=True)
+    for trial in record["trials"]:
+        for name, text in (trial["differences"] or {}).items():
+            place = f"{trial['path']}:{trial['line']} {trial['routine']}"
+            console.print(one_line(f"{place}, {name}: {text}"), soft_wrap=True, markup=False)
+
+
+def _reasons(trials: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Why routines came no further, and what faults they ended with; the most frequent first."""
+    for stage, words in _STAGES:
+        counts = Counter(one["reason"] for one in trials if one["stage"] == stage)
+        if counts:
+            yield f"{words}: {counts.total():,}"
+            yield from _most(counts)
+    counts = Counter(one["why"] for one in trials if "fault" in (one["endings"] or {}).values())
+    if counts:
+        yield f"faults: {counts.total():,}"
+        yield from _most(counts)
+
+
+def _most(counts: Counter[str]) -> Iterator[str]:
+    for reason, count in counts.most_common(_MOST_REASONS):
+        yield one_line(f"  {count:>5,}  {reason}")
+    rest = len(counts) - _MOST_REASONS
+    if rest > 0:
+        yield f"         and {rest:,} other reasons"
+
+
+def _share(count: int, of: int) -> str:
+    return f"{count / of:.1%}" if of else "–"
+
+
+def _table(*columns: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    for number, column in enumerate(columns):
+        table.add_column(column, justify="left" if number == 0 else "right")
+    return table

@@ -1,0 +1,102 @@
+"""`krl bench vm`: how fast the executors compute, beside Lua."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.door import FINE, Unusable
+from krl.progress import progress_bar
+
+__all__ = ["bench_vm"]
+
+_HEADINGS = {"tree": "tree", "vm": "Python", "native": "C", "lua": "Lua"}
+_AIMS = (
+    ("vm_vs_tree", "machine in Python against tree", "6 times"),
+    ("native_vs_tree", "machine in C against tree", "300 times"),
+    ("native_vs_vm", "machine in C against Python", ""),
+    ("native_vs_lua", "machine in C against Lua", "1 times"),
+)
+
+
+def bench_vm(
+    kernels: Annotated[
+        str,
+        typer.Option(metavar="NAME,…", help="Which kernels; default: all of them."),
+    ] = "",
+    rounds: Annotated[
+        int, typer.Option(min=1, max=100, metavar="N", help="The best of so many runs counts.")
+    ] = 3,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+) -> int:
+    """Measure the executors: KRL kernels on each of them and in Lua 5.4, and what a request costs.
+
+    Slow executors get less of the same work; the figures are times for a unit of it.
+    """
+    from interp.kernels import KERNELS
+    from interp.speed import MeasurementError, measure_executors, steps
+
+    names = [name.strip() for name in kernels.split(",") if name.strip()] or list(KERNELS)
+    unknown = [name for name in names if name not in KERNELS]
+    if unknown:
+        raise Unusable(f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(KERNELS)}")
+    try:
+        with progress_bar("measuring", steps(names)) as advance:
+            record = measure_executors(names, rounds, on_step=advance)
+    except MeasurementError as error:
+        raise Unusable(str(error)) from error
+    record = {"bench": "vm", **record}
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    _print(record)
+    return FINE
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    lua = record["lua"] or "no Lua 5.4 here"
+    missing = "" if record["native"] else "; the machine in C was not built"
+    console.print(f"Python {record['python']}, {lua}{missing}", soft_wrap=True)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("ns", no_wrap=True)
+    for heading in (*_HEADINGS.values(), "C/tree", "C/Lua"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in record["kernels"]:
+        ns = row["ns"]
+        table.add_row(
+            f"{row['name']}, {row['unit']}",
+            *(_figure(ns[name]) for name in _HEADINGS),
+            _ratio(ns["tree"], ns["native"]),
+            _ratio(ns["lua"], ns["native"]),
+        )
+    console.print(table)
+    summary = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("geometric mean", "", "aim"):
+        summary.add_column(heading, justify="right" if heading == "" else "left", no_wrap=True)
+    for key, label, aim in _AIMS:
+        value = record[key]
+        summary.add_row(label, "–" if value is None else f"{value:,.2f} times", aim)
+    for name, costs in record["request_us"].items():
+        told = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
+        summary.add_row(f"a request: {_HEADINGS[name]}", told, "")
+    console.print(summary)
+
+
+def _figure(ns: float | None) -> str:
+    return "–" if ns is None else f"{ns:,.{0 if ns >= 100 else 1}f}"
+
+
+def _ratio(slow: float | None, fast: float | None) -> str:
+    if slow is None or fast is None:
+        return "–"
+    ratio = slow / fast
+    return f"{ratio:,.{0 if ratio >= 100 else 1}f}"

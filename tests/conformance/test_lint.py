@@ -1,0 +1,81 @@
+"""The linter of cases finds what makes a case less than a case; ours have nothing of it."""
+
+from pathlib import Path
+
+import pytest
+
+from conformance.case import CASES, find_cases
+from conformance.lint import SUITES, coverage, lint
+from conformance.registry import registry
+from conformance.verdicts import KnownFailures
+
+GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
+
+
+def test_own_cases_are_well_formed() -> None:
+    """Nothing is found in the cases of this project."""
+    assert [] == lint()
+
+
+def test_every_hard_rule_has_a_case() -> None:
+    """A rule that may fail has a case, or says why none can show it."""
+    covered = coverage(find_cases())
+    assert [] == [rule.id for rule in covered.uncovered]
+    unshown = [rule.id for rule in registry().values() if rule.unshown]
+    assert ["MSG-05", "MSG-25"] == unshown
+
+
+def test_every_suite_has_cases() -> None:
+    """None of the suites is empty, and there are no others."""
+    assert set(SUITES) == {case.suite for case in find_cases(CASES)}
+
+
+def test_known_failures_are_about_cases() -> None:
+    """The list can be read."""
+    names = [case.name for case in find_cases()]
+    assert [] == KnownFailures.load().of_no_case(names)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "part"),
+    [
+        ("control/good.src", "", "", ""),
+        ("control/good.src", "a fact", "a fact.", "one sentence"),
+        ("control/good.src", "CTL-01", "CTL-01, CTL-01", "a rule stands twice"),
+        ("control/good.src", ";@ phase", ";@ profile: kss99\n;@ phase", "the profile is"),
+        ("control/good.src", ";@ phase", ";@ robot: marvin\n;@ phase", "the robot is"),
+        ("other/good.src", "", "", "no suite 'other'"),
+        ("control/Good.src", "", "", "no KRL name"),
+        ("control/a_name_that_is_much_too_long.src", "", "", "no KRL name"),
+        ("control/good.src", "HALT", "HALT\t", "without tabs"),
+        ("control/good.src", "HALT", "HALT ; é", "ASCII"),
+        ("control/good.src", "HALT", "HALT ;" + 90 * "x", "longer than 100"),
+        ("control/good.src", "HALT", "HALT HALT", "not grammatical"),
+        ("control/good.src", "runs 1", "accepted", "cannot be seen in phase run"),
+        ("control/good.src", "runs 1", "runs 1 ;> runs 1", "stands twice"),
+        ("control/good.src", "runs 1", "line at mark NOWHERE", "nothing is marked NOWHERE"),
+        ("control/good.src", "runs 1", "halted", "no expectation 'halted'"),
+        ("control/good.src", "DEF", ";> never\nDEF", "beside no line"),
+    ],
+)
+def test_faults_are_found(tmp_path: Path, name: str, old: str, new: str, part: str) -> None:
+    """Each fault is told, with the case it is in; a good case has none."""
+    path = tmp_path / name
+    path.parent.mkdir(parents=True)
+    assert old in GOOD
+    path.write_text(GOOD.replace(old, new, 1), encoding="utf-8", newline="\n")
+    found = lint(tmp_path)
+    assert bool(part) == bool(found)
+    assert part in "\n".join(found)
+
+
+def test_files_of_no_case_and_repeated_titles_are_found(tmp_path: Path) -> None:
+    """Each file belongs to a case, each fact stands once."""
+    folder = tmp_path / "control"
+    folder.mkdir()
+    (folder / "good.src").write_text(GOOD, encoding="utf-8")
+    (folder / "again.src").write_text(GOOD.replace("good", "again"), encoding="utf-8")
+    (folder / "stray.src").write_text("DEF stray()\nEND\n", encoding="utf-8")
+    found = "\n".join(lint(tmp_path))
+    assert "control/good: another case has the same title" in found
+    assert "control/stray.src: it belongs to no case" in found

@@ -1,0 +1,186 @@
+"""The runner: verdicts, comparison of executors, known failures, parallel and deterministic."""
+
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conformance.case import Case, read_case
+from conformance.comparison import first_divergence
+from conformance.observation import Event, Observation
+from conformance.observing import Setup, missing, observe
+from conformance.runner import run_case, run_cases
+from conformance.verdicts import Known, KnownFailures
+
+TREE, VM = Setup("tree", "none"), Setup("vm", "none")
+NOTHING_KNOWN = KnownFailures()
+
+TEXT = """\
+;@ rule: CTL-01
+;@ title: a fact
+;@ phase: run
+DEF fact()
+  DECL INT N
+  N = 1
+  N = N + 1 ;> value N 2
+END
+"""
+
+MakeCase = Callable[..., Case]
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> MakeCase:
+    """A case; each pair of texts replaces one by the other."""
+
+    def make(*changes: tuple[str, str], name: str = "fact") -> Case:
+        text = TEXT.replace("DEF fact", f"DEF {name}")
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        path = tmp_path / "control" / f"{name}.src"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return read_case(path, tmp_path)
+
+    return make
+
+
+def test_case_passes_on_both_interpreters(make: MakeCase) -> None:
+    """Each has a result of its own, with what it was seen doing."""
+    done = run_case(make(), [TREE, VM], NOTHING_KNOWN)
+    assert [("tree", "pass"), ("vm", "pass")] == [(r.executor, r.verdict) for r in done.results]
+    assert all(r.observation is not None and r.observation.events for r in done.results)
+
+
+def test_unmet_expectation_fails_with_its_line(make: MakeCase) -> None:
+    """The reason names line, expectation and what was seen."""
+    (result,) = run_case(make(("value N 2", "value N 3")), [TREE], NOTHING_KNOWN).results
+    assert "fail" == result.verdict
+    assert "line 7: value N 3; seen: 2" == result.reason
+
+
+def test_unconfirmed_rule_fails_nobody(make: MakeCase) -> None:
+    """What rests on recollection is told as that."""
+    case = make(("value N 2", "value N 3"), ("CTL-01", "CTL-02"))
+    assert "unconfirmed" == run_case(case, [TREE], NOTHING_KNOWN).verdict
+
+
+def test_known_failure_is_told_and_its_pass_fails(make: MakeCase) -> None:
+    """An entry that is no longer true has to go."""
+    known = KnownFailures((Known("control/fact", "not built yet", executor="v*"),))
+    wrong = run_case(make(("value N 2", "value N 3")), [TREE, VM], known)
+    assert ["fail", "known-failure"] == [one.verdict for one in wrong.results]
+    right = run_case(make(), [TREE, VM], known)
+    assert ["pass", "fail"] == [one.verdict for one in right.results]
+    assert "not built yet" in right.results[1].reason
+
+
+def test_setup_that_is_not_here_is_skipped_with_its_reason(make: MakeCase) -> None:
+    """Nothing is silently left out."""
+    done = run_case(make(), [TREE, VM], NOTHING_KNOWN, absent=lambda s: "no" if s == VM else "")
+    assert [("pass", ""), ("skipped", "no")] == [(r.verdict, r.reason) for r in done.results]
+    assert "there is no executor cobol" in missing(Setup("cobol", "none"))
+
+
+def test_path_without_a_robot_is_skipped(make: MakeCase) -> None:
+    """What nobody could see is neither right nor wrong."""
+    (result,) = run_case(make(("value N 2", "passes 1 2 3")), [TREE], NOTHING_KNOWN).results
+    assert ("skipped", "needs the robot kinematic") == (result.verdict, result.reason)
+
+
+def _other_value(case: Case, setup: Setup) -> Observation:
+    """The second executor computes one more at the last line."""
+    seen = observe(case, TREE)
+    if setup == TREE:
+        return seen
+    events = tuple(
+        replace(event, fields={**event.fields, "value": 7})
+        if event.kind == "assign" and event.line == 7
+        else event
+        for event in seen.events
+    )
+    return replace(seen, events=events)
+
+
+def test_executors_that_differ_have_failed_whatever_the_rule(make: MakeCase) -> None:
+    """The first difference stands at its source line, with both states."""
+    case = make(("CTL-01", "CTL-02"), ("value N 2", "runs 1"))
+    done = run_case(case, [TREE, VM], NOTHING_KNOWN, see=_other_value)
+    assert ["pass", "fail"] == [one.verdict for one in done.results]
+    found = done.results[1].divergence
+    assert found is not None
+    assert ("fact.src", 7) == (found.file, found.line)
+    assert ({"N": 2}, {"N": 7}) == (found.left.variables, found.right.variables)
+    assert "fact.src:7: tree/none says assign N 2" in str(found)
+
+
+def _failing(_case: Case, _setup: Setup) -> Observation:
+    raise ZeroDivisionError("in the executor")
+
+
+def test_exception_of_an_executor_is_a_failed_case(make: MakeCase) -> None:
+    """A defect costs its case and no other."""
+    (result,) = run_case(make(), [TREE], NOTHING_KNOWN, see=_failing).results
+    assert "fail" == result.verdict
+    assert any("ZeroDivisionError: in the executor" in one.actual for one in result.checks)
+
+
+def test_run_that_goes_on_differs_from_one_that_ended() -> None:
+    """A longer trace differs where the shorter one is over."""
+    one = Observation(events=(Event(0, "robot", "line", "a.src", 2),), ending="end")
+    more = Observation(events=(*one.events, Event(5, "robot", "line", "a.src", 3)), ending="end")
+    found = first_divergence(("one", "more"), one, more)
+    assert found is not None
+    assert (1, 3, None) == (found.place, found.line, found.left.event)
+    assert first_divergence(("one", "one"), one, one) is None
+    assert first_divergence(("a", "b"), one, replace(one, ending="running")) is not None
+
+
+def test_results_are_the_same_in_any_number_of_processes(make: MakeCase) -> None:
+    """Order, verdicts and traces do not depend on how the work was shared out."""
+    cases = [make(name=f"fact{number}") for number in range(10)]
+    counted: list[int] = []
+    one = run_cases(cases, ["tree"], ["none"], NOTHING_KNOWN, jobs=1)
+    two = run_cases(cases, ["tree"], ["none"], NOTHING_KNOWN, jobs=2, on_done=counted.append)
+    assert [r.case.name for r in one] == [r.case.name for r in two]
+    assert 10 == sum(counted)
+    for left, right in zip(one, two, strict=True):
+        first, second = left.results[0].observation, right.results[0].observation
+        assert first is not None
+        assert second is not None
+        assert first.events == second.events
+
+
+class _Deadly:
+    """Ends the process that receives it."""
+
+    def __reduce__(self) -> tuple[Callable[[int], object], tuple[int]]:
+        return os._exit, (3,)
+
+
+def test_case_that_kills_its_process_fails_alone(
+    make: MakeCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The others are run again without it."""
+    monkeypatch.setattr("conformance.runner._SHARE", 1)
+    deadly: Any = _Deadly()
+    cases = [make(name="one"), replace(make(name="two"), path=deadly)]
+    done = run_cases(cases, ["tree"], ["none"], NOTHING_KNOWN, jobs=2)
+    assert ["pass", "fail"] == [one.verdict for one in done]
+    assert "the process died" == done[1].results[0].reason
+
+
+def test_file_of_known_failures_is_read_strictly(tmp_path: Path) -> None:
+    """An entry without a reason, or with another key, is an error."""
+    path = tmp_path / "known.toml"
+    path.write_text('[[known]]\ncase = "a/b"\nreason = "so"\nrobot = "mujoco"\n', encoding="utf-8")
+    known = KnownFailures.load(path)
+    assert "so" == known.reason("a/b", "vm", "mujoco")
+    assert not known.reason("a/b", "vm", "none")
+    path.write_text('[[known]]\ncase = "a/b"\n', encoding="utf-8")
+    with pytest.raises(ValueError, match="reason"):
+        KnownFailures.load(path)

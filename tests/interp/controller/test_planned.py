@@ -1,0 +1,209 @@
+"""The controller with the arm as it is planned: what it shows of it, and how it stops."""
+
+from typing import Any
+
+import pytest
+
+from grammar.source import Source
+from interp.controller import Controller, Profile, Script, Trace
+from interp.program import load
+from interp.robot.arm import Position
+from interp.robot.core import ControlCore
+from interp.robot.models import default_machine
+from interp.robot.placement import Placement
+from interp.robot.planned_arm import PlannedArm
+from interp.robot.robots import RobotFault
+from interp.tree import TreeExecutor
+
+START = (0.0, -90.0, 90.0, 0.0, 45.0, 10.0)
+FRAMES = "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n"
+HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0}\n"
+FIRST = FRAMES + HOME + "PTP {X 500,Y 100,Z 600,A 180,B 0,C 180,S 2}\n"
+
+
+class Ran:
+    """A run with the planned arm."""
+
+    def __init__(self, text: str, script: str = "", following: Any = None) -> None:
+        machine = default_machine()
+        self.arm = PlannedArm(machine, START)
+        trace = Trace(is_full=True)
+        sink = trace.sink()
+        program = load([Source(text, "main.src")], "main.src", strict=False)
+        self.controller = Controller(
+            TreeExecutor(program, sink=sink),
+            lambda switch: ControlCore(self.arm, switch, 1),
+            profile=Profile.load(),
+            script=Script.read(script),
+            trace=trace,
+            sink=sink,
+            machine=machine,
+            following=following,
+        )
+        self.outcome = self.controller.run(60_000_000)
+        self.events = trace.events
+
+    def times(self, kind: str, **fields: Any) -> list[int]:
+        """The times in µs of events of a kind that have these fields."""
+        return [
+            one.time
+            for one in self.events
+            if one.kind == kind and fields.items() <= dict(one.fields).items()
+        ]
+
+    def last(self, name: str) -> Any:
+        """What was assigned to a variable last."""
+        told = [one.fields for one in self.events if one.kind == "assign"]
+        return [one["value"] for one in told if one["name"] == name][-1]
+
+    def messages(self) -> list[int]:
+        """The numbers of messages."""
+        return [one.fields["number"] for one in self.events if one.kind == "message"]
+
+
+def program(body: str, routines: str = "") -> str:
+    """A program that stands at X 500, Y 100, Z 600 before its body."""
+    return f"DEF main()\nREAL R,Q\nINT I\n{FIRST}{body}END\n{routines}"
+
+
+def test_output_behind_the_start() -> None:
+    """The output comes 20 ms after the start of the motion, and the blend is there [TRG-01]."""
+    ran = Ran(
+        program(
+            "TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[1]=TRUE\nLIN {Y 0} C_DIS\n"
+            "TRIGGER WHEN DISTANCE=1 DELAY=0 DO $OUT[2]=TRUE\nLIN {Y -100} C_DIS\nLIN {Z 700}\n"
+        )
+    )
+    assert [20_000] == [
+        out - start
+        for out, start in zip(
+            ran.times("out", number=1), ran.times("motion_start", motion=3), strict=True
+        )
+    ]
+    assert ran.times("out", number=2) == ran.times("blend_apex", motion=4)
+    assert "end" == ran.outcome.ending
+
+
+SEARCH = program(
+    "INTERRUPT DECL 10 WHEN $IN[1] DO FOUND()\nINTERRUPT ON 10\nSEARCH()\nINTERRUPT OFF 10\n"
+    "R=$POS_ACT.Y\nLIN {Y 100,Z 700}\n",
+    "DEF SEARCH()\n$VEL.CP=0.1\nLIN {Y -100}\nWAIT SEC 0\nEND\nDEF FOUND()\nBRAKE\nRESUME\nEND\n",
+)
+
+
+def test_search() -> None:
+    """BRAKE stops on the path, RESUME forgets the rest; the next motion starts there [INT-10]."""
+    ran = Ran(SEARCH, "t=1.5 IN[1]=TRUE")
+    assert [] == ran.times("motion_end", motion=3)
+    assert ran.times("resume") == ran.times("motion_start", motion=4)
+    y = ran.controller.variables.read(("$POS_RET", "Y"))
+    assert -100 < y < 100
+    assert pytest.approx(y, abs=1e-3) == ran.last("R")
+    assert pytest.approx(500, abs=1e-3) == ran.controller.variables.read(("$POS_RET", "X"))
+    assert pytest.approx(100, abs=1e-3) == ran.controller.variables.read(("$POS_ACT", "Y"))
+
+
+def test_brake_and_go_on() -> None:
+    """Without RESUME the arm goes on to where it was going, whatever the routine did [INT-09]."""
+    text = SEARCH.replace("RESUME\n", "LIN {Z 650}\n")
+    ran = Ran(text, "t=1.5 IN[1]=TRUE")
+    assert [3, 4, 5, 6] == [
+        one.fields["motion"] for one in ran.events if one.kind == "motion_start"
+    ][2:]
+    assert 1 == len(ran.times("motion_end", motion=3))
+    assert pytest.approx(-100, abs=1e-3) == ran.last("R")
+
+
+def test_positions_of_a_motion() -> None:
+    """$POS_BACK is where the running motion began, $POS_FOR where it goes [MOT-18]."""
+    ran = Ran(program("LIN {Y -100}\nWAIT SEC 0\nCONTINUE\nR=$POS_BACK.Y\nQ=$POS_FOR.Y\n"))
+    assert pytest.approx(100, abs=1e-3) == ran.last("R")
+    assert pytest.approx(-100, abs=1e-3) == ran.last("Q")
+
+
+def test_status_and_turn_of_a_position() -> None:
+    """$POS_ACT has the Status and Turn of the axes [POS-03, POS-07]."""
+    ran = Ran(program("I=$POS_ACT.S\nR=$POS_ACT.T\n"))
+    assert 2 == ran.last("I")
+    axes = ran.arm.position(ran.outcome.time).axes
+    assert sum(1 << place for place, axis in enumerate(axes) if axis < 0) == ran.last("R")
+
+
+def test_points() -> None:
+    """Every motion that was planned is told with where it leads."""
+    ran = Ran(program("LIN {Y -100} C_DIS\nLIN {Z 700}\n"))
+    points = ran.controller.points
+    assert [(1, "PTP"), (2, "PTP"), (3, "LIN"), (4, "LIN")] == [
+        (one.number, one.kind) for one in points
+    ]
+    assert [False, False, True, False] == [one.is_blended for one in points]
+    position = points[2].position
+    assert isinstance(position, Position)
+    assert pytest.approx((500, -100, 600)) == position.flange.position
+
+
+def test_status_monitoring() -> None:
+    """A path motion that ends with another Status than programmed is a message [POS-10]."""
+    body = "LIN {{X 500,Y -100,Z 600,A 180,B 0,C 180,S {}}}\nWAIT SEC 0\n"
+    checked = "$CP_STATMON=#CHECK_S\n"
+    assert [] == Ran(program(checked + body.format(2))).messages()
+    assert [2936] == Ran(program(checked + body.format(6))).messages()
+    assert [] == Ran(program("$CP_STATMON=#NONE\n" + body.format(6))).messages()
+
+
+@pytest.mark.parametrize(
+    ("line", "number"),
+    [
+        ("LIN {X 5000}", 1366),
+        ("PTP {A1 179,A2 90,A3 90,A4 0,A5 0,A6 0}", 1447),
+        ("CIRC {X 600,Y 100,Z 600},{X 500,Y 0,Z 600}", 1456),
+    ],
+)
+def test_bad_input(line: str, number: int) -> None:
+    """What cannot be done is the documented message, and the arm stops [MOT-12, MOT-15]."""
+    ran = Ran(program(f"LIN {{Y 0}}\nWAIT SEC 0\n{line}\n"))
+    assert [number] == ran.messages()
+    assert "fault" == ran.outcome.ending
+    assert pytest.approx(0, abs=1e-3) == ran.controller.variables.read(("$POS_ACT", "Y"))
+
+
+def test_bad_input_while_the_arm_moves() -> None:
+    """A fault that the advance run meets stops the arm on its path [MOT-15]."""
+    ran = Ran(program("WAIT SEC 0\n$VEL.CP=0.1\nLIN {Y -100}\nLIN {X 5000}\n"))
+    assert [1366] == ran.messages()
+    y = ran.controller.variables.read(("$POS_ACT", "Y"))
+    assert -100 < y <= 100
+    assert [] == ran.times("motion_end", motion=3)
+
+
+class Colliding:
+    """A robot that touches something after a second."""
+
+    chunk = 100_000
+
+    def __init__(self) -> None:
+        self.placements: list[tuple[int, Placement]] = []
+        self.is_over = False
+
+    def advance(self, now: int) -> None:
+        """Time has come to ``now``."""
+        if now >= 1_000_000 and not self.is_over:
+            self.is_over = True
+            raise RobotFault("collision", "the robot has touched the table", 1_000_000)
+
+    def placed(self, time: int, placement: Placement) -> None:
+        """The frames of a motion."""
+        self.placements.append((time, placement))
+
+    def settle(self, _now: int) -> None:
+        """All is sent."""
+
+
+def test_robot_that_cannot_go_on() -> None:
+    """A fault of the robot stops the arm hard and ends the program at the running motion."""
+    robot = Colliding()
+    ran = Ran(program("$VEL.CP=0.05\nLIN {Y -100}\n"), following=robot)
+    assert ("fault", "collision") == (ran.outcome.ending, ran.outcome.error.slug)  # type: ignore[union-attr]
+    assert 9 == ran.outcome.at.line  # type: ignore[union-attr]
+    assert 1_000_000 <= ran.times("fault")[0] <= 1_000_000 + robot.chunk
+    assert ran.times("motion_start") == [time for time, _ in robot.placements]

@@ -1,0 +1,80 @@
+"""The machine in C; without it, what is here is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from interp.bytecode import vm
+from interp.bytecode.assembler import assemble
+from interp.bytecode.verify import Verified, verify
+from interp.events import Recorder
+from interp.native import AVAILABLE
+from interp.program import Limits
+from interp.requests import Crash, End, Fail, Request
+from interp.stub import StubWorld
+
+if TYPE_CHECKING:
+    from interp.native._core import Core
+
+
+@pytest.fixture(autouse=True)
+def _built() -> None:
+    if not AVAILABLE:
+        pytest.skip("the machine in C was not built")
+
+
+@pytest.fixture
+def native() -> type[vm.Machine]:
+    """The machine in C."""
+    from interp.native.machine import Machine
+
+    return Machine
+
+
+@pytest.fixture
+def core() -> type[Core]:
+    """The type that C makes."""
+    from interp.native._core import Core
+
+    return Core
+
+
+def steps_of(kind: type[vm.Machine], verified: Verified, is_told: bool, most: int) -> list[Any]:
+    """What a machine asks, and tells if it is to, as text: so that faults can be compared."""
+    recorder = Recorder() if is_told else None
+    machine = kind(verified, "MAIN", Limits(statements=400, per_slice=30, depth=6), recorder)
+    world, reply = StubWorld(), None
+    found: list[str] = []
+    for _ in range(most):
+        request: Request = machine.advance(reply)
+        if recorder is not None:
+            found += map(repr, recorder.events)
+            recorder.events.clear()
+        found.append(repr(request))
+        if isinstance(request, End | Fail | Crash):
+            assert not isinstance(request, Crash), request
+            break
+        reply = world.reply(request)
+    return [*found, repr(machine.data())]
+
+
+Compare = Callable[[str], list[Any]]
+
+
+@pytest.fixture(scope="session")
+def agreed() -> Compare:
+    """Runs a text on both machines, with and without a trace; gives what all of them ask."""
+
+    def compare(text: str, most: int = 400) -> list[Any]:
+        from interp.native.machine import Machine
+
+        verified = verify(assemble(text))
+        for is_told in (True, False):
+            expected = steps_of(vm.Machine, verified, is_told, most)
+            assert expected == steps_of(Machine, verified, is_told, most)
+        return expected
+
+    return compare

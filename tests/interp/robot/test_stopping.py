@@ -1,0 +1,202 @@
+"""Braking on the path, going on, forgetting the rest, and the override."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from interp.faults import Fault
+from interp.robot.arm import Approximation
+
+if TYPE_CHECKING:
+    from tests.interp.robot.conftest import Driver
+
+FIRST = {"X": 500.0, "Y": 200.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
+SECOND = {**FIRST, "Y": -100.0}
+THIRD = {**SECOND, "X": 400.0}
+APART = [50_000, 300_000, 420_000, 640_000, 800_000, 1_000_000]
+
+
+@pytest.fixture
+def moving(driver: Driver) -> Driver:
+    """Two lines with a blend between them, just begun, and a PTP behind them."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    near = {"approximation": Approximation(cdis=40.0, cptp=20), "velocity": 0.5}
+    driver.move("LIN", SECOND, criteria=("C_DIS",), **near)
+    driver.move("LIN", THIRD, criteria=("C_DIS",), **near)
+    driver.move("PTP", {**THIRD, "Z": 500.0})
+    return driver
+
+
+def rehearsed(driver: Driver) -> np.ndarray:
+    """The path as it is when nothing disturbs it; then all is as before."""
+    mark, begin, events = driver.arm.mark(), driver.now, list(driver.events)
+    driver.play()
+    path = geometry(driver, begin)
+    driver.arm.rewind(mark)
+    driver.now, driver.events = begin, events
+    return path
+
+
+def geometry(driver: Driver, start: int) -> np.ndarray:
+    """The places of the tool from a time to now, without those where it stands."""
+    axes = driver.arm.sample(np.arange(start, driver.now + 1, 2000)).axes
+    kept = np.append(True, np.abs(np.diff(axes, axis=0)).max(axis=1) > 0)
+    places = driver.arm._tracks.arm.forward(axes[kept, :6])[:, :3, 3]
+    assert isinstance(places, np.ndarray)
+    return places
+
+
+def distance(places: np.ndarray, path: np.ndarray) -> float:
+    """How far the places are at most from a polygon through a path."""
+    starts, ways = path[:-1], np.diff(path, axis=0)
+    lengths = np.maximum((ways * ways).sum(axis=1), 1e-12)
+    share = ((places[:, None] - starts) * ways).sum(axis=2) / lengths
+    feet = starts + np.clip(share, 0, 1)[:, :, None] * ways
+    return float(np.linalg.norm(places[:, None] - feet, axis=2).min(axis=1).max())
+
+
+@pytest.mark.parametrize("is_hard", [False, True])
+@pytest.mark.parametrize("after", APART)
+def test_braking_stays_on_the_path(moving: Driver, after: int, is_hard: bool) -> None:
+    """Wherever the brake comes, the arm stops on its path and goes on along it [INT-09]."""
+    begin, path = moving.now, rehearsed(moving)
+    moving.play(until=begin + after)
+    moving.arm.brake(moving.now, is_hard)
+    moving.play()
+    assert "stopped" == moving.events[-1].kind
+    stood = moving.now
+    assert 0.0 == pytest.approx(moving.arm.speed(stood), abs=1e-6)
+    moving.now += 500_000
+    moving.arm.proceed(moving.now)
+    moving.play()
+    assert moving.time("motion_end", 4) > stood
+    assert distance(geometry(moving, begin), path) < 0.01
+    moving.check_limits()
+
+
+def test_the_hard_ramp_is_shorter(moving: Driver) -> None:
+    """BRAKE F stops sooner than BRAKE."""
+    moving.play(until=moving.now + 300_000)
+    mark, begin, times = moving.arm.mark(), moving.now, []
+    for is_hard in (False, True):
+        moving.arm.brake(begin, is_hard)
+        event = moving.arm.next_event()
+        assert event is not None
+        times.append(event.time - begin)
+        moving.arm.rewind(mark)
+    assert times[1] < 0.8 * times[0]
+
+
+def test_braking_at_rest(driver: Driver) -> None:
+    """An arm that stands is told to have stopped at once."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    driver.arm.brake(driver.now, False)
+    event = driver.arm.next_event()
+    assert event is not None
+    assert ("stopped", driver.now) == (event.kind, event.time)
+
+
+def test_going_on_before_it_stands(moving: Driver) -> None:
+    """Who goes on while the arm brakes finds it on its path, still moving."""
+    moving.play(until=moving.now + 300_000)
+    moving.arm.brake(moving.now, False)
+    moving.play(until=moving.now + 60_000)
+    moving.arm.proceed(moving.now)
+    moving.play()
+    assert "stopped" not in {event.kind for event in moving.events}
+    moving.check_limits()
+
+
+def test_moving_while_braked(moving: Driver) -> None:
+    """Between brake and going on the arm can be moved about, and comes back to go on [INT-09]."""
+    moving.play(until=moving.now + 300_000)
+    moving.arm.brake(moving.now, False)
+    moving.play()
+    left = moving.arm.position(moving.now)
+    away = dict(zip(("A1", "A2", "A3", "A4", "A5", "A6"), left.axes, strict=False))
+    moving.move("LIN", {"Z": 30.0}, is_relative=True)
+    moving.play()
+    assert left.flange.position[2] + 30.0 == pytest.approx(moving.tool(moving.now)[2])
+    with pytest.raises(ValueError, match="not where the brake has left it"):
+        moving.arm.proceed(moving.now)
+    moving.move("PTP", away)
+    moving.play()
+    moving.arm.proceed(moving.now)
+    moving.play()
+    assert moving.time("motion_end", 2) > moving.time("motion_end", 6)
+    assert (400.0, -100.0, 500.0) == pytest.approx(moving.tool(moving.now))
+    moving.check_limits()
+
+
+@pytest.mark.parametrize("is_braked", [False, True])
+def test_forgetting_the_rest(moving: Driver, is_braked: bool) -> None:
+    """What is discarded never happens; the next motion starts where the arm stands [INT-14]."""
+    moving.play(until=moving.now + 300_000)
+    if is_braked:
+        moving.arm.brake(moving.now, True)
+        moving.play()
+    moving.arm.discard(moving.now)
+    assert 0 == moving.arm.pending()
+    moving.play()
+    assert "stopped" == moving.events[-1].kind
+    stood = moving.tool(moving.now)
+    moving.move("LIN", {"Z": 40.0}, is_relative=True)
+    moving.play()
+    assert stood + np.array([0, 0, 40.0]) == pytest.approx(moving.tool(moving.now))
+    assert not [event for event in moving.events if event.motion == 3]
+    moving.check_limits()
+
+
+def test_circ_behind_an_abort_is_lin(moving: Driver) -> None:
+    """The first motion behind RESUME is a line where a circle was programmed [INT-14]."""
+    moving.play(until=moving.now + 300_000)
+    moving.arm.discard(moving.now)
+    moving.play()
+    stood, begin = moving.tool(moving.now), moving.now
+    moving.move("CIRC", {"X": 450.0, "Z": 650.0}, auxiliary={"X": 450.0, "Y": 150.0})
+    moving.play()
+    middle = moving.tool((begin + moving.now) // 2)
+    end = moving.tool(moving.now)
+    assert 0.0 == pytest.approx(
+        float(np.linalg.norm(np.cross(middle - stood, end - stood))), abs=1e-3
+    )
+
+
+@pytest.mark.parametrize("after", APART)
+@pytest.mark.parametrize("percents", [(30, 100), (0, 100), (100, 1, 60), (50, 0, 0, 75)])
+def test_the_override_changes_on_the_way(
+    moving: Driver, after: int, percents: tuple[int, ...]
+) -> None:
+    """The override changes when a place is passed, never where the path is [MOT-09]."""
+    begin, path = moving.now, rehearsed(moving)
+    moving.play(until=begin + after)
+    for percent in percents:
+        moving.arm.override(moving.now, percent)
+        moving.play(until=moving.now + 130_000)
+    moving.play()
+    assert moving.time("motion_end", 4)
+    assert distance(geometry(moving, begin), path) < 0.01
+    moving.check_limits()
+
+
+def test_override_zero_stands(moving: Driver) -> None:
+    """At 0 per cent the arm stands, and no event lies ahead."""
+    moving.play(until=moving.now + 300_000)
+    moving.arm.override(moving.now, 0.0)
+    moving.play()
+    moving.now += 1_000_000
+    assert 0.0 == moving.arm.speed(moving.now)
+    assert 3 == moving.arm.pending()
+
+
+@pytest.mark.parametrize("percent", [-1.0, 100.5, float("nan")])
+def test_override_that_is_none(driver: Driver, percent: float) -> None:
+    """$OV_PRO lies between 0 and 100."""
+    with pytest.raises(Fault) as caught:
+        driver.arm.override(0, percent)
+    assert 1422 == caught.value.number

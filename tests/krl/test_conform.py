@@ -1,0 +1,121 @@
+"""`krl conform` from the outside: selections, outputs, exit status."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+
+CASE = """\
+;@ rule: {rule}
+;@ title: about {name}
+;@ phase: run
+DEF {name}()
+  DECL INT N
+  N = 1 ;> value N {value}
+END
+"""
+
+
+def write(folder: Path, name: str, value: int, rule: str = "CTL-01") -> Path:
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{name}.src"
+    path.write_text(CASE.format(name=name, value=value, rule=rule), encoding="utf-8")
+    return path
+
+
+def run(*arguments: object) -> int:
+    return main(["conform", *map(str, arguments), "--jobs", "1"])
+
+
+def test_own_case_passes(capsys: pytest.CaptureFixture[str]) -> None:
+    """A case of the project by its name; status 0."""
+    assert 0 == run("control/exit_for", "--executor", "tree", "--robot", "none")
+    assert "1 cases (0 negative), 1 runs: 1 pass" in capsys.readouterr().out
+
+
+def test_failure_is_told_and_gives_status_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Name, fact, rule, line and what was seen; the record and JUnit hold it too."""
+    path = write(tmp_path / "control", "wrong", 2)
+    record, junit = tmp_path / "out.json", tmp_path / "out.xml"
+    status = run(path, "--executor", "tree", "--robot", "none", "--json", record, "--junit", junit)
+    assert 1 == status
+    out = capsys.readouterr().out
+    assert "wrong: about wrong [CTL-01]" in out
+    assert "line 6: value N 2; seen: 1" in out
+    assert {"fail": 1} == {
+        verdict: count
+        for verdict, count in json.loads(record.read_text(encoding="utf-8"))["verdicts"].items()
+        if count
+    }
+    assert "<failure" in junit.read_text(encoding="utf-8")
+
+
+def test_unconfirmed_case_leaves_status_0(tmp_path: Path) -> None:
+    """What rests on recollection fails nobody."""
+    path = write(tmp_path / "control", "open", 2, rule="CTL-02")
+    assert 0 == run(path, "--executor", "tree", "--robot", "none")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (["nowhere/nothing"], "no case, suite, rule or phase"),
+        (["control/exit_for", "--executor", "cobol"], "the executor is one of"),
+        (["control/exit_for", "--robot", "marvin"], "the robot is one of"),
+        (["import"], "takes one file"),
+        (["import", "nowhere.json"], "cannot be read"),
+        (["--lint", "nowhere"], "no such folder"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_status_2(
+    arguments: list[str], part: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No traceback, no half work."""
+    assert 2 == run(*arguments)
+    error = capsys.readouterr().err
+    assert part in error
+    assert 1 == len(error.splitlines())
+
+
+def test_lint_tells_each_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder of anybody can be looked at; status 1 where something is wrong."""
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    write(folder / "control", "fine", 1)
+    assert 0 == run("--lint", folder)
+    write(folder / "control", "again", 1).write_text("DEF again()\nEND\n", encoding="utf-8")
+    assert 1 == run("--lint", folder)
+    assert "control/again.src: it belongs to no case" in capsys.readouterr().out
+
+
+def test_recording_is_made_from_the_list_and_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """``--list --json`` has the digests that a recording needs; ``import`` judges it."""
+    listed, recording = tmp_path / "list.json", tmp_path / "recording.json"
+    assert 0 == run("data/round_half", "--list", "--json", listed)
+    (case,) = json.loads(listed.read_text(encoding="utf-8"))["cases"]
+    event = {"t": None, "kind": "assign", "at": f"{case['files'][0]}:6", "name": "N", "value": 8}
+    told = {
+        "format": "krl-recording/1",
+        "controller": {"name": "KR C4", "release": "KSS 8.6"},
+        "cases": [
+            {
+                "case": case["case"],
+                "digest": case["digest"],
+                "watched": ["assign"],
+                "events": [event],
+            }
+        ],
+    }
+    recording.write_text(json.dumps(told), encoding="utf-8")
+    assert 0 == run("import", recording)
+    assert "recorded on KR C4 KSS 8.6" in capsys.readouterr().out
+    event["value"] = 7
+    recording.write_text(json.dumps(told), encoding="utf-8")
+    assert 1 == run("import", recording)
+    assert "data/round_half" in capsys.readouterr().out
