@@ -1,4 +1,4 @@
-# Every target builds the .venv that it needs, and renews it when pyproject.toml has changed.
+# Every target builds the .venv that it needs, and renews it when pyproject.toml or C has changed.
 
 PYTHON ?= python3
 ARGS ?=
@@ -69,6 +69,7 @@ bench: $(DEV)
 	@$(BIN)/krl bench mutation --json reports/out/bench/mutation.json $(ARGS)
 	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
 	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
+	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
 	@$(BIN)/krl bench arm --json reports/out/bench/arm.json
 	@$(BIN)/krl bench conform --json reports/out/bench/conform.json
 
@@ -76,7 +77,7 @@ clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-$(BASE): pyproject.toml
+$(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
 	@echo 'building $(VENV) ...'
 	@command -v $(PYTHON) >/dev/null || { echo 'make: $(PYTHON) not found; install Python 3.11 or later, or say make PYTHON=...' >&2; exit 2; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'make: $(PYTHON) is older than Python 3.11; say make PYTHON=...' >&2; exit 2; }

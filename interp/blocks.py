@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from grammar import ast
 from interp.program import CheckedProgram, Routine
 
-__all__ = ["routine_at", "way_to"]
+__all__ = ["routine_at", "statement_lines", "way_to"]
 
 
 def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
@@ -18,6 +18,20 @@ def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
                 if routine.node.name.key == name.upper():
                     return routine
     return None
+
+
+def statement_lines(routine: Routine) -> set[int]:
+    """The lines in which statements of a routine begin; UNTIL is one, as a loop tests there."""
+    found: set[int] = set()
+    todo = [routine.node.body]
+    while todo:
+        for statement in todo.pop():
+            if not isinstance(statement, ast.Definition | ast.Label):
+                found.add(routine.unit.line(statement))
+                todo += _bodies(statement)
+            if isinstance(statement, ast.Repeat):
+                found.add(routine.unit.line(statement.condition))
+    return found
 
 
 def way_to(routine: Routine, line: int) -> tuple[ast.Statement, ...]:

@@ -38,13 +38,14 @@ _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN"})
 class StubWorld:
     """Answers requests.
 
-    ``values`` are those of system variables at first, by name in upper case. They are kept and
-    handed out as copies.
+    ``values`` are those of system variables at first, by name in upper case. They are not changed:
+    what is handed out are copies.
     """
 
     def __init__(self, seed: int = 0, values: Mapping[str, Value] | None = None) -> None:
         self._random = Random(seed)  # nobody's secret depends on it
-        self._values: dict[str, Any] = {name: copied(one) for name, one in (values or {}).items()}
+        self._given = values or {}
+        self._values: dict[str, Any] = {}
         self._parts: dict[Path, Any] = {}
         self._system = System.load()
 
@@ -89,7 +90,7 @@ class StubWorld:
         return kept
 
     def _write(self, path: Path, value: Value) -> Fault | None:
-        if len(path) == 1 and path[0] not in self._values:
+        if len(path) == 1 and path[0] not in self._values and path[0] not in self._given:
             self._values[str(path[0])] = copied(value)
             return None
         try:
@@ -120,7 +121,9 @@ class StubWorld:
     def _root(self, name: str) -> Any:
         if name not in self._values:
             entry = self._system.variables.get(name)
-            self._values[name] = self._zero(UNKNOWN if entry is None else entry.type)
+            type_ = UNKNOWN if entry is None else entry.type
+            given = self._given.get(name)
+            self._values[name] = self._zero(type_) if given is None else copied(given)
         return self._values[name]
 
     def _zero(self, type_: Type) -> Any:

@@ -20,8 +20,9 @@ class Size:
 
     ``budget`` is how many statements the main routine executes at most, ``others`` how many each
     of the others does; ``statements`` is how many stand in a block at most, ``depth`` how deep
-    expressions nest, ``routines`` how many there are besides the main one. Of a hundred programs,
-    ``risky`` are such that provoke faults.
+    expressions nest, ``routines`` how many there are besides the main one at most, ``data`` how
+    many variables of a kind a data list has about. Of a hundred programs, ``risky`` are such that
+    provoke faults.
     """
 
     budget: int = 700
@@ -29,7 +30,8 @@ class Size:
     statements: int = 6
     depth: int = 3
     routines: int = 3
-    risky: int = 50
+    data: int = 2
+    risky: int = 60
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,8 +54,9 @@ def generate(choices: Choices, size: Size | None = None) -> Sample:
 
 
 _SIZES: Final = (
-    (7, Size(budget=250, others=60, statements=3, routines=2)),
-    (3, Size()),
+    (12, Size(budget=150, others=40, statements=2, routines=1, data=1)),
+    (6, Size(budget=250, others=60, statements=3, routines=2)),
+    (2, Size()),
 )
 _TABLES: Final[tuple[Type, ...]] = (
     Array(INT, (4,)),
@@ -87,7 +88,7 @@ class _Programs:
     def __init__(self, choices: Choices, size: Size) -> None:
         self.choices = choices
         self.size = size
-        self.risk = choices.pick((2, 4, 8)) if choices.chance(size.risky) else 0
+        self.risk = choices.pick((3, 6, 12)) if choices.chance(size.risky) else 0
         self.variables = 0
 
     # ----------------------------------------------------------------------- files
@@ -153,14 +154,15 @@ class _Programs:
         choices = self.choices
         lines = [f"DEFDAT {name}{' PUBLIC' if is_public else ''}", *definitions]
         word = "GLOBAL " if is_public else ""
-        for type_ in (*self._some(_PLAIN, 3), *self._some(_STRUCTURED, 1)):
+        most = self.size.data
+        for type_ in (*self._some(_PLAIN, most + 1), *self._some(_STRUCTURED, (most + 1) // 2)):
             lines += self._datum(scope, type_, word)
-        tables = self._some(_TABLES, 2)
+        tables = self._some(_TABLES, most)
         if is_public and not scope.arrays(CHAR, 1):
             tables.append(Array(CHAR, (12,)))
         for type_ in tables:
             lines += self._datum(scope, type_, word)
-        for type_ in self._some((INT, REAL, CHAR, COLOUR, BOOL), 2):
+        for type_ in self._some((INT, REAL, CHAR, COLOUR, BOOL), most):
             constant_name = self._name("K")
             lines.append(
                 f"DECL {word}CONST {declared(type_, constant_name)[0]} {constant_name}"

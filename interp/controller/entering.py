@@ -65,7 +65,9 @@ class Entering(Moving):
         if not level.has_braked or not level.has_moved:
             return self._left(task)
         end = End(level.at)
-        return Blocked(end, lambda: not level.motions, lambda: self._go_back(task, end))
+        return Blocked(
+            end, lambda: not level.motions, lambda: self._go_back(task, end), is_open=False
+        )
 
     def _go_back(self, task: Task, end: Request) -> Any:
         """The routine has moved the arm after its BRAKE: back to where the path was left."""
@@ -75,7 +77,7 @@ class Entering(Moving):
                 self.load(task, self.builder.back_to(level.at, level.stand))
             except Fault as error:
                 return error
-        return Blocked(end, lambda: not level.motions, lambda: self._left(task))
+        return Blocked(end, lambda: not level.motions, lambda: self._left(task), is_open=False)
 
     def _left(self, task: Task) -> Any:
         level = task.levels[-1]
@@ -83,8 +85,8 @@ class Entering(Moving):
         if level.has_braked:
             self.core.proceed(self.clock.now)
         saved = level.saved
-        if saved is None:
-            return None
+        if saved is None or not saved.is_open:
+            return saved
         again = task.executor.advance(None)
         if again != saved.request:
             raise AssertionError(f"asked again {again}, not {saved.request}")

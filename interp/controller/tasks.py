@@ -32,13 +32,15 @@ class Blocked:
     """A request that waits to be answered.
 
     ``finish`` gives the reply once ``is_ready``, or what is to be waited for next. ``wake`` is a
-    time at which to look again; else it is looked at whenever something happened.
+    time at which to look again; else it is looked at whenever something happened. ``is_open``: the
+    executor waits for the reply. It does not where a routine has ended whose motions have not.
     """
 
     request: Request
     is_ready: Callable[[], bool]
     finish: Callable[[], Any]
     wake: int | None = None
+    is_open: bool = True
 
 
 @dataclass(slots=True, eq=False)

@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 #: Why a program has stopped. ``refused`` follows a command that could not be carried out.
-Reason = Literal["entry", "breakpoint", "step", "watch", "selected", "backward", "refused"]
+Reason = Literal["entry", "breakpoint", "step", "watch", "pause", "selected", "backward", "refused"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from interp.blocks import routine_at
+from interp.blocks import routine_at, statement_lines
 from interp.debugging.backward import Record
 from interp.debugging.client import (
     Backward,
@@ -87,6 +87,7 @@ class Debugger:
         self._stepping: _Stepping | None = None
         self._reason: Stop | None = None
         self._is_begun = False
+        self._is_to_pause = False
         self._since = 0
         self._given: Request | None = None
         self._own: Move | MoveSpline | None = None
@@ -104,6 +105,16 @@ class Debugger:
         program would have.
         """
         return evaluated(parsed(text), self._inner.look, self._read)
+
+    def lines(self, file: str) -> tuple[int, ...]:
+        """The lines of a file at which a program can stop, in ascending order."""
+        units = [one for one in self._program.units.values() if _is_of(file, one.module.path)]
+        routines = [one for unit in units for one in self._program.routines_of(unit)]
+        return tuple(sorted({line for one in routines for line in statement_lines(one)}))
+
+    def pause(self) -> None:
+        """Stop before the next statement; may be called from another thread."""
+        self._is_to_pause = True
 
     def frames(self) -> tuple[Frame, ...]:
         """The routines that are open, the one that runs first."""
@@ -235,6 +246,9 @@ class Debugger:
         if not self._is_begun:
             self._is_begun = True
             return Stop("entry", at)
+        if self._is_to_pause:
+            self._is_to_pause = False
+            return Stop("pause", at)
         changed = self._changed(at)
         if changed is not None:
             return changed

@@ -30,7 +30,7 @@ _RANK: dict[EventKind, int] = {
 }
 _AT_END = 5
 _HALVINGS = 30
-_ROUNDING = 1e-12  # of u
+_ROUNDING = 1e-9  # of u
 
 #: Kind and key of an event of one motion.
 Taken = tuple[str, int | None]

@@ -157,10 +157,12 @@ def _axis_share(
 ) -> float:
     """The share of a PTP: by $APO_DIS_PTP of each axis, by the way of the tool, or by both."""
     curve = _piece(track, at_end=at_end).curve
+    by_way = criterion in {"C_DIS", "C_SPL"}
+    takes_both = track.motion.kind == "SPTP"
     shares = []
-    if criterion in {"C_PTP", "C_VEL", "C_ORI"} or track.motion.kind == "SPTP":
+    if not by_way or takes_both:
         shares.append(_turning_share(curve, min(max(own.cptp, 0.0), 100.0) / 100.0))
-    if criterion in {"C_DIS", "C_SPL"} or (track.motion.kind == "SPTP" and values.cdis > 0.0):
+    if by_way or (takes_both and values.cdis > 0.0):
         shares.append(_way_share(curve, max(values.cdis, 0.0), at_end=at_end))
     return min(shares)
 

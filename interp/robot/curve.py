@@ -7,6 +7,7 @@ those of a spline through enough points of the curve. The axes themselves are al
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -36,10 +37,10 @@ __all__ = [
 ]
 
 _FEWEST = 33
-_MOST = 1025
+_MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
-_JUMP = 20.0  # degrees between points that lie a thousandth of the path apart
+_JUMP = 5.0  # degrees between points that lie as near to each other as can be
 
 
 class Curve(Protocol):
@@ -245,7 +246,9 @@ class BlendedAxes:
     @property
     def grid(self) -> Array:
         """See `Curve.grid`."""
-        return np.linspace(0.0, 1.0, _FEWEST)
+        parts = ((self.first, self.before), (self.second, self.after))
+        needed = [math.ceil(2.0 * share * len(curve.grid)) + 1 for curve, share in parts]
+        return np.linspace(0.0, 1.0, max(_FEWEST, *needed))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""

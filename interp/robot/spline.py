@@ -25,7 +25,7 @@ from interp.robot.orientation import Orientation, angle_between, turning
 __all__ = ["Free", "Knot", "Segment", "chains_of", "courses_of"]
 
 _BEND = 1e-6  # radians between tangents that count as one
-_SHORT = 1e-6  # mm of path below which the tool only turns
+_SHORT = 1e-3  # mm of path below which the tool does little but turn, and stands on either side
 _SAMPLES = 129
 
 

@@ -58,9 +58,7 @@ def mutation(
     repeated: Annotated[
         int, typer.Option(min=0, metavar="N", help="Mutants whose ranking is worked out again.")
     ] = 6,
-    runs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="How often it is worked out.")
-    ] = 10,
+    runs: Annotated[int, typer.Option(min=1, metavar="N", help="How often it is worked out.")] = 10,
     seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
     jobs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")

@@ -1,8 +1,10 @@
 """`krl conform`: the cases of the judge, on any executors and robots."""
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["conform"]
 
 _SHOWN = 20
+_NEEDED = frozenset({"numpy", "scipy", "py_opw_kinematics", "ruckig", "toppra"})
 
 
 def conform(
@@ -60,11 +63,45 @@ def conform(
     on a controller; conformance/CASES.md tells how to make one.
     """
     words = select or []
-    if lint:
-        return _lint(words)
     for target in filter(None, (json_file, junit)):
         if target.is_dir():
             raise Unusable(f"{target}: a folder, not a file")
+    if junit is not None and find_spec("junitparser") is None:
+        raise Unusable(
+            "--junit needs junitparser, which is not installed: "
+            "pip install 'krl-workbench[records]'"
+        )
+    with _installed():
+        if lint:
+            return _lint(words)
+        return _conform(words, executor, robot, json_file, junit, html, jobs, list_=list_)
+
+
+@contextmanager
+def _installed() -> Iterator[None]:
+    """Cases that run need what arms need."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        name = (error.name or "").partition(".")[0]
+        if name not in _NEEDED:
+            raise
+        raise Unusable(
+            f"this needs {name}, which is not installed: pip install 'krl-workbench[arm]'"
+        ) from error
+
+
+def _conform(
+    words: list[str],
+    executor: list[str] | None,
+    robot: list[str] | None,
+    json_file: Path | None,
+    junit: Path | None,
+    html: Path | None,
+    jobs: int | None,
+    *,
+    list_: bool,
+) -> int:
     if words[:1] == ["import"]:
         return _import(words[1:], json_file)
     cases = _cases(words)
@@ -161,7 +198,6 @@ def _write(
     junit: Path | None,
     html: Path | None,
 ) -> None:
-    from conformance.junit import write_junit
     from conformance.record import record_of
     from krl.writing import write_json
 
@@ -178,6 +214,8 @@ def _write(
                 raise Unusable("the page of the judge is not built yet; use --json")
             typer.echo(f"page: {write_page(record, html)}")
     if junit is not None:
+        from conformance.junit import write_junit
+
         write_junit(results, junit)
 
 

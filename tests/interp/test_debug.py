@@ -215,6 +215,25 @@ def test_condition_that_means_nothing_stops_and_says_so(debug: Any) -> None:
     assert "NOWHERE is not known here" == script.stops[1].text
 
 
+def test_lines_at_which_a_program_can_stop(debug: Any) -> None:
+    """Statements, not declarations and ends of blocks; a REPEAT at its UNTIL too."""
+    script, _ = debug(lambda debugger: debugger.lines("main.src"))
+    expected = (4, 5, 6, 7, 8, 9, 10, 12, 14, 15, 16, 18, 19, 21, 22, 26, 27, 31, 32, 34)
+    assert [expected] == script.seen
+    text = "DEF MAIN()\nINT I\nI=0\nREPEAT\nI=I+1\nUNTIL I>1\nEND\n"
+    script, _ = debug(lambda debugger: debugger.lines("main.src"), *[Step()] * 9, text=text)
+    assert [(3, 4, 5, 6)] == script.seen
+    assert [3, 4, 5, 6, 5, 6] == script.lines
+
+
+def test_pause(debug: Any) -> None:
+    """A program that is asked to pause stops before its next statement, once."""
+    script, _ = debug(Step(), lambda debugger: debugger.pause(), Go())
+    assert [("entry", 4), ("step", 5), ("pause", 6)] == [
+        (one.reason, one.at.line) for one in script.stops
+    ]
+
+
 # ------------------------------------------------------------------------------- steps
 
 

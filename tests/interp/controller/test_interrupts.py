@@ -253,6 +253,18 @@ def test_brake_of_a_routine_that_moves(go: Go) -> None:
     assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
 
 
+def test_interrupt_behind_the_last_line_of_a_routine(go: Go) -> None:
+    """A routine whose motions have not ended can still be interrupted [INT-05, INT-09]."""
+    text = NESTED_MOTIONS.replace("WAIT SEC 0.5", "PTP {A1 -30}")
+    text = text.replace("DEF MOVES()\nPTP {A1 -30}", "DEF MOVES()\nBRAKE\nWAIT SEC 0.12")
+    ran = go(text, "t=1.5 IN[1]=TRUE\nt=2 IN[2]=TRUE")
+    assert [(2.136, 10), (3.642, 20)] == [
+        (one.time / 1e6, one.fields["priority"]) for one in ran.told("interrupt_leave")
+    ]
+    assert [4.142] == ran.times("motion_end", motion=2)
+    assert "end" == ran.outcome.ending
+
+
 def test_motion_in_a_routine_without_brake(go: Go) -> None:
     """Without BRAKE its motions come behind those that are planned [INT-08]."""
     text = BRAKING.replace("BRAKE\nWAIT SEC 0.5", "PTP {A1 -30}\n$OUT[1]=TRUE")

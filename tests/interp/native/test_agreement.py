@@ -7,7 +7,7 @@ Every statement takes its fault by ON_ERROR_PROCEED, so that what was done befor
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hypothesis import HealthCheck, given, settings
@@ -97,7 +97,7 @@ end
 """
 
 # What lies on the stack is told by letters: i INT, r REAL, b BOOL.
-_SIMPLE = {
+_SIMPLE: Mapping[str, Sequence[tuple[str, str | None]]] = {
     "": [
         ("PUSH_INT 2", "i"),
         ("PUSH_INT 1", "i"),
@@ -154,7 +154,12 @@ _SIMPLE = {
         ("ELEMENT_LOCAL L INT[4]", "i"),
         ("ELEMENT_DATA M.L INT[4]", "i"),
         ("INDEX_DATA M.PS POINT[3]\nMEMBER 1 INT\nLOAD", "i"),
-        ("INDEX_LOCAL PS POINT[3]\nLOAD_LOCAL R\nSTORE\nTELL REAL 0".replace("LOAD_LOCAL", "MEMBER 0 REAL\nLOAD_LOCAL"), ""),
+        (
+            "INDEX_LOCAL PS POINT[3]\nLOAD_LOCAL R\nSTORE\nTELL REAL 0".replace(
+                "LOAD_LOCAL", "MEMBER 0 REAL\nLOAD_LOCAL"
+            ),
+            "",
+        ),
         ("INDEX_DATA M.L INT[4]\nPUSH_INT 9\nSTORE\nTELL INT 0", ""),
         ("INDEX_LOCAL L INT[4]\nLOAD_LOCAL I\nSTORE\nTELL INT 0", ""),
         ("INDEX_LOCAL L INT[4]\nLOAD_LOCAL I\nLOAD_LOCAL J\nMUL_INT\nSTORE\nTELL INT 0", ""),
@@ -307,7 +312,7 @@ class _Writer:
 
 
 @settings(
-    max_examples=300,
+    max_examples=100,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

@@ -1,0 +1,194 @@
+"""Results as tables, for notebooks: what the commands write as JSON, as pandas DataFrames.
+
+::
+
+    from krl import tables
+
+    survey = tables.record("recover", "D:/backups", "--no-start")
+    tables.clusters(survey).sort_values("unlocks", ascending=False)
+
+Each function takes a record, or the path of the file that holds it. docs/python.md lists them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = [
+    "CommandError",
+    "cases",
+    "clusters",
+    "failures",
+    "findings",
+    "growth",
+    "nights",
+    "path",
+    "proposals",
+    "record",
+    "results",
+    "rules",
+    "trace",
+]
+
+Record = Mapping[str, Any] | Sequence[Mapping[str, Any]]
+
+
+class CommandError(Exception):
+    """A command could not be carried out; the text is what it said."""
+
+
+def record(command: str, *arguments: str | Path) -> Any:
+    """Run a ``krl`` command that knows ``--json`` in this process, and return what it wrote.
+
+    `krl check` has ``--format json`` instead, which is seen to. Findings are no error. Raises
+    `CommandError` where the command ends with status 2.
+    """
+    from krl.cli import main
+
+    told, said = io.StringIO(), io.StringIO()
+    with tempfile.TemporaryDirectory(prefix="krl-") as folder:
+        target = Path(folder, "record.json")
+        is_check = command == "check"
+        wanted = ["--format", "json"] if is_check else ["--json", str(target)]
+        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(said):
+            status = main([*command.split(), *map(str, arguments), *wanted])
+        if status == 2:
+            raise CommandError(said.getvalue().strip() or "the command failed")
+        text = told.getvalue() if is_check else target.read_text(encoding="utf-8")
+    return json.loads(text)
+
+
+def clusters(survey: Record | Path | str) -> pd.DataFrame:
+    """A row a cluster: id, title, rule, failures, files, origins, unlocks, reproducer."""
+    columns = ("id", "title", "rule", "failures", "files", "origins", "unlocks", "reproducer")
+    rows = (
+        {**one, "reproducer": _text(one.get("reproducer"))} for one in _list(survey, "clusters")
+    )
+    return _frame(rows, columns)
+
+
+def proposals(survey: Record | Path | str) -> pd.DataFrame:
+    """A row a proposed edit, with the id of its cluster."""
+    columns = ("cluster", "edit", "restores", "breaks", "accepts_negatives", "ambiguities")
+    rows = (
+        {"cluster": cluster["id"], **proposal}
+        for cluster in _list(survey, "clusters")
+        for proposal in cluster.get("proposals", ())
+    )
+    return _frame(rows, columns)
+
+
+def failures(survey: Record | Path | str) -> pd.DataFrame:
+    """A row a parse failure: path, line, column, token, text, rule, cluster, follows."""
+    columns = ("path", "line", "column", "token", "text", "rule", "cluster", "follows")
+    return _frame(_list(survey, "failures"), columns)
+
+
+def growth(replay: Record | Path | str) -> pd.DataFrame:
+    """A row a step of the ledger: number, id, title, files that parse, bytes, and the metrics."""
+    columns = ("number", "id", "title", "parsed", "files", "parsed_bytes", "bytes", "restored")
+    steps = _list(replay, "steps")
+    rows = [{**step, **step.get("metrics", {})} for step in steps]
+    metrics = list(dict.fromkeys(name for step in steps for name in step.get("metrics", {})))
+    return _frame(rows, (*columns, *metrics))
+
+
+def findings(checked: Record | Path | str) -> pd.DataFrame:
+    """A row a finding of ``krl check``: path, line, column, severity, code, message."""
+    columns = ("path", "line", "column", "end_column", "severity", "code", "message")
+    return _frame(_list(checked, None), columns)
+
+
+def trace(file: Path | str) -> pd.DataFrame:
+    """A row an event of a trace, the JSON Lines of ``krl run --trace``: t in µs, task, kind, at."""
+    text = Path(file).read_text(encoding="utf-8")
+    return _frame(
+        (json.loads(line) for line in text.splitlines()), ("t", "task", "kind", "at"), True
+    )
+
+
+def path(file: Path | str) -> pd.DataFrame:
+    """A row an interpolation cycle of ``krl run --path``: t in µs, axes in degrees, pose in mm."""
+    import pandas as pd
+
+    is_text = Path(file).suffix.lower() == ".csv"
+    return pd.read_csv(file) if is_text else pd.read_parquet(file)
+
+
+def cases(conformed: Record | Path | str) -> pd.DataFrame:
+    """A row a conformance case: name, suite, title, rules, phase, verdict, negative, may_fail."""
+    columns = ("name", "suite", "title", "rules", "phase", "verdict", "negative", "may_fail")
+    return _frame(_list(conformed, "cases"), columns)
+
+
+def results(conformed: Record | Path | str) -> pd.DataFrame:
+    """A row a case on an executor and robot: name, executor, robot, verdict, reason, seconds."""
+    columns = ("name", "executor", "robot", "verdict", "reason", "ending", "seconds")
+    rows = (
+        {"name": case["name"], **result}
+        for case in _list(conformed, "cases")
+        for result in case.get("results", ())
+    )
+    return _frame(rows, columns)
+
+
+def rules(conformed: Record | Path | str) -> pd.DataFrame:
+    """A row a rule of KRL: id, tier, may_fail, statement, and the cases that show it."""
+    columns = ("id", "tier", "may_fail", "profile", "source", "statement", "cases")
+    return _frame(_list(conformed, "rules"), columns)
+
+
+def nights(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
+    """A row a night: date, files that parse, verdicts, divergences, and every bench figure."""
+    from reports.history import read_nights
+
+    rows = []
+    for night in read_nights(Path(history)):
+        row = {"date": night.get("date")}
+        for part in ("recover", "fuzz"):
+            figures = night.get(part) or {}
+            row |= {f"{part}.{k}": v for k, v in figures.items() if not isinstance(v, Mapping)}
+        row |= {
+            f"conform.{k}": v
+            for k, v in ((night.get("conform") or {}).get("verdicts") or {}).items()
+        }
+        row |= {f"bench.{k}": v for k, v in (night.get("bench") or {}).items()}
+        rows.append(row)
+    return _frame(rows, ("date",), True)
+
+
+def _list(given: Record | Path | str, key: str | None) -> list[Mapping[str, Any]]:
+    """The rows under a key of a record, or of the file that holds it."""
+    loaded: Any = given
+    if isinstance(given, str | Path):
+        loaded = json.loads(Path(given).read_text(encoding="utf-8"))
+    rows = loaded if key is None else loaded.get(key, [])
+    return [row for row in rows if isinstance(row, Mapping)]
+
+
+def _text(reproducer: Any) -> str:
+    return (
+        str(reproducer.get("text", ""))
+        if isinstance(reproducer, Mapping)
+        else str(reproducer or "")
+    )
+
+
+def _frame(
+    rows: Iterable[Mapping[str, Any]], columns: Sequence[str], is_open: bool = False
+) -> pd.DataFrame:
+    """The rows with these columns, which are there without any row; ``is_open``: and others."""
+    import pandas as pd
+
+    table = pd.DataFrame(list(rows))
+    others = [name for name in table.columns if name not in columns] if is_open else []
+    return table.reindex(columns=[*columns, *others])

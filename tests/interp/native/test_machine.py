@@ -1,0 +1,187 @@
+"""The machine in C among others: memory, companions, what the core refuses, and own programs."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grammar.source import Source
+from interp.agreement import Prober, difference, observe
+from interp.bytecode import vm
+from interp.bytecode.assembler import assemble
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.image import write_image
+from interp.bytecode.verify import verify
+from interp.executors import Prepared
+from interp.faults import Fault
+from interp.kernels import KERNELS, Kernel
+from interp.program import Limits, load
+from interp.requests import End, Fail, Write
+from interp.stub import StubWorld
+
+if TYPE_CHECKING:
+    from interp.native._core import Core
+
+_PROGRAMS = Path(__file__).resolve().parents[3] / "corpus" / "programs"
+
+_SHARED = """\
+bytecode 1
+ask SHOW Write ("$SHOWN") in:INT
+data M.I INT = 1
+code MAIN routine "m.src" 1
+begin
+  LINE 2 A
+  LOAD_DATA M.I
+  ASK SHOW
+A:
+  LINE 3 B
+  LOAD_DATA M.I
+  ADD_CONSTANT 10
+  STORE_DATA M.I
+  LOAD_DATA M.I
+  ASK SHOW
+B:
+  RETURN
+end
+"""
+
+
+def test_companions_share_the_data_lists(native: type[vm.Machine]) -> None:
+    """What one machine writes into the data lists the other one finds, in either direction."""
+    one = native(verify(assemble(_SHARED)), "MAIN")
+    first: Any = one.advance()
+    other = one.companion("MAIN")
+    second: Any = other.advance()
+    values = [first.value, second.value]
+    for running in (other, one):
+        shown: Any = running.advance()
+        values.append(shown.value)
+    assert [1, 1, 11, 21] == values
+    assert [21] == one.data() == other.data()
+    del one
+    gc.collect()
+    assert isinstance(other.advance(), End)
+
+
+def test_memory_is_given_back(native: type[vm.Machine]) -> None:
+    """A machine that nobody has any more goes, with its memory in C."""
+    machine = native(verify(assemble(_SHARED)), "MAIN")
+    machine.advance()
+    gone = weakref.ref(machine)
+    del machine
+    gc.collect()
+    assert gone() is None
+
+
+def test_companions_need_the_same_image(core: type[Core]) -> None:
+    """Machines of different programs cannot share their data lists."""
+    image = write_image(assemble(_SHARED))
+    other = write_image(assemble(_SHARED.replace("M.I", "M.J")))
+    one = core(image, False, 5, None)
+    with pytest.raises(MemoryError):
+        core(other, False, 5, one)
+    with pytest.raises(TypeError, match="machine or None"):
+        core(image, False, 5, "one")  # type: ignore[arg-type]  # what is tested
+
+
+def test_core_checks_what_leads_into_memory(core: type[Core]) -> None:
+    """Cells, steps and code objects that there are not are refused."""
+    machine = core(write_image(assemble(_SHARED)), False, 5, None)
+    for place in (-1, 10**9):
+        with pytest.raises(IndexError):
+            machine[place]
+        with pytest.raises(IndexError):
+            machine.run(place, 0)
+        with pytest.raises(IndexError):
+            machine.step(0, place)
+        with pytest.raises(IndexError):
+            machine.begin(place if place < 0 else 9)
+    with pytest.raises(OverflowError):
+        machine[0] = 2**31
+    with pytest.raises(ValueError, match="as many cells"):
+        machine[0:1] = [1, 2]
+    with pytest.raises(IndexError):
+        machine.close_frame()
+    assert [1] == machine[0:1]
+
+
+_ENDLESS = """\
+bytecode 1
+code MAIN routine "m.src" 1
+  local L INT[{size}]
+begin
+  LINE 2 A
+  CALL MAIN
+A:
+  RETURN
+end
+"""
+
+
+@pytest.mark.parametrize("depth", [3, 64])
+def test_endless_recursion_ends(native: type[vm.Machine], depth: int) -> None:
+    """Calls end with a fault where the limit is, not where memory ends."""
+    verified = verify(assemble(_ENDLESS.format(size=1000)))
+    request = native(verified, "MAIN", Limits(depth=depth)).advance()
+    assert isinstance(request, Fail)
+    assert isinstance(request.fault, Fault)
+    assert ("stack", depth) == (request.fault.slug, request.at.depth)
+
+
+def test_large_frames_end(native: type[vm.Machine]) -> None:
+    """Frames that have too many cells together fault on both machines in the same call."""
+    verified = verify(assemble(_ENDLESS.format(size=100_000)))
+    for kind in (native, vm.Machine):
+        request = kind(verified, "MAIN").advance()
+        assert isinstance(request, Fail)
+        assert isinstance(request.fault, Fault)
+        assert ("stack", 9) == (request.fault.slug, request.at.depth)
+
+
+#: Programs with loops, motions, interrupts, texts and calls.
+_OWN = (
+    "assembly/KRC/R1/Program/Assembly.src",
+    "gluing/KRC/R1/Program/glue_main.src",
+    "machine_tending/KRC/R1/TP/DoorGuard/DoorGuard.src",
+    "palletiser/KRC/R1/Program/SheetTeach.src",
+    "spot_cell/KRC/R1/cell.src",
+    "dialects/spline_shapes.src",
+)
+
+
+@pytest.mark.parametrize("name", _OWN)
+def test_own_programs(native: type[vm.Machine], name: str) -> None:
+    """Programs of the corpus ask and tell the same, with interrupts and faults on the way."""
+    path = _PROGRAMS / name
+    folder = [path, *sorted(path.parent.glob("*.dat"))]
+    texts = [one.read_bytes().removeprefix(b"\xef\xbb\xbf").decode("latin-1") for one in folder]
+    sources = [Source(text, one.name) for text, one in zip(texts, folder, strict=True)]
+    compiled = compile_program(load(sources, path.name, strict=False))
+    verified = verify(compiled.program)
+    limits = Limits(statements=3_000, per_slice=100)
+    for number in list(compiled.starts.values())[:4]:
+        observed = []
+        for kind in (vm.Machine, native):
+            start = partial(kind, verified, number, limits)
+            observed.append(observe(start, StubWorld(1), Prober(1), most=300))
+        assert difference(*observed) is None
+
+
+@pytest.mark.parametrize("kernel", KERNELS.values(), ids=list(KERNELS))
+def test_kernels_give_the_same(kernel: Kernel) -> None:
+    """The kernels of the bench come to the same result in C as in Python."""
+    amount = max(1, kernel.small // 10)
+    text = f"DEF RUN()\n$OV_PRO = WORK({amount})\nEND\n{kernel.krl}"
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    results = []
+    for name in ("vm", "native"):
+        running = program.executor(name, Limits(per_slice=10**6))
+        written = running.advance()
+        assert isinstance(written, Write)
+        results.append(written.value)
+    assert results[0] == results[1]

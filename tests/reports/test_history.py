@@ -1,0 +1,80 @@
+"""The history of nights, and what changed from one to the next."""
+
+from pathlib import Path
+from typing import Any
+
+from reports import write_night_page
+from reports.history import append_night, changes, night_of, read_nights
+
+
+def _case(name: str, verdict: str, time: int = 1_000) -> dict[str, Any]:
+    event = {"t": time, "kind": "out", "signal": "$OUT", "number": 2}
+    return {"name": name, "verdict": verdict, "results": [{"events": [event]}]}
+
+
+def _conform(*cases: dict[str, Any]) -> dict[str, Any]:
+    return {"verdicts": {"pass": len(cases)}, "cases": list(cases)}
+
+
+def _night(date: str, conform: dict[str, Any], **bench: float) -> dict[str, Any]:
+    made = {"conform": conform, "bench-vm": bench, "recover": {"files": 3, "parsed": 3}}
+    return night_of(date, made, {"conform": {"status": "ok", "seconds": 1.0}})
+
+
+def test_failures_fixes_and_vanished_cases_are_told() -> None:
+    """Only what changed is told, a sentence each."""
+    old = _conform(_case("a/x", "pass"), _case("a/y", "fail"), _case("a/z", "pass"))
+    new = _conform(_case("a/x", "fail"), _case("a/y", "pass"), _case("a/w", "pass"))
+    told = changes(_night("1", old), _night("2", new), old, new)
+    assert [
+        "new failure: a/x: pass → fail",
+        "fixed: a/y: fail → pass",
+        "case appeared: a/w (pass)",
+        "case vanished: a/z",
+    ] == told
+
+
+def test_the_same_night_again_changes_nothing() -> None:
+    """Two equal nights differ in nothing."""
+    conform = _conform(_case("a/x", "pass"))
+    assert [] == changes(_night("1", conform, ratio=2.0), _night("2", conform, ratio=2.0))
+
+
+def test_shifted_times_are_told_with_both_times() -> None:
+    """An output that comes a cycle later is named."""
+    old, new = _conform(_case("a/x", "pass", 12_000)), _conform(_case("a/x", "pass", 24_000))
+    (told,) = changes(_night("1", old), _night("2", new), old, new)
+    assert told.startswith("timing shifted: a/x: out $OUT at 0.012000 s")
+    assert told.endswith("at 0.024000 s")
+
+
+def test_a_slower_bench_is_told_by_its_ratio() -> None:
+    """Noise below a quarter is not told; a cost counts the other way round."""
+    conform = _conform()
+    before = _night("1", conform, native_vs_tree=300.0, crossing_us=2.0, vm_vs_tree=6.0)
+    after = _night("2", conform, native_vs_tree=200.0, crossing_us=3.0, vm_vs_tree=5.5)
+    assert [
+        "slower: vm.native_vs_tree 300 → 200 (1.50 times worse)",
+        "slower: vm.crossing_us 2 → 3 (1.50 times worse)",
+    ] == changes(before, after)
+
+
+def test_damaged_lines_hide_no_night(tmp_path: Path) -> None:
+    """A line cut off is passed over, kept, and a repeated night replaces its line."""
+    file = tmp_path / "history.jsonl"
+    append_night(file, {"date": "1"})
+    file.write_text(file.read_text(encoding="utf-8") + '{"date": "2", "con', encoding="utf-8")
+    append_night(file, {"date": "3", "try": 1})
+    append_night(file, {"date": "3", "try": 2})
+    assert [{"date": "1"}, {"date": "3", "try": 2}] == read_nights(file)
+    assert '{"date": "2", "con' in file.read_text(encoding="utf-8")
+
+
+def test_the_page_of_a_night_shows_what_changed(tmp_path: Path) -> None:
+    """Changes stand on the page, foreign text made harmless."""
+    night = _night("2031-05-06", _conform(_case("a/x", "pass")))
+    told = ["new failure: a/<script>alert(1)</script>: pass → fail"]
+    page = write_night_page({**night, "changes": told, "history": [night]}, tmp_path)
+    text = page.read_text(encoding="utf-8")
+    assert "new failure: a/&lt;script&gt;" in text
+    assert "<script>alert(1)" not in text
