@@ -88,20 +88,21 @@ def assess(
     - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again;
       where several parts are missing, 1 if the best proposals of all clusters together do that.
     - false_accepts: negatives the best proposal lets in that ``whole`` rejects.
+    - seconds: of processor time, for the survey and the search.
     """
-    began = time.perf_counter()
+    began = time.process_time()
     found = survey_texts(shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
         swallowed = suspects((("", text) for _, text in shown), lexer_of(mutant.grammar))
         noticed = any(s.word in mutant.keywords for s in swallowed)
-        seconds = time.perf_counter() - began
+        seconds = time.process_time() - began
         return Verdict(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
     texts_of = dict(shown)
     clusters = cluster(
         found, judge=judge(mutant.grammar), text_of=lambda file: texts_of[file.digest]
     )
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     base = Recognizer(mutant.grammar)
     ordered = list(_proposals(clusters))
     reducer = Reducer(base)

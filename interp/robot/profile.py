@@ -182,8 +182,8 @@ def travel(
     asked.max_velocity = [max(bounds.velocity, target)]
     found = _solved(asked)
     if found is None or found.lowest < -1e-6 * bounds.velocity - 1e-9:
-        return _change(speed, acceleration, target, bounds).stretched(length)
-    return found
+        found = _change(speed, acceleration, target, bounds)
+    return found.stretched(length)
 
 
 def stop(speed: float, acceleration: float, bounds: Bounds) -> Profile:

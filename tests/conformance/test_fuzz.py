@@ -275,7 +275,7 @@ def test_command_with_differences(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Exit status 1, each program reduced and shown with what both sides did."""
-    wrong(mutant_of(Op.NOT_BOOL, "keeps the value"))
+    wrong(mutant_of(Op.STORE_LOCAL, "stores nothing"))
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
     target = tmp_path / "fuzz.json"
     arguments = ["fuzz", "--programs", "20", "--jobs", "1", "--json", str(target)]

@@ -1,0 +1,205 @@
+"""Main programs of controllers' backups, run whole: which of them get to their end, and what stops
+the others.
+
+A main program is the first routine of a file below R1, outside the folders of the controller and of
+its packages, that takes no arguments, moves the arm, and is called by no other program but the one
+that only chooses between programs, CELL. It is run with the machine data, tools, bases and points
+of its own backup, with its submit program where there is one, and with somebody at the panel who
+goes on after a HALT, acknowledges messages and gives each dialogue its first answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+from typing import Final, Literal
+
+from grammar import ast
+from grammar.source import Source
+from grammar.uses import calls_in
+from grammar.walk import walk
+from interp.controller.script import Script
+from interp.controller.trace import TraceEvent
+from interp.executors import Prepared
+from interp.faults import Fault, LinkError
+from interp.program import CheckedProgram, Routine, load_all
+from interp.session import Setup, run_program
+
+__all__ = ["OPERATOR", "MainProgram", "Ran", "Result", "main_programs", "run_main"]
+
+#: What the person at the panel does, as lines of a script.
+OPERATOR: Final = (
+    "on HALT after 1 press START\non message after 1 press CONFIRM\non dialogue after 1 answer 1\n"
+)
+#: Folders of a backup that hold what the controller and its packages bring along.
+_NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
+_CHOOSES: Final = "CELL"
+_MOVES: Final = (ast.Motion, ast.SplineBlock)
+
+#: How a main program ended: as a run ends, or ``waits`` where it ran out of time and the arm had
+#: stood for half of it, ``goes on`` where it moved, ``refused`` where it could not begin.
+Result = Literal["end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MainProgram:
+    """A main program, and the first routine of its submit program if its backup has one.
+
+    ``has_machine``: whether its backup has the machine data of an arm.
+    """
+
+    prepared: Prepared
+    path: str
+    routine: str
+    submit: str | None
+    has_machine: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Ran:
+    """What came of a main program: virtual seconds, motions made, and where and why it ended.
+
+    ``at`` is where it was when its time was over. ``furthest_mm`` is how far a measured tool was
+    from its set-point at most, where the robot measures.
+    """
+
+    result: Result
+    seconds: float
+    motions: int
+    at: str = ""
+    reason: str = ""
+    machine: str = ""
+    furthest_mm: float | None = None
+
+
+def main_programs(sources: Iterable[Source]) -> tuple[list[MainProgram], list[tuple[str, str]]]:
+    """The main programs of files of one origin, and which files cannot be read and why.
+
+    Files that are not laid out like a backup have none of R1: all their folders count.
+    """
+    programs, unread = load_all(sources)
+    called: dict[int, set[str]] = {}
+    moving: dict[int, set[str]] = {}
+    for program in programs:
+        key = id(program.project)
+        if key not in called:
+            called[key], moving[key] = _calls(program)
+    found = []
+    for program in programs:
+        key, path = id(program.project), program.main.module.path
+        first = program.routines_of(program.main)[0]
+        is_wanted = (
+            program.main.module.suffix == ".src"
+            and _is_of_users(path, is_controller=program.project.is_controller)
+            and program.can_begin(first)
+            and first.node.name.key in moving[key]
+            and first.node.name.key not in called[key]
+        )
+        if is_wanted:
+            found.append(
+                MainProgram(
+                    Prepared(program),
+                    path,
+                    first.name,
+                    _submit_of(program),
+                    _has_machine(program),
+                )
+            )
+    return found, list(unread)
+
+
+def _is_of_users(path: str, *, is_controller: bool) -> bool:
+    folders = [part.upper() for part in PurePosixPath(path).parts[:-1]]
+    if is_controller and "R1" not in folders:
+        return False
+    return _NOT_OF_USERS.isdisjoint(folders)
+
+
+def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
+    """The names of routines that others call, but for CELL, and of those that move the arm."""
+    calls: dict[str, set[str]] = {}
+    moving: set[str] = set()
+    for routine in program.routines.values():
+        key = routine.node.name.key
+        calls.setdefault(key, set()).update(calls_in(routine.node.body))
+        if any(isinstance(node, _MOVES) for one in routine.node.body for node in walk(one)):
+            moving.add(key)
+    grows = True
+    while grows:
+        more = {name for name, others in calls.items() if others & moving} - moving
+        moving |= more
+        grows = bool(more)
+    called = {other for name, others in calls.items() for other in others - {name}}
+    chosen = calls.get(_CHOOSES, set())
+    others = {one for name, found in calls.items() if name != _CHOOSES for one in found - {name}}
+    return (called - chosen) | (chosen & others), moving
+
+
+def _submit_of(program: CheckedProgram) -> str | None:
+    """The submit program of a backup: SPS, as controllers call it."""
+    for unit in program.units.values():
+        routines = program.routines_of(unit)
+        if unit.module.suffix == ".sub" and routines and _is_sps(routines[0]):
+            return routines[0].name
+    return None
+
+
+def _is_sps(routine: Routine) -> bool:
+    return routine.node.name.key == "SPS"
+
+
+def _has_machine(program: CheckedProgram) -> bool:
+    return any(
+        unit.module.name == "$MACHINE" and "$LENGTH_A" in unit.source.text
+        for unit in program.units.values()
+    )
+
+
+def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
+    """Run a main program; ``script`` adds to what the person at the panel does.
+
+    Raises `interp.controller.script.ScriptError` for a script that names what does not exist.
+    """
+    seen = _Seen()
+    text = script + "\n" + OPERATOR
+    setup = replace(setup, submit=main.submit, script=Script.read(text, f"{main.routine}.io"))
+    try:
+        run = run_program(main.prepared, setup, take=seen.take)
+    except LinkError as error:
+        return Ran("refused", 0.0, 0, reason=str(error))
+    outcome = run.outcome
+    path = run.path
+    furthest = None
+    if path is not None and path.tips_measured is not None:
+        furthest = float(((path.tips_measured - path.tips) ** 2).sum(axis=1).max() ** 0.5)
+    place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
+    result: Result
+    if outcome.ending == "crash":
+        raise RuntimeError(f"{place}: {outcome.error}")
+    if outcome.ending == "time":
+        result = "waits" if seen.last_motion < outcome.time / 2 else "goes on"
+    elif outcome.ending == "fault" and not isinstance(outcome.error, Fault):
+        result = "unlinked"
+    else:
+        result = outcome.ending
+    reason = "" if outcome.error is None else str(outcome.error)
+    number = getattr(outcome.error, "number", None)
+    if number is not None:
+        reason += f" (message {number})"
+    return Ran(
+        result, outcome.time / 1e6, seen.motions, place, reason, run.machine.name, furthest
+    )
+
+
+@dataclass(slots=True)
+class _Seen:
+    """What a trace tells of motions, which is all that is kept of it."""
+
+    motions: int = 0
+    last_motion: int = -1
+
+    def take(self, event: TraceEvent) -> None:
+        if event.kind == "motion_end":
+            self.motions += 1
+            self.last_motion = event.time
