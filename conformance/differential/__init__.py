@@ -20,7 +20,9 @@ module          what it is
 `reduction`     programs made small
 `coverage`      what of the language was executed
 `campaign`      many programs, in processes
-`mutants`       faults planted into the machine in Python
+`planting`      ways for an instruction to be wrong
+`wrongs`        what is wrong with single instructions
+`mutants`       faults planted into the machine in Python, by the table of instructions
 `hunt`          how many of them are found
 =============== ====================================================================================
 

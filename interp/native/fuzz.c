@@ -284,7 +284,7 @@ int LLVMFuzzerInitialize(int *count, char ***arguments)
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t largest, unsigned int seed)
 {
     state = seed | 1;
-    if (draw(4) == 0 || size < 24)
+    if (draw(16) == 0 || size < 24)
         size = LLVMFuzzerMutate(data, size, largest);
     else
         damage(data, size);

@@ -8,7 +8,7 @@ times in seconds.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,6 +21,8 @@ __all__ = ["Bounds", "Profile", "Ramp", "ramp", "standing", "stop", "travel"]
 
 _SLACK = 1e-7
 """Share of a length within which speeding up or braking all the way is what fills it."""
+_EXACT = 1e-9
+"""Share of a length by which Ruckig's answer may miss it."""
 _ROUNDS = 60
 _INSTANT = 1e-12  # seconds
 
@@ -132,10 +134,17 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """The quickest change of speed, with the acceleration at zero in the end."""
+    """The quickest change of speed, with the acceleration at zero in the end.
+
+    ``pieces`` are up to three of duration, acceleration at the start, and jerk.
+    """
 
     duration: float
     distance: float
+    pieces: tuple[tuple[float, float, float], ...]
+
+
+_NONE = Ramp(0.0, 0.0, ())
 
 
 def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ramp:
@@ -163,7 +172,12 @@ def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ra
         + hold * (second + hold * peak / 2)
         + fall * (third + fall * (peak / 2 - fall * jerk / 6))
     )
-    return Ramp(rise + hold + fall, sign * travelled)
+    pieces = (
+        (rise, acceleration, sign * jerk),
+        (hold, sign * peak, 0.0),
+        (fall, sign * peak, -sign * jerk),
+    )
+    return Ramp(rise + hold + fall, sign * travelled, pieces)
 
 
 def travel(
@@ -175,20 +189,18 @@ def travel(
     the length is just what the change of speed takes, that change is all there is.
     """
     direct = ramp(speed, acceleration, target, bounds)
-    if direct.distance >= length * (1.0 - _SLACK) and target <= bounds.velocity:
-        return _change(speed, acceleration, target, bounds).stretched(length)
-    asked = _asked(speed, acceleration, target, bounds)
-    asked.target_position = [length]
-    asked.max_velocity = [max(bounds.velocity, target)]
-    found = _solved(asked)
-    if found is None or found.lowest < -1e-6 * bounds.velocity - 1e-9:
-        found = _change(speed, acceleration, target, bounds)
+    if direct.distance >= length * (1.0 - _SLACK):
+        return Profile(speed, _lasting(direct.pieces)).stretched(length)
+    found = _solved(length, speed, acceleration, target, bounds)
+    misses = found is None or abs(found.length - length) > _EXACT * length
+    if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
+        found = _searched(length, speed, acceleration, target, bounds)
     return found.stretched(length)
 
 
 def stop(speed: float, acceleration: float, bounds: Bounds) -> Profile:
     """The quickest way to stand still, however far that is."""
-    return _change(speed, acceleration, 0.0, bounds)
+    return Profile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
 
 
 def standing(duration: float) -> Profile:
@@ -196,34 +208,24 @@ def standing(duration: float) -> Profile:
     return Profile(0.0, ((duration, 0.0, 0.0),))
 
 
-# --------------------------------------------------------------------------------------- ruckig
+def _solved(
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+) -> Profile | None:
+    """What Ruckig finds, if anything.
 
-
-def _asked(
-    speed: float, acceleration: float, target: float, bounds: Bounds
-) -> ruckig.InputParameter:
+    It is asked in units in which the speed is at most 1, since its tolerances are absolute.
+    """
+    unit = max(bounds.velocity, target)
     asked = ruckig.InputParameter(1)
     asked.current_position = [0.0]
-    asked.current_velocity = [speed]
-    asked.current_acceleration = [acceleration]
-    asked.target_velocity = [target]
+    asked.current_velocity = [speed / unit]
+    asked.current_acceleration = [acceleration / unit]
+    asked.target_position = [length / unit]
+    asked.target_velocity = [target / unit]
     asked.target_acceleration = [0.0]
-    asked.max_acceleration = [bounds.acceleration]
-    asked.max_jerk = [bounds.jerk]
-    return asked
-
-
-def _change(speed: float, acceleration: float, target: float, bounds: Bounds) -> Profile:
-    """The quickest change of speed as a profile."""
-    asked = _asked(speed, acceleration, target, bounds)
-    asked.control_interface = ruckig.ControlInterface.Velocity
-    found = _solved(asked)
-    if found is None:
-        raise ArithmeticError(f"no profile from {speed} ({acceleration}) to {target} in {bounds}")
-    return found
-
-
-def _solved(asked: ruckig.InputParameter) -> Profile | None:
+    asked.max_velocity = [1.0]
+    asked.max_acceleration = [bounds.acceleration / unit]
+    asked.max_jerk = [bounds.jerk / unit]
     trajectory = ruckig.Trajectory(1)
     try:
         result = ruckig.Ruckig(1).calculate(asked, trajectory)
@@ -236,4 +238,35 @@ def _solved(asked: ruckig.InputParameter) -> Profile | None:
         *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
         *zip(solved.t, solved.a[:-1], solved.j, strict=True),
     ]
-    return Profile(asked.current_velocity[0], (piece for piece in pieces if piece[0] > 0.0))
+    return Profile(speed, _lasting((t, a * unit, jerk * unit) for t, a, jerk in pieces))
+
+
+def _searched(
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+) -> Profile:
+    """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
+
+    def parts(cruise: float) -> tuple[Ramp, Ramp]:
+        return ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds)
+
+    def fits(cruise: float) -> bool:
+        return sum(part.distance for part in parts(cruise)) <= length
+
+    eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
+    low, high = max(eased, target), max(bounds.velocity, target)
+    if fits(low):
+        for _ in range(_ROUNDS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if fits(middle) else (low, middle)
+        ramps = parts(low)
+    else:  # it brakes already, and all that is left over is travelled behind that
+        low, ramps = target, (ramp(speed, acceleration, target, bounds), _NONE)
+    rest = max(length - sum(part.distance for part in ramps), 0.0)
+    cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
+    return Profile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
+
+
+def _lasting(
+    pieces: Iterable[tuple[float, float, float]],
+) -> Iterator[tuple[float, float, float]]:
+    return (piece for piece in pieces if piece[0] > 0.0)

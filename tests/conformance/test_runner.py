@@ -118,6 +118,24 @@ def test_executors_that_differ_have_failed_whatever_the_rule(make: MakeCase) -> 
     assert "fact.src:7: tree/none says assign N 2" in str(found)
 
 
+def _other_robot(case: Case, setup: Setup) -> Observation:
+    """On the second robot the last assignment gives another value, or comes later."""
+    seen = replace(_other_value(case, VM), robot=setup.robot)
+    late = replace(seen.events[-1], time=5_000_000)
+    if setup.robot == "none":
+        return observe(case, TREE)
+    return seen if setup.executor == "tree" else replace(seen, events=(*seen.events[:-1], late))
+
+
+def test_robots_may_measure_other_values_at_the_same_times(make: MakeCase) -> None:
+    """What variables hold may differ by robot, what happens and when may not."""
+    case = make(("value N 2", "runs 1"))
+    there = Setup("tree", "kinematic")
+    assert "pass" == run_case(case, [TREE, there], NOTHING_KNOWN, see=_other_robot).verdict
+    late = Setup("native", "kinematic")
+    assert "fail" == run_case(case, [TREE, late], NOTHING_KNOWN, see=_other_robot).verdict
+
+
 def _failing(_case: Case, _setup: Setup) -> Observation:
     raise ZeroDivisionError("in the executor")
 
