@@ -23,6 +23,7 @@ from conformance.expectations import (
     read_expectation,
 )
 from conformance.registry import registry
+from grammar.documents import read_text
 from grammar.source import Source
 
 __all__ = ["CASES", "ENDINGS", "Case", "CaseError", "find_cases", "read_case", "selected"]
@@ -206,7 +207,7 @@ def read_case(path: Path, root: Path = CASES) -> Case:
 
 def _read(path: Path) -> Source:
     try:
-        return Source(path.read_text(encoding="utf-8"), path.name)
+        return Source(read_text(path), path.name)
     except (OSError, UnicodeDecodeError) as error:
         raise CaseError(f"{path}: cannot be read: {error}") from error
 

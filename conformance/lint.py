@@ -19,6 +19,7 @@ from conformance.observing import PROFILES
 from conformance.registry import Rule, registry
 from conformance.verdicts import KnownFailures
 from grammar.build import read_module
+from interp.controller.script import Script, ScriptError
 
 __all__ = ["SUITES", "Coverage", "coverage", "lint"]
 
@@ -107,6 +108,10 @@ def _faults(case: Case) -> Iterator[str]:
         yield "the file name is no KRL name in lower case"
     if case.io and case.phase != "run":
         yield "a script of inputs needs a program that runs"
+    try:
+        Script.read("\n".join(case.io), "io")
+    except ScriptError as error:
+        yield str(error)
     yield from _of_text(case)
     yield from _of_expectations(case)
 

@@ -7,7 +7,6 @@ rules that are unconfirmed, which is what it is for.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from conformance.observation import Event, Finding, Observation
 from conformance.registry import registry
 from conformance.runner import CaseResult, Result
 from conformance.verdicts import verdict_of
+from grammar.documents import json_of, read_bytes
 from interp.robot.following import PathRecord
 
 __all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "judge_recording"]
@@ -46,7 +46,7 @@ class Recording:
     def read(path: Path) -> Recording:
         """Read a file. Raises `RecordingError`."""
         try:
-            data = json.loads(path.read_text(encoding="utf-8"))
+            data = json_of(read_bytes(path).decode("utf-8"))
         except (OSError, ValueError) as error:
             raise RecordingError(f"{path}: cannot be read: {error}") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -58,10 +58,13 @@ class Recording:
         if not isinstance(cycle, int) or cycle < 1:
             raise RecordingError(f"{path}: the cycle is in whole microseconds")
         seen = {}
-        for number, entry in enumerate(data.get("cases", ()), start=1):
+        entries = data.get("cases", [])
+        if not isinstance(entries, list):
+            raise RecordingError(f"{path}: its cases are no list")
+        for number, entry in enumerate(entries, start=1):
             try:
                 seen[str(entry["case"])] = (str(entry["digest"]), _observation(entry, cycle))
-            except (KeyError, TypeError, ValueError) as error:
+            except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
                 raise RecordingError(f"{path}: case {number}: {error!r}") from error
         name = " ".join(
             str(controller[key]) for key in ("name", "release", "machine") if controller.get(key)

@@ -14,6 +14,7 @@ from typing import Any
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 
+from grammar.documents import read_bytes
 from grammar.model import (
     MAX_CODE_POINT,
     Alternative,
@@ -87,7 +88,7 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
 def read_file(path: Path) -> Grammar:
     """Read a ``.g4`` file; raises `GrammarError` when it cannot be read."""
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_bytes(path).decode("utf-8")
     except OSError as error:
         raise GrammarError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:

@@ -187,7 +187,9 @@ class Project:
                 else:
                     self._names[space].setdefault(symbol.key, []).append(found)
         for found in announced:  # EXT in $CONFIG; the routine itself says more
-            self._names[Space.ROUTINE].setdefault(found.symbol.key, [found])
+            key = found.symbol.key
+            if not isinstance(self._globals.system.find(Space.ROUTINE, key), Found):
+                self._names[Space.ROUTINE].setdefault(key, [found])
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,7 +81,7 @@ def _kinds() -> Mapping[str, FaultKind]:
         ("overflow", "the result is too large for its type", None, "TYP-01 TYP-02 ARI-12"),
         ("domain", "the function has no value there", None, "FCT-01 FCT-02"),
         ("index", "an array index lies outside the array", 1444, "TYP-09 MSG-15"),
-        ("uninitialised", "a value is used that was never set", None, "TYP-13"),
+        ("uninitialised", "a value is used that was never set", 1422, "TYP-13 MSG-11"),
         ("stack", "the program stack overflows", 1424, "SCO-11 MSG-12"),
         ("nesting", "variables are nested too deeply", 1426, "SCO-11 MSG-12"),
         ("invalid", "the value is not valid for a system variable", 1422, "ARI-11 MSG-11"),

@@ -23,13 +23,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO
 
+from grammar.documents import open_file
+
 __all__ = [
     "ArchiveError",
     "Member",
     "close_archives",
     "is_archive",
     "members",
-    "open_file",
     "read",
     "read_whole",
     "too_large",
@@ -99,19 +100,6 @@ class Member:
 def is_archive(name: str) -> bool:
     """Tell whether `name` is that of an archive to look into."""
     return name.lower().endswith(".zip")
-
-
-def open_file(file: Path) -> io.FileIO:
-    """Open a regular file for reading; raises OSError, also for folders, pipes and devices.
-
-    Never waits: opening a pipe nobody writes to would.
-    """
-    flags = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
-    stream = io.FileIO(os.open(file, flags), "rb")
-    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-        stream.close()
-        raise OSError(None, "not a regular file")
-    return stream
 
 
 def why(error: OSError) -> str:

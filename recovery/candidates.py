@@ -35,6 +35,12 @@ class Candidate:
     edits: tuple[Edit, ...]
     breadth: int
 
+    @property
+    def place(self) -> tuple[str, str, Address]:
+        """Where the last of the edits is, and of which kind it is."""
+        edit = self.edits[-1]
+        return type(edit).__name__, getattr(edit, "rule", ""), getattr(edit, "at", ())
+
 
 # Each further edit of the same rule is less worth a try, so that other rules have their turn.
 _MORE_OF_THE_SAME = 0.93
@@ -62,10 +68,11 @@ class CandidateFinder:
         return self._ordered(self._of_line(line))
 
     def find_common(self, lines: Sequence[Line], most: int, core: int = 0) -> list[Candidate]:
-        """At most so many candidates for lines that may have one cause, the most hopeful first.
+        """Candidates for lines that may have one cause, the most hopeful first.
 
-        Hopeful is an opening that many of the lines have; what is written there reads what all of
-        them have in common, what the first ``core`` of them have, or what one of them has.
+        Hopeful is an opening that many of the lines have; ``most`` of them are looked at. What is
+        written there reads what all of the lines have in common, what the first ``core`` of them
+        have, or what one of them has.
         """
         slots: dict[_Slot, dict[int, list[Opening]]] = defaultdict(lambda: defaultdict(list))
         support: dict[tuple[Edit, ...], set[int]] = defaultdict(set)
@@ -104,7 +111,7 @@ class CandidateFinder:
                 varied[edits] = hopes[edits] * _MORE_OF_THE_SAME ** in_rule[rule]
                 in_rule[rule] += 1
         ordered = sorted(varied, key=lambda e: (-varied[e], str(e)))
-        return [Candidate(edits, ranks[edits]) for edits in ordered[:most]]
+        return [Candidate(edits, ranks[edits]) for edits in ordered]
 
     def find_blocks(
         self, line: Line, opener: str, texts: Sequence[str], meant: frozenset[str]

@@ -9,7 +9,7 @@ not mend are searched again.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -28,11 +28,14 @@ __all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
 # Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
 # that a first trial looks at: what is kept after it is tried on everything.
 _SPECIMENS = 3
-_MOST_TRIED = 120
+_MOST_TRIED = 105
 # Behind the groups that hold back most a quicker look has to do.
 _HEAVY_GROUPS = 12
-_MOST_TRIED_LIGHT = 50
+_MOST_TRIED_LIGHT = 48
 _FIRST_TRIAL = 8
+# Candidates of each place that are tried before any other, and wider ones where these do most.
+_NARROW = 2
+_WIDER = 4
 # Lines whose openings are compared for what they have in common.
 _VARIED = 6
 _KEPT = 10
@@ -193,7 +196,7 @@ class Search:
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
         sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
         sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
-        first = [(candidate, self.trial.outcome(candidate.edits, sample)) for candidate in tried]
+        first = self._tried(tried, most, sample)
         first += [
             (candidate, self.trial.outcome(candidate.edits, sample))
             for candidate in one_choice([c for c, o in first if o.mended])
@@ -212,6 +215,27 @@ class Search:
             )
         useful = [proposal for proposal in proposals if self._gain(proposal)]
         return self._ranked(useful, heavy)[:_SHOWN]
+
+    def _tried(
+        self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
+    ) -> list[tuple[Candidate, Outcome]]:
+        """At most so many candidates with what they do to a sample of lines.
+
+        First the narrowest at each place; then the wider ones where these do most.
+        """
+        at: dict[object, list[Candidate]] = defaultdict(list)
+        for candidate in candidates:
+            at[candidate.place].append(candidate)
+        narrow = [c for c in candidates if c in at[c.place][:_NARROW]][: most - most // 3]
+        out = [(c, self.trial.outcome(c.edits, sample)) for c in narrow]
+        gains: dict[object, tuple[float, int]] = {}
+        for c, outcome in out:
+            gain = self._gain(outcome)
+            if gain:
+                gains[c.place] = max((gain, -c.breadth), gains.get(c.place, (0.0, 0)))
+        hopeful = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
+        wide = [c for place in hopeful for c in at[place][_NARROW : _NARROW + _WIDER]]
+        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // 3]]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
         """The best of the blocks that a line may open, with the negatives they let in."""

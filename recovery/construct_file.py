@@ -9,12 +9,12 @@ from __future__ import annotations
 import json
 import math
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from grammar.documents import DocumentError, read_bytes, toml_of
 from grammar.edits import Edit, from_data, to_data
 from grammar.model import GrammarError
 from recovery.construct import (
@@ -58,7 +58,7 @@ def name_from(text: str) -> str:
 def read(path: Path) -> Construct:
     """Read one file; raises `LedgerError`, which names the file and the key."""
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_bytes(path).decode("utf-8")
     except OSError as error:
         raise LedgerError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -72,9 +72,9 @@ def parse(text: str, path: Path) -> Construct:
     if named is None:
         raise LedgerError(f"{path}: the name is not NNNN-words-in-lower-case.toml")
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise LedgerError(f"{path}: not TOML: {error}") from None
+        data = toml_of(text)
+    except DocumentError as error:
+        raise LedgerError(f"{path}: {error}") from None
     number = None if named["number"] is None else int(named["number"])
     try:
         found = _construct(_Table(data), named["name"], number, path)

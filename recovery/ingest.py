@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
+from grammar.documents import open_file
 from recovery import archives
 from recovery.archives import ArchiveError, close_archives, is_archive
 from recovery.decode import Source, decode, digest
@@ -89,7 +90,7 @@ def read(found: Found) -> bytes | Skipped:
     try:
         if found.member is not None:
             return archives.read(found.file, found.member, found.size)
-        with archives.open_file(found.file) as stream:
+        with open_file(found.file) as stream:
             return archives.read_whole(stream)
     except ArchiveError as error:
         return Skipped(found.path, printable(str(error)), found.origin)
@@ -137,7 +138,7 @@ def _resolved(roots: Sequence[Path]) -> list[_Root]:
             elif not stat.S_ISREG(mode):
                 raise IngestError(printable(f"{shown}: neither a file nor a folder"))
             else:
-                archives.open_file(real).close()
+                open_file(real).close()
         except (FileNotFoundError, NotADirectoryError) as error:
             raise IngestError(printable(f"{shown}: no such file or folder")) from error
         except (OSError, RuntimeError, ValueError) as error:

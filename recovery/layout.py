@@ -311,7 +311,7 @@ class Layout:
             return 0
         if len(symbols) == 1 and self.has_choice(rule) and self.is_set_of_words(rule):
             return -3 * _LIKE
-        if self._gathers(rule):
+        if self.gathers(rule):
             if not self._is_single(symbols):
                 return _LOOSE
             kinds = {old[0] for old in known if old}
@@ -344,14 +344,14 @@ class Layout:
         """For each rule the rules that gather it."""
         found: dict[str, set[str]] = defaultdict(set)
         for rule in self.grammar.rules:
-            if not rule.is_lexer and self._gathers(rule.name):
+            if not rule.is_lexer and self.gathers(rule.name):
                 for alternative in rule.alternatives:
                     only = self._only(rule, alternative)
                     if only is not None:
                         found[only.name].add(rule.name)
         return {name: frozenset(rules) for name, rules in found.items()}
 
-    def _gathers(self, rule: str) -> bool:
+    def gathers(self, rule: str) -> bool:
         """Whether most alternatives of a rule are one rule or token each."""
         found = self.grammar.by_name[rule]
         single = sum(self._only(found, a) is not None for a in found.alternatives)

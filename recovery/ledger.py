@@ -16,7 +16,7 @@ from grammar.recognizer import Recognizer
 from grammar.wellformed import problem
 from recovery.construct import Construct, LedgerError
 from recovery.construct_file import read
-from recovery.together import finish
+from recovery.together import JournalError, finish
 
 __all__ = [
     "UNFINISHED",
@@ -50,7 +50,10 @@ class Ledger:
         Raises `LedgerError` for the first file that is not as it must be, for a number given twice
         and for a gap.
         """
-        finish(folder / UNFINISHED)
+        try:
+            finish(folder / UNFINISHED)
+        except JournalError as error:
+            raise LedgerError(str(error)) from None
         files = sorted(folder.glob("*.toml")) if folder.is_dir() else []
         constructs = []
         for number, file in enumerate(files, 1):

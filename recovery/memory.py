@@ -110,7 +110,7 @@ class Memory:
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
             ).fetchone()
             return None if row is None else json.loads(zlib.decompress(row[0]))
-        except (sqlite3.DatabaseError, zlib.error, ValueError):
+        except (sqlite3.Error, zlib.error, ValueError, TypeError, RecursionError):
             return None
 
     def _keep(self, entries: Iterable[tuple[str, object]]) -> None:

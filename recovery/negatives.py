@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast, get_args
 
+from grammar.documents import read_bytes
 from grammar.lexer import EOF, SKIPPED, Lexer
 from grammar.recognizer import Core, Recognizer, State, Tail
 
@@ -62,7 +63,7 @@ def load(folder: Path) -> tuple[Negative, ...]:
 
 def _read(path: Path) -> Negative:
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_bytes(path).decode("utf-8")
     except OSError as error:
         raise NegativeError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:

@@ -26,7 +26,12 @@ _MOST_SKIPPED = 3
 # Elements of a sequence in which one word may well stand for another at its beginning.
 _SHARED = 4
 _LONGEST_RUN = 24
+# What a rule may have in front of it and still be the same thing.
+_LONGEST_PREFIX = 3
 _LONGEST_LINE = 1_000
+# Frames on the stacks a line begins with: a block adds two or three. The deepest line that fails in
+# our own programs has 15; hundreds cost minutes, for they are read anew at each trial.
+_DEEPEST = 150
 #: What an opening loses in rank that is hardly ever meant.
 UNLIKELY = 8
 
@@ -43,8 +48,9 @@ class Line:
 
     @property
     def is_enormous(self) -> bool:
-        """Whether it is too long to be worth a search: nobody wrote it."""
-        return len(self.form.kinds) > _LONGEST_LINE
+        """Whether it is too long, or too deeply nested, to be worth a search: nobody wrote it."""
+        deepest = max(map(len, self.form.before), default=0)
+        return len(self.form.kinds) > _LONGEST_LINE or deepest > _DEEPEST
 
     def words(self) -> list[Word]:
         """The tokens of the line."""
@@ -299,14 +305,13 @@ class OpeningFinder:
             # inserting what is missing, to go on where we are
             is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
             begins_loop = number == 1 and len(place) > 2
-            begins_hub = position == base and self.layout.is_hub(rule)
+            gathers = self.layout.gathers(rule)
             for end in ends:
                 comes_next = words[end][0] in self.layout.first(sequence, number)
                 # behind all that may be left out, but for what the line has behind it; before the
                 # first element of a rule only where that element itself comes next
-                if (comes_next and not begins_hub) or (
-                    is_last and position != base and not begins_loop
-                ):
+                is_prefix = position != base or (not gathers and end - start <= _LONGEST_PREFIX)
+                if (comes_next and is_prefix) or (is_last and position != base and not begins_loop):
                     yield self._insertion(rule, place, words[start:end])
                 yield from self._repetitions(rule, place, words[start:end])
             yield from self._blocks(rule, place, words[start:])

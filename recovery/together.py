@@ -14,7 +14,13 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-__all__ = ["finish", "write_together"]
+from grammar.documents import json_of, read_bytes
+
+__all__ = ["JournalError", "finish", "write_together"]
+
+
+class JournalError(ValueError):
+    """A journal that is not to be followed; the text names it."""
 
 
 def write_together(
@@ -72,12 +78,18 @@ def finish(journal: Path) -> list[Path]:
     """Exchange what a killed process had laid ready; the files that changed.
 
     Without a journal nothing was begun, or all of it is done. A part whose content is not the one
-    noted is another's, and left alone. Raises `OSError`.
+    noted is another's, and left alone. Raises `OSError`, and `JournalError` for a journal that is
+    damaged or names files elsewhere than below the folder that the journal's folder lies in.
     """
     try:
-        wanted: dict[str, str | None] = json.loads(journal.read_text(encoding="utf-8"))
+        wanted = json_of(read_bytes(journal).decode("utf-8"))
     except FileNotFoundError:
         return []
+    except ValueError as error:
+        raise JournalError(f"{journal}: {error}") from None
+    home = journal.resolve().parent.parent
+    if not isinstance(wanted, dict) or not all(_is_below(home, name) for name in wanted):
+        raise JournalError(f"{journal}: not what an acceptance wrote that was broken off here")
     done = []
     for name, digest in wanted.items():
         path = Path(name)
@@ -91,3 +103,11 @@ def finish(journal: Path) -> list[Path]:
             done.append(path)
     journal.unlink(missing_ok=True)
     return done
+
+
+def _is_below(home: Path, name: str) -> bool:
+    """Whether a file may be one of ours; its name may hold anything, links on the way too."""
+    try:
+        return Path(name).is_absolute() and home in Path(name).resolve().parents
+    except (OSError, ValueError, RuntimeError):
+        return False

@@ -6,11 +6,11 @@ the person fills. Read back, the form is an oracle.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from grammar.documents import DocumentError, read_bytes, toml_of
 from recovery.oracle import Answer, OracleError, Program, as_bytes
 from recovery.together import write_together
 
@@ -82,11 +82,13 @@ class RecordedOracle:
     def __init__(self, form: Path) -> None:
         """Read a form; raises `OracleError`, which names the file and the key."""
         try:
-            data = tomllib.loads(form.read_bytes().decode("utf-8-sig"))
+            data = toml_of(read_bytes(form).decode("utf-8-sig"))
         except OSError as error:
             raise OracleError(f"{form}: {error.strerror or error}") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise OracleError(f"{form}: not TOML: {error}") from None
+        except UnicodeDecodeError:
+            raise OracleError(f"{form}: not TOML: not UTF-8 text") from None
+        except DocumentError as error:
+            raise OracleError(f"{form}: {error}") from None
         self._form = form
         told = [self._text(data, key) for key in ("release", "by", "when")]
         if not told[0]:

@@ -6,7 +6,6 @@ have at the start [CON-07]. A profile is named by its file, or given as the path
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -15,6 +14,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from grammar.documents import DocumentError, read_text, toml_of
 from interp.faults import RuntimeFailure
 
 __all__ = ["Profile", "ProfileError", "profile_names"]
@@ -55,7 +55,7 @@ class Profile:
         """The profile of a name, or that of a ``.toml`` file; raises `ProfileError`."""
         if name.lower().endswith(".toml"):
             try:
-                return _read(Path(name).stem, Path(name).read_text(encoding="utf-8"))
+                return _read(Path(name).stem, read_text(Path(name)))
             except (OSError, UnicodeDecodeError) as error:
                 raise ProfileError(f"{name} cannot be read: {error}") from None
         return _built_in(name)
@@ -82,8 +82,8 @@ def _built_in(name: str) -> Profile:
 
 def _read(name: str, text: str) -> Profile:
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        data = toml_of(text)
+    except DocumentError as error:
         raise ProfileError(f"profile {name}: {error}") from None
     reader = _Reader(name, data)
     coincidence = reader.get("advance", "coincidence", str)

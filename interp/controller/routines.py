@@ -195,9 +195,11 @@ class Routines:
         return None, (cleared, *request.arguments[1:])
 
     def _raise_error(self, _task: Task, request: Invoke) -> Any:
-        """ERR_RAISE: the fault that the error tells."""
+        """ERR_RAISE: the fault that the error tells; without one, nothing (unconfirmed)."""
         error = request.arguments[0]
         number: Any = error.get("NUMBER") if isinstance(error, StructureValue) else None
+        if number == 0:
+            return None, request.arguments
         try:
             raise message_fault(known(number))  # type: ignore[arg-type]
         except KeyError:

@@ -9,6 +9,8 @@ file                what it is
 ``types.c``         what lies where in structures and arrays
 ``verify.c``        whether a program keeps the rules that the interpreter relies on
 ``translate.c``     instructions on a stack to steps on registers, which ``steps.h`` lists
+``held.c``          what lies on the stack while that is done
+``elements.c``      the part of it that moves values
 ``run.c``           the interpreter
 ``machine.c``       memory and frames
 ``functions.c``     functions of numbers and poses

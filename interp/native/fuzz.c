@@ -243,10 +243,10 @@ static int try_image(const uint8_t *data, size_t length)
     seal(image, length);
     images++;
     state = krl_checksum(image, length) | 1;
-    if (!krl_load(&machine, image, length, draw(2) != 0, &why))
+    if (!krl_load_image(&machine, image, length, draw(2) != 0, &why))
         return 0;
     accepted++;
-    if (!krl_settle(&machine, DEPTH, NULL))
+    if (!krl_give_memory(&machine, DEPTH, NULL))
         abort();
     for (int32_t code = 0; code < machine.program.code_count; code++) {
         int statements = STATEMENTS;

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
              struct krl_refusal *why)
 {
     memset(machine, 0, sizeof *machine);
@@ -50,7 +50,9 @@ static int64_t frames_need(const struct krl_machine *machine, int64_t frames)
 /* Makes the memory larger. Zeros that nobody has looked at cost nothing. */
 static int extend(struct krl_memory *memory, int64_t count)
 {
-    krl_cell *cells = count > INT32_MAX / (int64_t)sizeof *cells ? NULL : calloc((size_t)count, sizeof *cells);
+    krl_cell *cells = NULL;
+    if (count <= INT32_MAX / (int64_t)sizeof *cells)
+        cells = calloc((size_t)count, sizeof *cells);
     if (cells == NULL)
         return 0;
     if (memory->cells != NULL)
@@ -68,10 +70,12 @@ static void fill_data(struct krl_machine *machine)
         machine->memory->cells[program->initial[i].address] = program->initial[i].cell;
 }
 
-int krl_settle(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside)
+int krl_give_memory(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside)
 {
     int64_t frames = (int64_t)most_calls + KRL_MOST_ENTERED + 2;
-    if (most_calls < 0 || most_calls > KRL_MOST_CALLS || (beside != NULL && beside->checksum != machine->checksum))
+    if (most_calls < 0 || most_calls > KRL_MOST_CALLS)
+        return 0;
+    if (beside != NULL && beside->checksum != machine->checksum)
         return 0;
     machine->most_calls = most_calls;
     machine->calls = calloc((size_t)frames, sizeof *machine->calls);

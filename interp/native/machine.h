@@ -112,14 +112,14 @@ struct krl_stopped {
 enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 
 /* Loads an image. 0 where it is refused. */
-int krl_load(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
              struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 
 /* Gives a machine its memory, so much that nothing is allotted later: its own, with the data lists as
  * the image has them, or the end of that of another machine of the same image, which stays where it
  * is for those who look at it between two runs. 0 where there is none, or the images differ. */
-int krl_settle(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside);
+int krl_give_memory(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside);
 
 /* Looks where the memory is now. 0 where there are more calls than there is room for. */
 int krl_ready(struct krl_machine *machine);
@@ -164,7 +164,8 @@ enum krl_text_function {
 };
 
 /* The text function that an entry calls, if this machine carries it out itself. */
-enum krl_text_function krl_text_function_of(const struct krl_program *program, const struct krl_entry *entry);
+enum krl_text_function krl_text_function_of(const struct krl_program *program,
+                                            const struct krl_entry *entry);
 
 /* `inputs` are what lay on the stack; the result takes the place of the first of them. */
 void krl_call_text(struct krl_machine *machine, enum krl_text_function function,

@@ -50,12 +50,12 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct core *core = (struct core *)allot(type, 0);
     if (core == NULL)
         return NULL;
-    if (!krl_load(&core->machine, (const uint8_t *)image, (size_t)length, is_told, &why)) {
+    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, is_told, &why)) {
         Py_DECREF(core);
         return refused(&why);
     }
     struct krl_machine *other = beside == Py_None ? NULL : &((struct core *)beside)->machine;
-    if (!krl_settle(&core->machine, most_calls, other)) {
+    if (!krl_give_memory(&core->machine, most_calls, other)) {
         Py_DECREF(core);
         PyErr_SetString(PyExc_MemoryError, "there is no room for so many calls, or the images differ");
         return NULL;

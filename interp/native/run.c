@@ -109,8 +109,10 @@ static void receive(struct krl_machine *machine, const struct krl_routine *calle
     const struct krl_code *code = callee->code;
     for (int32_t i = 0; i < code->parameter_count; i++) {
         const struct krl_slot *slot = &code->slots[i];
-        int is_copied = slot->handed.mode == KRL_BY_VALUE && !krl_is_plain(&machine->program, slot->handed.type);
-        copy(frame + slot->offset, is_copied ? machine->cells + krl_int_in(*arguments) : arguments, slot->cells);
+        int is_copied = slot->handed.mode == KRL_BY_VALUE &&
+                        !krl_is_plain(&machine->program, slot->handed.type);
+        const krl_cell *given = is_copied ? machine->cells + krl_int_in(*arguments) : arguments;
+        copy(frame + slot->offset, given, slot->cells);
         arguments += krl_stack_cells(&slot->handed);
     }
     blank(frame + callee->received, callee->frame - callee->received);

@@ -4,7 +4,8 @@
 
 struct known {
     const char *name;
-    const char *parameters; /* T a text, C an array that may change, D one that does not, N an INT, M a mode */
+    /* T a text, C an array that may change, D one that does not, N an INT, M a mode */
+    const char *parameters;
     int32_t result;
 };
 
@@ -61,7 +62,8 @@ static int fits(const struct krl_program *program, const struct krl_part *part, 
     }
 }
 
-enum krl_text_function krl_text_function_of(const struct krl_program *program, const struct krl_entry *entry)
+enum krl_text_function krl_text_function_of(const struct krl_program *program,
+                                            const struct krl_entry *entry)
 {
     for (int function = 0; function < KRL_TEXT_FUNCTIONS; function++) {
         const struct known *one = &known[function];
@@ -130,8 +132,10 @@ static int32_t find(int32_t start, struct krl_letters text, struct krl_letters w
     return 0;
 }
 
-/* Puts a text behind the first letters of an array, whose rest has no value then; 0 where it does not fit. */
-static int put(struct krl_machine *machine, struct krl_letters array, int32_t behind, struct krl_letters text)
+/* Puts a text behind the first letters of an array, whose rest has no value then; 0 where it does
+ * not fit. */
+static int put(struct krl_machine *machine, struct krl_letters array, int32_t behind,
+               struct krl_letters text)
 {
     krl_cell *target = machine->cells + (array.cells - machine->cells);
     int32_t count = behind + text.count;
@@ -142,7 +146,8 @@ static int put(struct krl_machine *machine, struct krl_letters array, int32_t be
     return 1;
 }
 
-static int is_sensitive(const struct krl_machine *machine, const struct krl_part *part, const krl_cell *inputs)
+static int is_sensitive(const struct krl_machine *machine, const struct krl_part *part,
+                        const krl_cell *inputs)
 {
     int32_t place = part->kind == KRL_PART_CHOICE ? part->place : krl_int_in(inputs[part->place]);
     return place == sensitive(&machine->program, part->handed.type);
@@ -183,7 +188,8 @@ void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
     case KRL_STRFIND:
         text = text_of(machine, &parts[1], inputs);
         other = text_of(machine, &parts[2], inputs);
-        result = krl_of_int(find(krl_int_in(inputs[parts[0].place]), text, other, is_sensitive(machine, &parts[3], inputs)));
+        result = krl_of_int(find(krl_int_in(inputs[parts[0].place]), text, other,
+                                 is_sensitive(machine, &parts[3], inputs)));
         break;
     case KRL_TEXT_FUNCTIONS:
         break;

@@ -13,6 +13,8 @@ __all__ = ["Journey"]
 
 _THERE = 1e-9
 """Of u: a section whose rest is shorter has been travelled."""
+_INSTANT = 2e-9
+"""Seconds by which whole microseconds may fall short of what happens in them."""
 
 #: A section and a step of it; ``None`` for a motion of no length.
 Entry = tuple[Section, Step | None]
@@ -53,7 +55,7 @@ class Journey:
         if not legs:
             leg = self._timeline.leg_at(time)
             return section.is_used_up and leg is not None and leg.section.key > section.key
-        return legs[-1].ends <= time and legs[-1].last >= section.end - _THERE
+        return legs[-1].ends <= time + _INSTANT and legs[-1].last >= section.end - _THERE
 
     # -------------------------------------------------------------------------- going and stopping
 
@@ -68,13 +70,14 @@ class Journey:
         if not route:
             return True
         leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time:
+        if leg is None or leg.ends <= time + _INSTANT or leg.section.key != route[0].key:
+            # It stands, or comes to stand somewhere else.
+            begins = max(time, self._timeline.end)
             state = State(self.stood_at(route[0]), 0.0, 0.0)
-            return self._lay(route, state, time, None, override, is_strict)
-        if leg.section.key == route[0].key:
-            laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
-            if laid or is_strict:
-                return laid
+            return self._lay(route, state, begins, None, override, is_strict)
+        laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
+        if laid or is_strict:
+            return laid
         # The acceleration cannot be taken back before the leg ends; so it is travelled first.
         rest, state = _behind(leg, route)
         return not rest or self._lay(rest, state, leg.ends, None, override, is_strict)
@@ -84,8 +87,8 @@ class Journey:
     ) -> None:
         """Stop on the route as soon as can be."""
         leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time or not route:
-            self._timeline.cut(time)
+        if leg is None or leg.ends <= time + _INSTANT or not route:
+            self._timeline.cut(max(time, leg.ends if leg is not None else time))
             return
         begins, legs = _ramp_down(leg, route, time, override, is_hard)
         self._timeline.cut(begins)

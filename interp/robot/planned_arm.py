@@ -58,9 +58,8 @@ class _Plan:
 @dataclass(frozen=True, slots=True, eq=False)
 class _Mark:
     plan: _Plan
-    kept: tuple[_Plan, ...]
+    brakes: tuple[_Plan | None, ...]
     legs: tuple[Leg, ...]
-    is_braked: bool
     stopped: ArmEvent | None
     has_begun: bool
     now: int
@@ -84,12 +83,11 @@ class PlannedArm:
         axes[: len(start)] = start[: len(every)]
         check_limits(every, axes.tolist())
         self._plan = _Plan(Programmed(self._tracks.arm, axes))
-        #: What brakes interrupted, while other motions are on [INT-09].
-        self._kept: list[_Plan] = []
+        #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
+        self._brakes: list[_Plan | None] = []
         self._timeline = Timeline(axes)
         self._journey = Journey(self._timeline)
         self._override = 1.0
-        self._is_braked = False
         self._stopped: ArmEvent | None = None
         self._has_begun = not is_selected
         self._agenda: list[ArmEvent] | None = None
@@ -106,7 +104,7 @@ class PlannedArm:
         self._observe(now)
         if not self._has_begun:
             check_start(motion)
-        plan = self._standing_plan() if self._is_braked and self._plan.passages else self._plan
+        plan = self._standing_plan() if self._is_braked else self._plan
         if motion.kind in {"SPLINE", "PTP_SPLINE"}:
             track, programmed = block(self._tracks, motion, plan.programmed)
         else:
@@ -114,9 +112,8 @@ class PlannedArm:
                 motion, plan.programmed, is_after_abort=plan.is_aborted
             )
         if plan is not self._plan:
-            self._kept.append(self._plan)
+            self._brakes[-1] = self._plan
             self._plan = plan
-        self._is_braked = False
         if not self._append_blended(track, programmed):
             sections = _sections(track)
             self._plan = _Plan(
@@ -133,9 +130,8 @@ class PlannedArm:
         """See `interp.robot.arm.Arm.mark`."""
         return _Mark(
             self._plan,
-            tuple(self._kept),
+            tuple(self._brakes),
             tuple(self._timeline.legs),
-            self._is_braked,
             self._stopped,
             self._has_begun,
             self._now,
@@ -145,9 +141,9 @@ class PlannedArm:
         """See `interp.robot.arm.Arm.rewind`."""
         if not isinstance(mark, _Mark):
             raise TypeError("not a mark of this arm")
-        self._plan, self._kept = mark.plan, list(mark.kept)
+        self._plan, self._brakes = mark.plan, list(mark.brakes)
         self._timeline.restore(0, mark.legs)
-        self._is_braked, self._stopped = mark.is_braked, mark.stopped
+        self._stopped = mark.stopped
         self._has_begun, self._now = mark.has_begun, mark.now
         self._agenda = None
 
@@ -210,16 +206,12 @@ class PlannedArm:
         if event.kind == "stopped":
             self._stopped = None
             return event
-        plans = [*self._kept, self._plan]
-        for place, plan in enumerate(plans):
-            if any(passage.number == event.motion for passage in plan.passages):
-                plans[place] = replace(plan, passages=self._taken(plan.passages, event))
-        *self._kept, self._plan = plans
+        self._plan = replace(self._plan, passages=self._taken(self._plan.passages, event))
         return event
 
     def pending(self) -> int:
         """See `interp.robot.arm.Arm.pending`."""
-        plans = (*self._kept, self._plan)
+        plans = (*(plan for plan in self._brakes if plan is not None), self._plan)
         return sum(
             ("motion_end", None) not in passage.taken for plan in plans for passage in plan.passages
         )
@@ -327,26 +319,23 @@ class PlannedArm:
         """See `interp.robot.arm.Arm.brake`."""
         self._observe(now)
         self._halt(self._override or 1.0, is_hard=is_hard)
-        self._is_braked = True
+        self._brakes.append(None)
         self._tell_stop()
 
     def proceed(self, now: int) -> None:
-        """See `interp.robot.arm.Arm.proceed`.
+        """See `interp.robot.arm.Arm.proceed`: undoes the latest brake.
 
         Raises `ValueError` where the arm has been moved away and not back.
         """
         self._observe(now)
-        if self._kept and not self._plan.route:
-            plan = self._kept.pop()
-            here = self._timeline.axes_at(now * MICROSECOND)
-            there = self._left_at(plan)
-            if np.abs(here - there).max() > _BACK:
-                self._kept.append(plan)
+        if self._brakes and (plan := self._brakes[-1]) is not None:
+            here = self._timeline.axes_at(self._end())
+            if np.abs(here - self._left_at(plan)).max() > _BACK:
                 raise ValueError("the arm is not where the brake has left it")
             self._plan = plan
-        self._is_braked = False
+        del self._brakes[-1:]
         self._stopped = None
-        if self._override > 0.0:
+        if not self._is_braked and self._override > 0.0:
             self._reschedule(self._plan.route)
 
     def discard(self, now: int) -> None:
@@ -359,8 +348,7 @@ class PlannedArm:
             self._tell_stop()
         else:
             self._timeline.cut(now * MICROSECOND if not is_moving else self._end())
-        self._kept.clear()
-        self._is_braked = False
+        self._brakes.clear()
         axes = self._timeline.axes_at(self._end())
         self._plan = _Plan(Programmed(self._tracks.arm, axes), is_aborted=True)
         self._agenda = None
@@ -379,6 +367,11 @@ class PlannedArm:
         """When the last leg ends, or now."""
         legs = self._timeline.legs
         return max(legs[-1].ends if legs else 0.0, self._now * MICROSECOND)
+
+    @property
+    def _is_braked(self) -> bool:
+        """Whether the last brake still holds what it interrupted."""
+        return bool(self._brakes) and self._brakes[-1] is None
 
     def _observe(self, now: int) -> None:
         """Time has gone on: what was travelled is no longer ahead."""

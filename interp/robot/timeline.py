@@ -122,6 +122,11 @@ class Timeline:
         self._begins: list[float] = []
         self._of: dict[Key, list[Leg]] = {}
 
+    @property
+    def end(self) -> float:
+        """When the last leg ends, in seconds; 0 if there is none."""
+        return self.legs[-1].ends if self.legs else 0.0
+
     def append(self, leg: Leg) -> None:
         """A leg behind all others."""
         self.legs.append(leg)

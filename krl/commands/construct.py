@@ -89,11 +89,12 @@ def propose(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = LEDGER,
 ) -> int:
     """Write a proposal of a survey as a file ready for review."""
+    from grammar.documents import json_of, read_bytes
     from recovery.construct import LedgerError
     from recovery.draft import propose as write
 
     try:
-        record = json.loads(survey.read_text(encoding="utf-8"))
+        record = json_of(read_bytes(survey).decode("utf-8"))
         typer.echo(f"wrote {write(record, cluster, number, out).as_posix()}")
     except FileNotFoundError as error:
         raise Unusable(f"{survey}: no such survey; run krl recover first") from error

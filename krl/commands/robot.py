@@ -80,11 +80,12 @@ class _Point:
 
 def _arm(path: Path) -> "Arm":
     """The arm of a $machine.dat; imports are late because they take longer than most commands."""
+    from grammar.documents import read_bytes
     from interp.robot.data_list import DataListError
     from interp.robot.machine import MachineDataError, read_machine
     from recovery.decode import decode
 
-    source = decode(path.read_bytes())
+    source = decode(read_bytes(path))
     if isinstance(source, str):
         raise Unusable(f"{path}: not machine data: {source}")
     try:
@@ -126,8 +127,10 @@ def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, 
 
 
 def _read_points(path: Path) -> list[_Point]:
+    from grammar.documents import read_bytes
+
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_bytes(path).decode("utf-8-sig")
         given = json.loads(text)
     except UnicodeDecodeError:
         raise Unusable(f"{path}: not a text in UTF-8") from None

@@ -174,10 +174,12 @@ def _expected_errors() -> Iterator[None]:
 
 
 def _text(file: Path) -> str:
+    from grammar.documents import read_text
+
     if file.is_dir():
         raise Unusable(f"{file}: a folder, not a file")
     try:
-        return file.read_text(encoding="utf-8-sig")
+        return read_text(file, "utf-8-sig")
     except UnicodeDecodeError:
         raise Unusable(f"{file}: not a text in UTF-8") from None
 

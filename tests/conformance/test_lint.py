@@ -23,6 +23,7 @@ def test_every_hard_rule_has_a_case() -> None:
     assert [] == [rule.id for rule in covered.uncovered]
     unshown = [rule.id for rule in registry().values() if rule.unshown]
     assert ["MSG-05", "MSG-25"] == unshown
+    assert covered.count(hard=True)[0] == covered.count(hard=True)[1]
 
 
 def test_every_suite_has_cases() -> None:
@@ -44,6 +45,7 @@ def test_known_failures_are_about_cases() -> None:
         ("control/good.src", "CTL-01", "CTL-01, CTL-01", "a rule stands twice"),
         ("control/good.src", ";@ phase", ";@ profile: kss99\n;@ phase", "the profile is"),
         ("control/good.src", ";@ phase", ";@ robot: marvin\n;@ phase", "the robot is"),
+        ("control/good.src", ";@ phase", ";@ io: at noon\n;@ phase", "io:1: a line begins with"),
         ("other/good.src", "", "", "no suite 'other'"),
         ("control/Good.src", "", "", "no KRL name"),
         ("control/a_name_that_is_much_too_long.src", "", "", "no KRL name"),

@@ -23,7 +23,7 @@ def test_faults_are_made_from_the_catalogue() -> None:
     [
         *(("index", 1444), ("stack", 1424), ("nesting", 1426), ("invalid", 1422)),
         *(("inadmissible", 1446), ("read_only", 1388), ("operand", 2256), ("argument", 2274)),
-        *(("division_by_zero", None), ("overflow", None), ("uninitialised", None)),
+        *(("division_by_zero", None), ("overflow", None), ("uninitialised", 1422)),
     ],
 )
 def test_faults_have_the_numbers_of_the_controller(slug: str, number: int | None) -> None:

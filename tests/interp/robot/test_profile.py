@@ -81,3 +81,24 @@ def test_one_time_or_many() -> None:
     times = np.array([-1.0, 0.0, 0.1, profile.duration / 2, profile.duration, math.inf])
     many = np.stack(profile.at(times), axis=1)
     assert np.allclose(many, [profile.state(time) for time in times.tolist()])
+
+
+@given(
+    start=st.sampled_from([0.0, 0.3, 1.0]),
+    end=st.sampled_from([0.0, 0.6, 1.0]),
+    exponent=st.floats(-8.0, 0.0),
+    scale=st.floats(-3.0, 4.0),
+)
+def test_lengths_that_are_just_enough(
+    start: float, end: float, exponent: float, scale: float
+) -> None:
+    """A little more than a change of speed takes is travelled within the bounds, at any scale."""
+    unit = 10.0**scale
+    bounds = Bounds(unit, 7.0 * unit, 60.0 * unit)
+    least = max(ramp(start * unit, 0.0, end * unit, bounds).distance, 0.01 * unit)
+    length = least * (1.0 + 10.0**exponent)
+    profile = travel(length, start * unit, 0.0, end * unit, bounds)
+    wide = Bounds(unit * (1 + 1e-6), 7.0 * unit * (1 + 1e-6), 60.0 * unit * (1 + 1e-6))
+    check(profile, wide)
+    assert length == pytest.approx(profile.length, rel=1e-9)
+    assert end * unit == pytest.approx(profile.final, rel=1e-6, abs=1e-6 * unit)

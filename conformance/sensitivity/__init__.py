@@ -1,0 +1,21 @@
+"""How much a green night means: faults planted one at a time, which the cases have to find.
+
+============== =====================================================================================
+`planting`     a planted fault, and what it takes to plant and remove one
+`timing`       faults of the controller: clock, outputs, waits, timers, pulses, the advance run
+`interrupting` faults of the controller: interrupts, BRAKE and RESUME, triggers
+`path`         faults of the arm: blends, speeds, orientation, frames, splines
+`machine`      faults of the machine in Python, from the table of its instructions
+`trial`        cases against faults, until each is found
+`bench`        how many are found, by group, and cases a second
+============== =====================================================================================
+
+A fault is found by a case that passes without it and does not pass with it. Changes that nobody
+could see from outside are no faults and are left out.
+"""
+
+from conformance.sensitivity.bench import measure
+from conformance.sensitivity.planting import Fault
+from conformance.sensitivity.trial import Verdict, try_faults
+
+__all__ = ["Fault", "Verdict", "measure", "try_faults"]

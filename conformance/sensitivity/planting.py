@@ -1,0 +1,88 @@
+"""A planted fault: in words what is wrong, where it should be noticed, and how it is planted.
+
+Faults are planted into the running process: an attribute of a class or module, or an entry of a
+table, is replaced for as long as a case runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, MutableMapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from typing import Any, Final, cast
+
+__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "entry", "on", "several"]
+
+#: Plants a fault for as long as the context lasts.
+Plant = Callable[[], AbstractContextManager[None]]
+#: Makes what is planted from what was there: the function as its class has it, or a value.
+Make = Callable[[Any], Any]
+
+EVERY_SUITE: Final[tuple[str, ...]] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault that can be planted.
+
+    ``suites`` are those that have to find it, all of them where it is empty. ``op`` is the
+    instruction that it is about, for faults of the machine. ``robot`` is the one cases run on.
+    """
+
+    group: str
+    words: str
+    suites: tuple[str, ...]
+    plant: Plant
+    robot: str = "none"
+    executor: str = "tree"
+    op: str = ""
+
+
+def on(owner: Any, name: str, make: Make) -> Plant:
+    """Replace an attribute of a class or module; it has to be one of its own."""
+    before = vars(owner)[name]
+
+    @contextmanager
+    def planted() -> Iterator[None]:
+        setattr(owner, name, make(before))
+        try:
+            yield
+        finally:
+            setattr(owner, name, before)
+
+    return planted
+
+
+def constant(owner: Any, name: str, value: Any) -> Plant:
+    """Give an attribute another value."""
+    return on(owner, name, lambda _before: value)
+
+
+def entry(table: Any, key: Any, make: Make) -> Plant:
+    """Replace an entry of a table."""
+    rows = cast("MutableMapping[Any, Any]", table)
+    before = rows[key]
+
+    @contextmanager
+    def planted() -> Iterator[None]:
+        rows[key] = make(before)
+        try:
+            yield
+        finally:
+            rows[key] = before
+
+    return planted
+
+
+def several(*plants: Plant) -> Plant:
+    """Plant all of them: one fault that shows in several places."""
+
+    @contextmanager
+    def planted() -> Iterator[None]:
+        if not plants:
+            yield
+            return
+        with plants[0](), several(*plants[1:])():
+            yield
+
+    return planted

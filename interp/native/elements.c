@@ -1,0 +1,240 @@
+/* Translating what moves values: variables, references, elements of arrays, rows and views. */
+#include "translate.h"
+
+void krl_load(struct translator *at)
+{
+    struct held *held = &at->stack[at->height - 1];
+    switch (held->kind) {
+    case ADDRESS:
+        held->kind = VARIABLE;
+        return;
+    case CONSTANT: {
+        int32_t address = held->a;
+        at->height--;
+        krl_emit(at, KRL_STEP_GET_DATA)->b = address;
+        break;
+    }
+    case ELEMENT: {
+        struct held element = *held;
+        krl_secure(at, --at->height);
+        krl_reach(at, GET, &element, 0);
+        break;
+    }
+    default:
+        krl_unary(at, KRL_STEP_LOAD);
+        return;
+    }
+    krl_push_result(at);
+}
+
+/* The value on top goes into a register. */
+void krl_store_local(struct translator *at, int32_t place)
+{
+    int32_t top = at->height - 1;
+    krl_secure(at, top);
+    const struct held *held = &at->stack[top];
+    if (held->kind == IN_PLACE && krl_is_fresh(at, top)) {
+        at->steps[at->result].a = place;
+    } else {
+        struct held value = *held;
+        struct krl_step *step;
+        int32_t b = value.kind == CONSTANT ? value.a : krl_operand(at, top);
+        step = krl_emit(at, value.kind == CONSTANT ? KRL_STEP_SET_K : KRL_STEP_MOVE);
+        step->a = place;
+        step->b = b;
+        step->tag = value.tag;
+    }
+    at->height--;
+    at->result = -1;
+}
+
+void krl_store_data(struct translator *at, int32_t address)
+{
+    int32_t top = at->height - 1;
+    krl_secure(at, top);
+    int has_constant = krl_is_constant(at, top);
+    uint16_t tag = at->stack[top].tag;
+    int32_t b = has_constant ? at->stack[top].a : krl_operand(at, top);
+    struct krl_step *step = krl_emit(at, has_constant ? KRL_STEP_PUT_DATA_K : KRL_STEP_PUT_DATA);
+    step->a = address;
+    step->b = b;
+    step->tag = tag;
+    at->height--;
+}
+
+/* For the trace: what was written last. */
+static void remember(struct translator *at, struct held where)
+{
+    if (at->machine->is_told)
+        krl_emit(at, where.kind == ADDRESS ? KRL_STEP_REMEMBER_LOCAL : KRL_STEP_REMEMBER_DATA)->a = where.a;
+}
+
+void krl_store(struct translator *at)
+{
+    int32_t target = at->height - 2, value = at->height - 1;
+    struct held where = at->stack[target];
+    krl_secure(at, target);
+    if (where.kind == ADDRESS || where.kind == CONSTANT) {
+        if (where.kind == ADDRESS)
+            krl_store_local(at, where.a);
+        else
+            krl_store_data(at, where.a);
+        at->height--;
+        remember(at, where);
+        return;
+    }
+    int has_constant = krl_is_constant(at, value);
+    uint16_t tag = at->stack[value].tag;
+    if (where.kind == ELEMENT) {
+        const struct krl_array *array = &at->arrays[where.array];
+        int is_short = has_constant && array->dimensions == 1 && array->width == 1;
+        int32_t a = is_short ? at->stack[value].a : krl_operand(at, value);
+        struct krl_step *step = krl_reach(at, PUT, &where, a);
+        if (is_short) {
+            step->op = where.is_local ? KRL_STEP_PUT_LOCAL_K : KRL_STEP_PUT_ELEMENT_DATA_K;
+            step->tag = tag;
+        }
+    } else {
+        int32_t a = krl_operand(at, target);
+        int32_t b = has_constant ? at->stack[value].a : krl_operand(at, value);
+        struct krl_step *step = krl_emit(at, has_constant ? KRL_STEP_STORE_K : KRL_STEP_STORE);
+        step->a = a;
+        step->b = b;
+        step->tag = tag;
+    }
+    at->height -= 2;
+}
+
+void krl_member(struct translator *at, int32_t offset)
+{
+    struct held *held = &at->stack[at->height - 1];
+    if (held->kind == ADDRESS || held->kind == CONSTANT)
+        held->a += offset;
+    else if (held->kind == ELEMENT) {
+        struct krl_array array = at->arrays[held->array];
+        array.base += offset;
+        held->array = krl_add_array(at, array);
+    } else if (offset != 0) {
+        krl_unary(at, KRL_STEP_OFFSET);
+        at->steps[at->count - 1].c = offset;
+    }
+}
+
+/* The place of an element in its array where all indices are constants and right; else -1. */
+static int32_t known_place(const struct translator *at, const struct krl_array *array)
+{
+    int32_t place = 0;
+    for (int32_t i = 0; i < array->dimensions; i++) {
+        const struct held *index = &at->stack[at->height - array->dimensions + i];
+        if (index->kind != CONSTANT || index->a < 1 || index->a > array->sizes[i])
+            return -1;
+        place = place * array->sizes[i] + index->a - 1;
+    }
+    return place * array->width;
+}
+
+/* An element of an array in the frame or the data lists. */
+void krl_element(struct translator *at, int is_local, int32_t base, int32_t type)
+{
+    struct krl_array array = krl_array_of(at, base, type);
+    int32_t first = at->height - array.dimensions, known = known_place(at, &array);
+    if (known >= 0) {
+        at->height = first;
+        if (is_local)
+            krl_push(at, (struct held){ADDRESS, base + known, 0, 0, 0, 0});
+        else
+            krl_push_constant(at, KRL_TAG_INT, base + known);
+        return;
+    }
+    int32_t number = krl_add_array(at, array);
+    if (array.dimensions > 2) {
+        krl_secure(at, first);
+        for (int32_t i = first; i < at->height; i++)
+            krl_settle(at, i);
+        struct krl_step *step = krl_emit(at, KRL_STEP_INDEX_ANY);
+        step->a = step->b = krl_place_of(at, first);
+        step->c = number;
+        step->tag = is_local ? 1 : 2;
+        at->height = first;
+        krl_push_places(at, 1);
+        return;
+    }
+    struct held held = {ELEMENT, krl_operand(at, first), 0, number, 0, (uint16_t)(is_local != 0)};
+    if (array.dimensions == 2)
+        held.b = krl_operand(at, first + 1);
+    at->height = first;
+    krl_push(at, held);
+    /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
+    if ((array.dimensions == 2 && held.b >= at->code->frame) || at->machine->is_told) {
+        krl_secure(at, first);
+        krl_settle(at, first);
+    }
+}
+
+void krl_view_index(struct translator *at, int32_t place)
+{
+    const struct krl_slot *slot = krl_slot_at(at->code, place);
+    int32_t width = at->program->types[slot->handed.type].size, dimensions = slot->handed.dimensions;
+    struct krl_step *step;
+    if (dimensions == 1) {
+        krl_secure(at, at->height - 1);
+        int32_t b = krl_operand(at, --at->height);
+        step = krl_emit(at, KRL_STEP_INDEX_VIEW);
+        step->b = b;
+        step->c = place;
+        step->d = width;
+        krl_push_result(at);
+        return;
+    }
+    krl_settle_all(at);
+    at->height -= dimensions;
+    step = krl_emit(at, KRL_STEP_INDEX_VIEW_ANY);
+    step->a = krl_place_of(at, at->height);
+    step->c = place;
+    step->d = width;
+    step->tag = (uint16_t)dimensions;
+    krl_push_places(at, 1);
+}
+
+void krl_row(struct translator *at, const struct krl_instruction *instruction)
+{
+    const int32_t *operands = instruction->operands;
+    int32_t count = operands[1], dimensions, width = 0, number = 0, tag = 0;
+    krl_settle_all(at);
+    at->height -= count;
+    if (instruction->op == KRL_ROW) {
+        number = krl_add_array(at, krl_array_of(at, 0, operands[0]));
+        dimensions = at->program->types[operands[0]].count;
+        at->height--; /* the address of the array */
+    } else {
+        const struct krl_slot *slot = krl_slot_at(at->code, operands[0]);
+        dimensions = slot->handed.dimensions;
+        width = at->program->types[slot->handed.type].size;
+        number = operands[0];
+        tag = dimensions;
+    }
+    struct krl_step *step = krl_emit(at, instruction->op == KRL_ROW ? KRL_STEP_ROW : KRL_STEP_ROW_VIEW);
+    step->a = krl_place_of(at, at->height);
+    step->b = count;
+    step->c = number;
+    step->d = width;
+    step->tag = (uint16_t)tag;
+    krl_push_places(at, 1 + dimensions - count);
+}
+
+void krl_view(struct translator *at, const struct krl_type *type)
+{
+    for (int32_t i = 0; i < type->count; i++)
+        krl_push_constant(at, KRL_TAG_INT, type->sizes[i]);
+}
+
+/* A step that takes so many places of the stack, all in place. */
+struct krl_step *krl_consume(struct translator *at, enum krl_step_op op, int32_t count)
+{
+    krl_settle_all(at);
+    at->height -= count;
+    struct krl_step *step = krl_emit(at, op);
+    step->a = krl_place_of(at, at->height);
+    return step;
+}
+
