@@ -22,7 +22,7 @@ LARGEST = 1 << 13
 
 
 def main(folder: Path) -> int:
-    """A program with something of everything, and each small program of the corpus that can be compiled."""
+    """A program with something of everything, and the small ones of the corpus that compile."""
     folder.mkdir(parents=True, exist_ok=True)
     everything = runpy.run_path(str(ROOT / "tests" / "interp" / "bytecode" / "conftest.py"))
     _write(assemble(everything["EVERYTHING"]), folder / "everything.krlb")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.util import find_spec
-from typing import Final
+from typing import Final, Literal
 
 from conformance.case import Case
 from conformance.observation import Event, Finding, Observation
@@ -63,10 +63,11 @@ _ENDINGS: Final[Mapping[str, str]] = {"time": "running"}
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """An executor and a robot, by name."""
+    """An executor and a robot, by name; ``motion`` is how motions are planned."""
 
     executor: str
     robot: str
+    motion: Literal["lookahead", "batch"] = "lookahead"
 
 
 def observe(case: Case, setup: Setup) -> Observation:
@@ -171,6 +172,7 @@ def _run(
         submit=_submit(case),
         machine=_machine(case),
         make_robot=robot,
+        motion=setup.motion,
         is_full=True,
         until=round(case.seconds * 1e6),
         limits=Limits(statements=_STATEMENTS, per_slice=profile.statements),

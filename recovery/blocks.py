@@ -47,6 +47,7 @@ class _Seen:
     closers: list[tuple[Word, ...]] = field(default_factory=list)
     middles: dict[str, list[tuple[Word, ...]]] = field(default_factory=lambda: defaultdict(list))
     repeated: set[str] = field(default_factory=set)  # middles met twice in one block
+    missing: set[str] = field(default_factory=set)  # middles that some block does without
     body_first: bool = False  # whether lines stand between the opener and the first middle
 
 
@@ -134,6 +135,7 @@ class BlockFinder:
             if not depth
         }
         known = BLOCKS.get(opener, frozenset())
+        blocks: list[Counter[str]] = []
         for lines in files:
             open_: list[Counter[str]] = []
             for lead, words in lines:
@@ -144,7 +146,7 @@ class BlockFinder:
                     seen.headers.append(words)
                 elif lead == closer and open_:
                     seen.closers.append(words)
-                    seen.repeated |= {lead for lead, count in open_.pop().items() if count > 1}
+                    blocks.append(open_.pop())
                 elif open_:
                     free = lead not in self._used and self._is_word(lead, files)
                     if lead not in outside and (lead in known or free) and not _is_end(lead):
@@ -152,6 +154,11 @@ class BlockFinder:
                         seen.middles[lead].append(words)
                     elif not open_[-1]:
                         seen.body_first = True
+        seen.repeated = {lead for block in blocks for lead, count in block.items() if count > 1}
+        seen.missing = {lead for lead in seen.middles if not all(block[lead] for block in blocks)}
+        if known & seen.middles.keys():  # other words only happen to be met in such blocks
+            for lead in seen.middles.keys() - known:
+                del seen.middles[lead]
         return seen
 
     def _forms(self, seen: _Seen) -> Iterator[tuple[str, ...]]:
@@ -172,7 +179,9 @@ class BlockFinder:
                     if not phrases:
                         return
                     phrase = phrases[min(level, len(phrases) - 1)]
-                    often = "*" if lead in seen.repeated else "?"
+                    often = "?"
+                    if lead in seen.repeated:
+                        often = "*" if lead in seen.missing else "+"
                     symbols.append(f"({' '.join((*phrase, end, *body))}){often}")
                 yield (*symbols, *closers[min(level, len(closers) - 1)])
 

@@ -20,8 +20,8 @@ from interp.faults import LinkError
 __all__ = ["Finding", "Findings", "fuzz", "record_of"]
 
 _SHARD: Final = 50
-#: After so many shards a process makes way for a new one: what the front end remembers of programs
-#: would fill the memory.
+#: After so many shards each, processes make way for new ones: what the front end remembers of
+#: programs would fill the memory.
 _LIFE: Final = 20
 #: When a world interferes, a smaller program may need another seed for it to do so again.
 _SEEDS: Final = 4
@@ -114,10 +114,10 @@ def _outcomes(shards: Sequence[_Shard], jobs: int) -> Iterator[_Outcome]:
         yield from map(_run, shards)
         return
     context = get_context("spawn")
-    with ProcessPoolExecutor(
-        jobs, mp_context=context, initializer=_begin, max_tasks_per_child=_LIFE
-    ) as pool:
-        yield from pool.map(_run, shards)
+    # `max_tasks_per_child` would be shorter, but can hang (CPython issue 115634).
+    for first in range(0, len(shards), jobs * _LIFE):
+        with ProcessPoolExecutor(jobs, mp_context=context, initializer=_begin) as pool:
+            yield from pool.map(_run, shards[first : first + jobs * _LIFE])
 
 
 def _begin() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Final
 
-from conformance.sensitivity.planting import Fault, constant, entry, on
+from conformance.sensitivity.planting import Fault, constant, entry, on, several
 from interp.controller import answering, signals
 from interp.controller.answering import Answering
 from interp.controller.clock import Clock
@@ -349,8 +349,6 @@ def _zero_is_one(right: Any) -> Any:
 
 def _motions(make: Any) -> Any:
     """Both requests that ask for a motion."""
-    from conformance.sensitivity.planting import several
-
     return several(entry(_ANSWERS, Move, make), entry(_ANSWERS, MoveSpline, make))
 
 
@@ -364,22 +362,18 @@ def _continue_holds(right: Any) -> Any:
     return answer
 
 
-def _not_waiting(name: str) -> Any:
+def _standing(right: Any) -> Any:
     """A method finds the arm standing, whatever it does."""
 
-    def make(right: Any) -> Any:
-        def method(self: Any, *given: Any) -> Any:
-            self.own_pending = lambda _task: 0
-            self.core.pending = lambda: 0
-            try:
-                return right(self, *given)
-            finally:
-                del self.own_pending, self.core.pending
+    def method(self: Any, *given: Any) -> Any:
+        self.own_pending = lambda _task: 0
+        self.core.pending = lambda: 0
+        try:
+            return right(self, *given)
+        finally:
+            del self.own_pending, self.core.pending
 
-        return method
-
-    method_name = name
-    return on(Controller, method_name, make) if name in vars(Controller) else make
+    return method
 
 
 def _submit_waits(right: Any) -> Any:
@@ -465,11 +459,11 @@ _ADVANCE: Final = (
         entry(_ANSWERS, Continue, lambda _: lambda _self, _task, _request: None),
     ),
     ("CONTINUE holds for all that follows", _AHEAD, on(Answering, "answer", _continue_holds)),
-    ("the program ends before the arm stands", _AHEAD, _not_waiting("_end")),
+    ("the program ends before the arm stands", _AHEAD, on(Controller, "_end", _standing)),
     (
         "HALT does not wait for the arm",
         ("advance", "interrupt", "control"),
-        entry(_ANSWERS, Halt, _not_waiting("_halt")),
+        entry(_ANSWERS, Halt, _standing),
     ),
     (
         "the submit program waits for the arm",

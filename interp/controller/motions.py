@@ -169,7 +169,7 @@ class MotionBuilder:
             criteria=("C_SPL",) if request.is_approximated else (),
             places=(*outside, *places),
             parts=tuple(parts),
-            last_ranges=tuple(ranges),
+            ranges=tuple(ranges),
             stop_places=tuple(stops),
         )
         return built
@@ -235,6 +235,7 @@ class MotionBuilder:
             _word(values["$CIRC_TYPE"]),
             self._is_reduced(),
             _word(self._variables.read(("$CP_VEL_TYPE",))),
+            _word(self._variables.read(("$TARGET_STATUS",))),
         )
 
     def _places(self, built: Built, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:

@@ -238,9 +238,12 @@ class Moving(World):
         return self.core.arm.next_event() is not None
 
     def hold_up(self) -> None:
-        """The advance run has been stopped behind the motions that are planned."""
-        for way in self._ways.values():
-            way.is_held_up = True
+        """The advance run has been stopped behind the motion planned last: only that one lacks a next.
+
+        Why an earlier one does not blend is told by 1123 and not by 1442 [ADV-12].
+        """
+        if self._ways:
+            self._ways[max(self._ways)].is_held_up = True
 
     # ------------------------------------------------------------------------ what happens
 

@@ -59,7 +59,7 @@ class Settings:
     ``rotation`` the pairs ORI1 and ORI2 of both in deg/s and deg/s² [MOT-04]. ``axis_velocity``,
     ``axis_acceleration`` and ``axis_jerk`` are per cent of the machine data, robot axes first, then
     external ones [MOT-02]. ``is_reduced`` is T1 [MOT-07]. ``speed_type`` is $CP_VEL_TYPE, as
-    delivered [MOT-08].
+    delivered [MOT-08]; ``target_status`` is $TARGET_STATUS [POS-09].
     """
 
     placement: Placement = field(default_factory=Placement)
@@ -75,6 +75,7 @@ class Settings:
     circle: str = "#BASE"
     is_reduced: bool = False
     speed_type: str = "#VAR_T1"
+    target_status: str = "#SOURCE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +129,7 @@ class Motion:
     SPTP, SLIN, SCIRC, SPLINE or PTP_SPLINE; the last two have ``parts`` and no target of their own.
     ``is_relative`` and ``reference`` (#BASE or #TOOL) are those of the _REL forms [MOT-14].
     ``criteria`` are C_PTP, C_DIS and so on, in their order. ``stop_places`` are the STOP WHEN PATH
-    of a block: the path can be left there. ``last_ranges`` are those behind the last of the parts.
+    of a block: the path can be left there. ``ranges`` are those behind the last of the parts.
     """
 
     number: int
@@ -143,7 +144,6 @@ class Motion:
     criteria: tuple[str, ...] = ()
     places: tuple[Place, ...] = ()
     parts: tuple[SplinePart, ...] = ()
-    last_ranges: tuple[SplineRange, ...] = ()
     stop_places: tuple[Place, ...] = ()
     ranges: tuple[SplineRange, ...] = ()
 

@@ -57,6 +57,10 @@ class Journey:
             return section.is_used_up and leg is not None and leg.section.key > section.key
         return legs[-1].ends <= time + _INSTANT and legs[-1].last >= section.end - _THERE
 
+    def is_moving(self, time: float) -> bool:
+        """Whether the arm is on its way at a time."""
+        return self._under_way(time) is not None
+
     # -------------------------------------------------------------------------- going and stopping
 
     def go(
@@ -69,12 +73,11 @@ class Journey:
         """
         if not route:
             return True
-        leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time + _INSTANT or leg.section.key != route[0].key:
-            # It stands, or comes to stand somewhere else.
-            begins = max(time, self._timeline.end)
-            state = State(self.stood_at(route[0]), 0.0, 0.0)
-            return self._lay(route, state, begins, None, override, is_strict)
+        leg = self._under_way(time)
+        if leg is None or leg.section.key != route[0].key:
+            begins, u = self._waiting(route[0], time)
+            return self._lay(route, State(u, 0.0, 0.0), begins, None, override, is_strict)
+        time = max(time, leg.begins)
         laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
         if laid or is_strict:
             return laid
@@ -86,10 +89,12 @@ class Journey:
         self, route: Sequence[Section], time: float, override: float, *, is_hard: bool
     ) -> None:
         """Stop on the route as soon as can be."""
-        leg = self._timeline.leg_at(time)
-        if leg is None or leg.ends <= time + _INSTANT or not route:
-            self._timeline.cut(max(time, leg.ends if leg is not None else time))
+        leg = self._under_way(time)
+        if leg is None or not route:
+            past = self._timeline.leg_at(time)
+            self._timeline.cut(time if past is None else max(time, past.ends))
             return
+        time = max(time, leg.begins)
         begins, legs = _ramp_down(leg, route, time, override, is_hard)
         self._timeline.cut(begins)
         for each in legs:
@@ -105,6 +110,21 @@ class Journey:
         _, legs = _ramp_down(leg, route, time, override, is_hard=False)
         last = legs[-1] if legs else leg
         return last.section.key, last.last
+
+    def _under_way(self, time: float) -> Leg | None:
+        """The leg that is not over at a time, but for less than a microsecond."""
+        leg = self._timeline.leg_at(time + _INSTANT)
+        return leg if leg is not None and leg.ends > time + _INSTANT else None
+
+    def _waiting(self, section: Section, time: float) -> tuple[float, float]:
+        """When and where on a section to go on, with an arm that stands, or will do before that.
+
+        Legs that are planned behind the stop are those of an earlier plan, and count for nothing.
+        """
+        legs = self._timeline.of(section.key)
+        begins = next((leg.begins for leg in legs if leg.begins > time), self._timeline.end)
+        passed = [leg for leg in legs if leg.begins < begins]
+        return max(time, begins), passed[-1].last if passed else section.start
 
     def _lay(
         self,

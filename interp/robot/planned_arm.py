@@ -341,8 +341,7 @@ class PlannedArm:
     def discard(self, now: int) -> None:
         """See `interp.robot.arm.Arm.discard`."""
         self._observe(now)
-        leg = self._timeline.leg_at(now * MICROSECOND)
-        is_moving = leg is not None and leg.ends > now * MICROSECOND
+        is_moving = self._journey.is_moving(now * MICROSECOND)
         if is_moving and not self._is_braked:
             self._halt(self._override or 1.0, is_hard=False)
             self._tell_stop()

@@ -132,7 +132,7 @@ class Programmed:
             self.axes[:ROBOT_AXES].tolist(),
             status=_bits(target, "S") if not motion.is_relative else None,
             turn=_bits(target, "T") if not motion.is_relative else None,
-            preference=TargetStatus.SOURCE,
+            preference=TargetStatus(motion.settings.target_status),
         )
         is_singular = bool({Singularity.OVERHEAD, Singularity.WRIST} & set(found.singularities))
         return Goal(np.concatenate((found.axes, externals)), components, is_singular)

@@ -1,6 +1,5 @@
 """`krl construct`: constructs on their way into the grammar."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 

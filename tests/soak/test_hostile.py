@@ -1,21 +1,25 @@
 """Hostile input at every entry point: no traceback, no hang, nothing written elsewhere.
 
 Not part of `make test`: `make hostile` runs it and tells how many inputs went where. Each input is
-made from a seed, so what fails can be made again.
+made from a seed, so what fails can be made again: KRL_HOSTILE_INPUTS is how many there are (which
+decides what each is), KRL_HOSTILE_ONLY names the entry points or single numbers to try.
 """
 
-import contextlib
-import io
+from __future__ import annotations
+
 import json
 import os
-import random
-import struct
+import re
+import shutil
+import subprocess
+import sys
 import threading
 import time
-import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -30,328 +34,327 @@ REPOSITORY = Path(__file__).parents[2]
 SEED = 20_261_121
 #: Inputs in all, over all entry points; the environment may ask for fewer or more.
 INPUTS = int(os.environ.get("KRL_HOSTILE_INPUTS", "10000"))
-#: Entry points to try, separated by commas; all of them where it is empty.
+#: Entry points or numbers of inputs to try, separated by commas; all where it is empty.
 ONLY = [name.strip() for name in os.environ.get("KRL_HOSTILE_ONLY", "").split(",") if name.strip()]
 #: Seconds that no input may take, on a machine that is busy with something else.
 LONGEST = 60.0
-
-PIECES = [
-    "</script><script>alert(1)</script>",
-    "<!--",
-    "\x1b[2J\x1b[31m",
-    "\x1b]0;title\x07",
-    "\u202e\u2066",
-    "\x00",
-    "\ufeff",
-    "𝄞",
-    "é" * 50,
-    "(" * 500,
-    "NOT " * 300,
-    "[1," * 200,
-    "{A1 0,",
-    '"' * 3,
-    "9" * 400,
-    "1E" + "9" * 30,
-    "'HFFFFFFFFFFFFFFFF'",
-    "IF TRUE THEN\n" * 120,
-    "LOOP\n" * 400,
-    "DEF A()\nEND\n",
-    "DEFDAT X\nENDDAT\n",
-    "FOR I=1 TO 9 STEP 0\nENDFOR\n",
-    "DECL INT A[2147483647]\n",
-    "DECL CHAR C[99999,99999,9]\n",
-    "GOTO X\nX:\n",
-    "PTP {A1 1E38}\n",
-    "LIN {X 1E30,Y 0,Z 0}\n",
-    "WAIT SEC -1\n",
-    "$OV_PRO=0\n",
-    "INTERRUPT DECL 5 WHEN TRUE DO X()\nINTERRUPT ON\n",
-    "TRIGGER WHEN PATH=1E9 DELAY=-1E9 DO $OUT[1]=TRUE\n",
-    "&ACCESS RVO\n&REL 1\n",
-    "\r",
-    "\r\n\r\n",
-    "\x1a",
-    ";FOLD " * 60,
-]
+#: What must not reach a terminal raw: it could steer it, or turn the order of what is read.
+STEERING = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
-class Foundry:
-    """Makes inputs out of our own programs and of what breaks readers."""
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What an entry point is given; with ``stdin`` it is a process of its own."""
 
-    def __init__(self, seed: int) -> None:
-        self.chance = random.Random(seed)  # nobody's secret depends on it
-        own = [*(REPOSITORY / "corpus").rglob("*.src"), *(REPOSITORY / "corpus").rglob("*.dat")]
-        self.own = [file.read_bytes() for file in sorted(own) if file.stat().st_size < 20_000]
-        image = REPOSITORY / "tests"
-        self.images = [file.read_bytes() for file in sorted(image.rglob("*.krlb"))]
-
-    def program(self) -> bytes:
-        """A program, damaged in one of many ways; now and then no program at all."""
-        data = bytearray(self.chance.choice(self.own))
-        for _ in range(self.chance.randrange(1, 6)):
-            self._damage(data)
-        return bytes(data[:400_000])
-
-    def _damage(self, data: bytearray) -> None:
-        chance = self.chance
-        place = chance.randrange(len(data) + 1)
-        match chance.randrange(9):
-            case 0:
-                data[place:place] = chance.choice(PIECES).encode("utf-8", "surrogatepass")
-            case 1:
-                data[place : place + chance.randrange(200)] = b""
-            case 2:
-                data[place:place] = chance.randbytes(chance.randrange(1, 60))
-            case 3:
-                other = chance.choice(self.own)
-                start = chance.randrange(len(other))
-                data[place:place] = other[start : start + 300]
-            case 4:
-                lines = bytes(data).split(b"\n")
-                chance.shuffle(lines)
-                data[:] = b"\n".join(lines)
-            case 5:
-                line = bytes(data).split(b"\n")[:1][0]
-                data[place:place] = line * chance.randrange(1, 200)
-            case 6:
-                data[place:place] = b"x" * chance.randrange(1, 60_000)
-            case 7:
-                data[:] = bytes(data).replace(b"(", b"((", 3).replace(b"END", b"EN", 1)
-            case 8:
-                with contextlib.suppress(UnicodeDecodeError):
-                    data[:] = bytes(data).decode("utf-8").encode("utf-16")
-
-    def archive(self) -> bytes:
-        """An archive whose names lead out of it, lie about sizes, are links, bombs, nested."""
-        chance = self.chance
-        stream = io.BytesIO()
-        with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-            for _ in range(chance.randrange(1, 5)):
-                name = chance.choice(
-                    [
-                        "../../up.src",
-                        "/etc/up.src",
-                        "C:\\up.src",
-                        "a/../../b.src",
-                        "a\x00b.src",
-                        "KRC/R1/x.src",
-                        "R1/\x1b[31m.dat",
-                        "con.src",
-                        "x.src/",
-                        "é.src",
-                        "a" * 300 + ".src",
-                    ]
-                )
-                entry = zipfile.ZipInfo(name)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                match chance.randrange(5):
-                    case 0:
-                        entry.external_attr = 0o120777 << 16  # a symbolic link
-                        archive.writestr(entry, "/etc/passwd")
-                    case 1:
-                        archive.writestr(
-                            entry, b"DEF A()\n" + b" " * chance.choice([10, 30_000_000])
-                        )
-                    case 2:
-                        inner = io.BytesIO()
-                        with zipfile.ZipFile(inner, "w") as nested:
-                            nested.writestr("n.src", "DEF A()\nEND\n")
-                        entry.filename = "nested.zip"
-                        archive.writestr(entry, inner.getvalue())
-                    case _:
-                        archive.writestr(entry, self.program())
-        data = bytearray(stream.getvalue())
-        match chance.randrange(4):
-            case 0:
-                for _ in range(chance.randrange(1, 30)):
-                    data[chance.randrange(len(data))] = chance.randrange(256)
-            case 1:
-                data = data[: chance.randrange(len(data))]
-            case 2:
-                place = bytes(data).find(b"PK\x03\x04")
-                data[place + 6 : place + 8] = struct.pack("<H", 1)  # encrypted, it says
-        return bytes(data)
-
-    def text(self, given: str) -> bytes:
-        """A text of some format, damaged."""
-        data = bytearray(given.encode())
-        for _ in range(self.chance.randrange(1, 4)):
-            self._damage(data)
-        return bytes(data[:200_000])
+    arguments: list[str]
+    stdin: bytes | None = None
 
 
-Arguments = Callable[[Path, Foundry], list[str]]
+Entry = Callable[[Path, Any], Given]
 
 
-def _put(folder: Path, name: str, data: bytes) -> str:
+def krl(*arguments: str | Path) -> Given:
+    """A command line."""
+    return Given([str(one) for one in arguments])
+
+
+def put(folder: Path, name: str, data: bytes) -> Path:
+    """A file."""
     path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)
-    return str(path)
+    return path
 
 
-def _program(folder: Path, foundry: Foundry) -> str:
-    return _put(
-        folder, foundry.chance.choice(["a.src", "a.dat", "a.sub", "$config.dat"]), foundry.program()
-    )
+def program(folder: Path, foundry: Any) -> Path:
+    """A file with a program; its name may be strange too."""
+    names = ["a.src"] * 6 + ["a.dat", "a.sub", "$config.dat", "R1/System/a.src"]
+    names += ["\x1b[31m.src", "a\nb.src", "<b>\u202ecrs.src", "\udcff.src", "-o.src", "é 𝄞.src"]
+    return put(folder, foundry.chance.choice(names), foundry.program())
 
 
 GRAMMAR = (REPOSITORY / "grammar" / "KRL.g4").read_text(encoding="utf-8")
-CONSTRUCT = sorted((REPOSITORY / "grammar" / "constructs").glob("*.toml"))[3].read_text(
-    encoding="utf-8"
+CONSTRUCTS = sorted((REPOSITORY / "grammar" / "constructs").glob("*.toml"))
+CONSTRUCT = CONSTRUCTS[3].read_text(encoding="utf-8")
+FORM = (
+    'by = ""\nwhen = 2026-03-31\nrelease = "KSS 8"\n'
+    '[[program]]\nfile = "a.src"\nconstruct = "0001-x"\nsha256 = "00"\nanswer = "accepted"\n'
 )
-ASSEMBLY = "program\n"
 SCRIPT = "t=0.5 IN[1]=TRUE\non OUT[3]=TRUE after 0.2 IN[7]=TRUE\nstop at 2\n"
-POINTS = '[{"id":1,"x":600,"y":0,"z":700,"a":0,"b":90,"c":0,"s":2}]'
+POINTS = [{"id": 1, "x": 600, "y": 0, "z": 700, "a": 0, "b": 90, "c": 0, "s": 2}]
 PROFILE = (REPOSITORY / "interp" / "controller" / "profiles" / "kss8.toml").read_text(
     encoding="utf-8"
 )
 MACHINE = (REPOSITORY / "interp" / "robot" / "models" / "kr6r900.dat").read_text(encoding="utf-8")
-PROGRAM = "DEF A()\n  $TOOL=$NULLFRAME\n  $BASE=$NULLFRAME\n  PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\nEND\n"
+PROGRAM = (
+    b"DEF A()\n  $TOOL=$NULLFRAME\n  $BASE=$NULLFRAME\n"
+    b"  PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\nEND\n"
+)
+OK = b"DEF A()\nEND\n"
+NIGHT = {
+    "date": "2026-01-01",
+    "steps": {"fuzz": {"status": "ok", "seconds": 1.5, "page": ""}},
+    "recover": {"files": 3, "parsed": 2, "clusters": {"c-1": "WEAVE"}},
+    "growth": {"steps": 3, "files": 3, "parsed": 3},
+    "conform": {"verdicts": {"pass": 3}, "seconds": 1.0, "cases": {"a/b": "pass 00000000"}},
+    "fuzz": {"programs": 3, "seed": 1, "divergences": 0},
+    "bench": {"vm.ratio": 1.5},
+}
+EVENT = {"kind": "motion_end", "t": 12_000, "motion": 1, "at": {"file": "a.src", "line": 2}}
+CASE = {"name": "a/b", "verdict": "pass", "results": [{"executor": "vm", "events": [EVENT]}]}
+STEPS = {
+    "fuzz": {"programs": 3, "seed": 1, "divergences": 0},
+    "conform": {"verdicts": {"pass": 3}, "cases": [CASE], "coverage": {"hard": 3}},
+    "recover": {"files": 3, "parsed": 2, "clusters": [{"id": "c-1", "title": "WEAVE"}]},
+    "bench-vm": {"ratio": 1.25},
+}
+
+
+def recover_again(folder: Path, foundry: Any) -> Given:
+    """A survey whose kept results were damaged."""
+    _kept(folder, foundry, [OK, b"DEF A()\nWEAVE 1\nEND\n"])
+    return krl("recover", folder / "in", "--no-start", "--out", folder / "out", "--jobs", "1")
+
+
+_CACHE: dict[str, bytes] = {}
+
+
+def _kept(folder: Path, foundry: Any, programs: list[bytes]) -> None:
+    for number, content in enumerate(programs):
+        put(folder / "in", f"{number}.src", content)
+    if not _CACHE:
+        out = folder.parent / "reports" / "kept"
+        main(["recover", str(folder / "in"), "--no-start", "--out", str(out), "--jobs", "1"])
+        for file in (out / "cache").iterdir():
+            _CACHE[file.name] = file.read_bytes()
+        shutil.rmtree(out)
+    for name, content in _CACHE.items():
+        put(folder / "out" / "cache", name, foundry.bytes_of(content))
+    if foundry.chance.random() < 0.1:
+        (folder / "out" / "cache" / "results.sqlite").unlink()
+        (folder / "out" / "cache" / "results.sqlite").mkdir()
+
+
+def ledger(folder: Path, foundry: Any) -> Given:
+    """A ledger of which a file is damaged, or with a journal that wants what it must not."""
+    home, chance = folder / "grammar", foundry.chance
+    for file in CONSTRUCTS[:4]:
+        put(home, f"constructs/{file.name}", file.read_bytes())
+    for name in ("preliminary.g4", "KRL.g4"):
+        put(home, name, (REPOSITORY / "grammar" / name).read_bytes())
+    victim = chance.choice([*sorted(home.rglob("*.toml")), *home.glob("*.g4")])
+    match chance.randrange(4):
+        case 0:
+            strange = ["0002-\x1b[31m.toml", "0002.toml", "9999-x.toml", "-.toml"]
+            victim.rename(victim.with_name(chance.choice(strange)))
+        case 1:
+            noted = {
+                str(folder.parent / "canary"): None,
+                str(home / ".." / ".." / "canary"): None,
+                str(home / "KRL.g4"): "00",
+            }
+            put(home, "constructs/.unfinished.json", foundry.record(noted))
+        case _:
+            victim.write_bytes(foundry.text(victim.read_text(encoding="utf-8")))
+    os.chdir(folder)
+    wanted = [("list",), ("show", "1"), ("replay", "--check"), ("replay", "--out", "x.g4")]
+    return krl("construct", *chance.choice(wanted))
+
+
+def oracle(folder: Path, foundry: Any) -> Given:
+    """A form of verdicts, filled by somebody."""
+    return krl("construct", "oracle", "--record", put(folder, "v.toml", foundry.text(FORM)))
+
+
+def night(folder: Path, foundry: Any) -> Given:
+    """Records of a night that are there already, and a history, both damaged."""
+    for name, record in STEPS.items():
+        put(folder / "out" / "2026-01-02", f"{name}.json", foundry.record(record))
+    put(folder / "out" / "2026-01-01", "conform.json", foundry.record(STEPS["conform"]))
+    lines = [foundry.record(NIGHT) for _ in range(3)]
+    history = put(folder, "h.jsonl", b"\n".join(lines))
+    given = ("--date", "2026-01-02", "--out", folder / "out", "--history", history)
+    return krl("nightly", *given, *(word for name in STEPS for word in ("--only", name)))
+
+
+def recording(folder: Path, foundry: Any) -> Given:
+    """A recording of some cases."""
+    from conformance.case import find_cases
+
+    if not _CASES:
+        _CASES.extend((case.name, case.digest) for case in find_cases())
+    cases = [
+        {
+            "case": name,
+            "digest": digest,
+            "ending": "end",
+            "watched": ["out", "message"],
+            "events": [EVENT, {"kind": "out", "t": 5, "signal": "$OUT[1]", "value": True}],
+            "path": {"t": [0, 12_000], "axes": [[0.0] * 6] * 2, "points": [[1.0] * 6] * 2},
+        }
+        for name, digest in foundry.chance.sample(_CASES, 3)
+    ]
+    whole = {"format": "krl-recording/1", "controller": {"name": "X", "release": "8"}}
+    return krl(
+        "conform",
+        "import",
+        put(folder, "r.json", foundry.record({**whole, "cycle": 12_000, "cases": cases})),
+        "--json",
+        folder / "out.json",
+    )
+
+
+_CASES: list[tuple[str, str]] = []
+
+
+def case_of_the_judge(folder: Path, foundry: Any) -> Given:
+    """A case, damaged."""
+    cases = sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src"))
+    text = foundry.chance.choice(cases).read_text(encoding="utf-8")
+    file = put(folder, "control/case.src", foundry.text(text))
+    return krl("conform", "--executor", "tree", "--robot", "none", "--jobs", "1", file)
+
+
+def propose(folder: Path, foundry: Any) -> Given:
+    """A proposal taken from a survey that somebody changed."""
+    edits = [{"kind": "add_token", "name": "WEAVE"}]
+    survey = {"clusters": [{"id": "c-1", "title": "W", "proposals": [{"edits": edits}]}]}
+    file = put(folder, "survey.json", foundry.record(survey))
+    return krl("construct", "propose", "c-1", "--survey", file, "--out", folder / "out")
+
+
+def editor(folder: Path, foundry: Any) -> Given:
+    """An editor that says strange things to the language server, and then goes."""
+    uri = (folder / "a.src").as_uri()
+    document: dict[str, Any] = {"uri": uri}
+    text = foundry.program().decode("utf-8", "replace")
+    opened = {**document, "languageId": "krl", "version": 1, "text": text}
+    place = {"line": foundry.chance.randrange(40), "character": foundry.chance.randrange(90)}
+    asked = {"textDocument": document, "position": place}
+    said: list[tuple[str, Any]] = [
+        ("initialize", {"processId": None, "rootUri": folder.as_uri(), "capabilities": {}}),
+        ("initialized", {}),
+        ("textDocument/didOpen", {"textDocument": opened}),
+        ("textDocument/hover", asked),
+        ("textDocument/definition", asked),
+        ("textDocument/documentSymbol", {"textDocument": document}),
+        ("textDocument/foldingRange", {"textDocument": document}),
+        ("textDocument/formatting", {"textDocument": document, "options": {"tabSize": 2}}),
+        ("textDocument/didChange", {"textDocument": opened, "contentChanges": [{"text": text}]}),
+        ("textDocument/didClose", {"textDocument": document}),
+    ]
+    messages = [
+        {"jsonrpc": "2.0", "id": number, "method": method, "params": params}
+        for number, (method, params) in enumerate(said)
+    ]
+    first = foundry.chance.choice([0, 1, 3])
+    return Given(["lsp"], _framed(messages[:first]) + foundry.messages(messages[first:]))
+
+
+def _framed(messages: list[Any]) -> bytes:
+    bodies = [json.dumps(message).encode() for message in messages]
+    return b"".join(b"Content-Length: %d\r\n\r\n" % len(body) + body for body in bodies)
+
+
+WORDS = (
+    "recover check run growth conform fuzz construct corpus robot bench --json --out --jobs 0 -1 "
+    "99999999999999 nothing/here.src /dev/null --seed x compile asm -- - é --help --io --profile"
+).split() + ["", "\x1b[31m", "\ud800", "a\x00b"]
+
+
+def words(_folder: Path, foundry: Any) -> Given:
+    """A command line of words by chance; what would work for minutes gets little to do."""
+    chosen = foundry.chance.choices(WORDS, k=foundry.chance.randrange(1, 5))
+    little = {"fuzz": ["--programs", "2"], "conform": ["nothing"], "bench": ["nothing"]}
+    return krl(*chosen, *little.get(next(iter(little.keys() & set(chosen)), ""), ()))
+
+
+def run(folder: Path, foundry: Any) -> Given:
+    """A program that is run, with everything that is written about it."""
+    more = foundry.chance.choice(
+        [(), ("--html", folder / "out.html"), ("--trace", folder / "t.jsonl"), ("--strict",)]
+    )
+    executor = foundry.chance.choice(["tree", "vm", "native"])
+    limits = ("--executor", executor, "--max-time", "5")
+    return krl("run", *limits, *more, "--", program(folder, foundry))
+
+
+def _ran(folder: Path, *options: str | Path) -> Given:
+    return krl("run", "--executor", "vm", *options, put(folder, "p.src", PROGRAM))
+
 
 #: What each entry point is given; the number is its share of all inputs.
-ENTRIES: dict[str, tuple[int, Arguments]] = {
-    "check": (10, lambda d, f: ["check", _program(d, f)]),
-    "check archive": (6, lambda d, f: ["check", _put(d, "a.zip", f.archive())]),
-    "check sarif": (3, lambda d, f: ["check", "--format", "sarif", _program(d, f)]),
-    "format": (6, lambda d, f: ["format", "--check", _program(d, f)]),
+ENTRIES: dict[str, tuple[int, Entry]] = {
+    "check": (10, lambda d, f: krl("check", "--no-cache", "--", program(d, f))),
+    "check archive": (6, lambda d, f: krl("check", put(d, "a.zip", f.archive()))),
+    "check sarif": (3, lambda d, f: krl("check", "--format", "sarif", "--", program(d, f))),
+    "check json": (2, lambda d, f: krl("check", "--format", "json", "--", program(d, f))),
+    "format": (4, lambda d, f: krl("format", "--check", "--", program(d, f))),
+    "format files": (2, lambda d, f: krl("format", "--", program(d, f))),
     "recover": (
-        4,
-        lambda d, f: [
-            "recover",
-            _program(d, f),
-            "--no-start",
-            "--out",
-            str(d / "out"),
-            "--jobs",
-            "1",
-        ],
+        3,
+        lambda d, f: krl("recover", "--no-start", "--out", d / "out", "--", program(d, f)),
     ),
     "recover archive": (
-        4,
-        lambda d, f: [
-            "recover",
-            _put(d, "a.zip", f.archive()),
-            "--no-start",
-            "--out",
-            str(d / "out"),
-        ],
+        3,
+        lambda d, f: krl("recover", put(d, "a.zip", f.archive()), "--no-start", "--out", d / "out"),
     ),
     "recover grammar": (
         2,
-        lambda d, f: [
+        lambda d, f: krl(
             "recover",
-            _put(d, "ok.src", b"DEF A()\nEND\n"),
+            put(d, "ok.src", OK),
             "--grammar",
-            _put(d, "g.g4", f.text(GRAMMAR)),
+            put(d, "g.g4", f.text(GRAMMAR)),
             "--out",
-            str(d / "out"),
-        ],
+            d / "out",
+        ),
     ),
-    "construct try": (3, lambda d, f: ["construct", "try", _put(d, "c.toml", f.text(CONSTRUCT))]),
-    "run": (
-        8,
-        lambda d, f: [
-            "run",
-            _program(d, f),
-            "--executor",
-            f.chance.choice(["tree", "vm", "native"]),
-            "--max-time",
-            "5",
-            "--html",
-            str(d / "out.html"),
-        ],
-    ),
-    "run archive": (2, lambda d, f: ["run", _put(d, "a.zip", f.archive()) + "/KRC/R1/x.src"]),
-    "run io": (
-        4,
-        lambda d, f: [
-            "run",
-            _put(d, "p.src", PROGRAM.encode()),
-            "--executor",
-            "vm",
-            "--io",
-            _put(d, "s.txt", f.text(SCRIPT)),
-        ],
-    ),
-    "run profile": (
+    "recover cache": (3, recover_again),
+    "growth": (1, lambda d, f: krl("growth", "--out", d / "out", "--", program(d, f))),
+    "ledger": (4, ledger),
+    "construct try": (
         3,
-        lambda d, f: [
-            "run",
-            _put(d, "p.src", PROGRAM.encode()),
-            "--executor",
-            "vm",
-            "--profile",
-            _put(d, "p.toml", f.text(PROFILE)),
-        ],
+        lambda d, f: krl("construct", "try", put(d, "c.toml", f.text(CONSTRUCT))),
     ),
-    "compile": (6, lambda d, f: ["compile", _program(d, f), "-o", str(d / "out.krlb")]),
-    "asm": (4, lambda d, f: ["asm", _put(d, "a.krla", f.text(ASSEMBLY))]),
-    "disasm": (8, lambda d, f: ["disasm", _put(d, "a.krlb", _image(f))]),
-    "status-turn": (
+    "construct oracle": (3, oracle),
+    "construct propose": (3, propose),
+    "run": (8, run),
+    "run archive": (2, lambda d, f: krl("run", put(d, "a.zip", f.archive()) / "KRC/R1/x.src")),
+    "run io": (4, lambda d, f: _ran(d, "--io", put(d, "s.txt", f.text(SCRIPT)))),
+    "run profile": (3, lambda d, f: _ran(d, "--profile", put(d, "p.toml", f.text(PROFILE)))),
+    "compile": (6, lambda d, f: krl("compile", "-o", d / "out.krlb", "--", program(d, f))),
+    "asm": (
+        5,
+        lambda d, f: krl("asm", put(d, "a.krla", f.text(f.chance.choice(f.compiled)[1]))),
+    ),
+    "disasm": (8, lambda d, f: krl("disasm", put(d, "a.krlb", f.image()))),
+    "points": (
         3,
-        lambda d, f: [
+        lambda d, f: krl(
             "robot",
             "status-turn",
-            _put(d, "p.json", f.text(POINTS)),
+            put(d, "p.json", f.record(POINTS)),
             "--machine",
-            _put(d, "$machine.dat", MACHINE.encode()),
-        ],
+            put(d, "$machine.dat", MACHINE.encode()),
+        ),
     ),
     "machine data": (
         3,
-        lambda d, f: [
+        lambda d, f: krl(
             "robot",
             "status-turn",
-            _put(d, "p.json", POINTS.encode()),
+            put(d, "p.json", json.dumps(POINTS).encode()),
             "--machine",
-            _put(d, "$machine.dat", f.text(MACHINE)),
-        ],
+            put(d, "$machine.dat", f.text(MACHINE)),
+        ),
     ),
-    "conform": (3, lambda d, f: ["conform", "--executor", "tree", "--jobs", "1", _case(d, f)]),
-    "arguments": (4, lambda _, f: f.chance.choices(WORDS, k=f.chance.randrange(1, 5))),
+    "conform": (3, case_of_the_judge),
+    "conform import": (4, recording),
+    "nightly": (4, night),
+    "lsp": (1, editor),
+    "arguments": (4, words),
 }
-WORDS = [
-    "recover",
-    "check",
-    "run",
-    "growth",
-    "conform",
-    "fuzz",
-    "--json",
-    "--out",
-    "--jobs",
-    "0",
-    "-1",
-    "99999999999999",
-    "\x1b[31m",
-    "nothing/here.src",
-    "/dev/null",
-    "--seed",
-    "x",
-    "compile",
-    "asm",
-    "--",
-    "-",
-    "",
-    "é",
-    "\ud800",
-]
-
-
-def _image(foundry: Foundry) -> bytes:
-    if not foundry.images:
-        return foundry.chance.randbytes(foundry.chance.randrange(300))
-    data = bytearray(foundry.chance.choice(foundry.images))
-    for _ in range(foundry.chance.randrange(1, 9)):
-        data[foundry.chance.randrange(len(data))] = foundry.chance.randrange(256)
-    return bytes(data)
-
-
-def _case(folder: Path, foundry: Foundry) -> str:
-    cases = sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src"))
-    text = foundry.chance.choice(cases).read_text(encoding="utf-8")
-    (folder / "control").mkdir(exist_ok=True)
-    return _put(folder / "control", "case.src", foundry.text(text))
 
 
 #: Standard error as it is before anything captures it.
@@ -378,73 +381,114 @@ class Watch:
                 os._exit(1)
 
 
+class Guard:
+    """Hears of every file that this process opens for writing, renames, makes or removes."""
+
+    def __init__(self, allowed: Path) -> None:
+        self.allowed = str(allowed)
+        self.elsewhere: list[str] = []
+        self.is_on = True
+        sys.addaudithook(self._hear)  # there is no way to take one off again
+
+    def _hear(self, event: str, given: tuple[Any, ...]) -> None:
+        if not self.is_on:
+            return
+        if event == "open":
+            path, mode, flags = given
+            writes = flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT) if flags else "w" in str(mode)
+            named = [path] if writes else []
+        elif event in ("os.rename", "os.link", "os.symlink"):
+            named = list(given[:2])
+        elif event in ("os.remove", "os.mkdir", "os.rmdir", "os.truncate", "os.chmod"):
+            named = [given[0]]
+        else:
+            return
+        self.elsewhere += [f"{event} {one!r}" for one in named if not self._is_allowed(one)]
+
+    def _is_allowed(self, path: Any) -> bool:
+        if not isinstance(path, str | bytes | os.PathLike):
+            return True  # a descriptor, which somebody opened
+        text = os.path.abspath(os.fsdecode(path))  # noqa: PTH100  a Path would cost much
+        return text.startswith(self.allowed) or text == os.devnull or "__pycache__" in text
+
+
 def _plan() -> Iterator[tuple[str, int]]:
     """Entry points with the numbers of their inputs."""
     shares = sum(share for share, _ in ENTRIES.values())
     number = 0
     for name, (share, _) in ENTRIES.items():
-        for _ in range(max(1, round(INPUTS * share / shares))):
-            if not ONLY or name in ONLY:
+        for _ in range(max(1, -(-INPUTS * share // shares))):
+            if not ONLY or name in ONLY or str(number) in ONLY:
                 yield name, number
             number += 1
 
 
+def _go(given: Given, capfd: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """The status, and what was said on stdout and stderr."""
+    if given.stdin is None:
+        status = main(given.arguments)
+        return status, *capfd.readouterr()
+    done = subprocess.run(
+        [sys.executable, "-m", "krl", *given.arguments],
+        input=given.stdin,
+        capture_output=True,
+        check=False,
+        timeout=LONGEST,
+        cwd=REPOSITORY,
+    )
+    # what the server answers goes to a program, not to a terminal
+    return done.returncode, "", done.stderr.decode("utf-8", "replace")
+
+
 def test_nothing_breaks_and_nothing_escapes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    foundry: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     """Every input ends with 0, 1 or 2, one clear line on stderr for 2, and nothing outside."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "reports"))
+    canary = put(tmp_path, "canary", b"alive")
     watch, went, slowest = Watch(), Counter[tuple[str, int]](), (0.0, "")
+    guard = Guard(tmp_path)
     for name, number in _plan():
         folder = tmp_path / "input"
         folder.mkdir()
-        foundry = _seeded(number)
-        arguments = ENTRIES[name][1](folder, foundry)
-        watch.begin(f"{name}, input {number}: {arguments}")
+        foundry.chance.seed(SEED + number)
+        given = ENTRIES[name][1](folder, foundry)
+        capfd.readouterr()
+        watch.begin(f"{name}, input {number}: {given.arguments}")
         began = time.monotonic()
-        status = main(arguments)
+        status, out, err = _go(given, capfd)
         slowest = max(slowest, (time.monotonic() - began, f"{name} {number}"))
-        out, err = capfd.readouterr()
-        said = f"{name}, input {number}: {arguments}: {err[-600:]!r}"
+        watch.begin("")
+        os.chdir(tmp_path)
+        said = f"{name}, input {number}: {given.arguments}: {err[-600:]!r}"
         assert status in (0, 1, 2), said
         assert "defect in krl" not in err, said
         assert "Traceback" not in err, said
-        assert "\x1b" not in out + err, f"a raw escape: {said}"
-        if status == 2:
-            assert err.strip(), said
-        outside = [
-            p.name for p in tmp_path.iterdir() if p.name not in ("input", "reports", ".krl-cache")
-        ]
-        assert not outside, f"written outside: {outside}: {said}"
+        steering = STEERING.search(out + err)
+        assert steering is None, f"raw {steering!r}: {said}"
+        if status == 2 and given.stdin is None:
+            assert err.strip().count("\n") == 0 < len(err.strip()), said
+        there = {p.name for p in tmp_path.iterdir()} - {"input", "reports", "canary"}
+        assert not there, f"written outside: {there}: {said}"
+        assert canary.read_bytes() == b"alive", said
+        assert not guard.elsewhere, f"{guard.elsewhere}: {said}"
         for page in folder.rglob("*.html"):
-            assert "<script>alert(1)" not in page.read_text(encoding="utf-8"), said
-        for record in folder.rglob("survey.json"):
+            text = page.read_text(encoding="utf-8")
+            assert "<script>alert(1)" not in text, said
+            assert "<img src=x" not in text, said
+        for record in folder.rglob("out/*.json"):
             json.loads(record.read_text(encoding="utf-8"))
         went[name, status] += 1
-        _clear(folder)
-    watch.begin("")
+        shutil.rmtree(folder)
+    guard.is_on = False
     with capfd.disabled():
         print()
         for name in ENTRIES:
             counts = {status: went[name, status] for status in (0, 1, 2)}
-            print(f"{name:16} {sum(counts.values()):6}  by status {counts}")
-        print(f"{'all':16} {sum(went.values()):6}  slowest {slowest[0]:.1f} s ({slowest[1]})")
-    assert sum(went.values()) == len(list(_plan()))
-    assert ONLY or sum(went.values()) >= INPUTS * 0.95
-
-
-_FOUNDRY: list[Foundry] = []
-
-
-def _seeded(number: int) -> Foundry:
-    """The same foundry with the chance of this number: reading our programs again takes long."""
-    if not _FOUNDRY:
-        _FOUNDRY.append(Foundry(SEED))
-    _FOUNDRY[0].chance.seed(SEED + number)
-    return _FOUNDRY[0]
-
-
-def _clear(folder: Path) -> None:
-    for path in sorted(folder.rglob("*"), reverse=True):
-        path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
-    folder.rmdir()
+            print(f"{name:17} {sum(counts.values()):6}  by status {counts}")
+        print(f"{'all':17} {sum(went.values()):6}  slowest {slowest[0]:.1f} s ({slowest[1]})")
+    assert ONLY or sum(went.values()) >= INPUTS

@@ -89,7 +89,7 @@ def test_ranges(go: Go) -> None:
     assert ("CONST_VEL", "START", 5.0, True) == (
         *(first.keyword, first.edge, first.value, first.on_start),
     )
-    assert ["END"] == [one.edge for one in block.last_ranges]
+    assert ["END"] == [one.edge for one in block.ranges]
 
 
 def test_conditional_stop(go: Go) -> None:

@@ -133,6 +133,47 @@ def test_moving_while_braked(moving: Driver) -> None:
     moving.check_limits()
 
 
+@pytest.mark.parametrize("is_moving", [False, True])
+def test_a_brake_within_a_brake(moving: Driver, is_moving: bool) -> None:
+    """Each brake holds what it interrupted; going on undoes the latest of them."""
+    moving.play(until=moving.now + 300_000)
+    moving.arm.brake(moving.now, False)
+    moving.play()
+    left = moving.arm.position(moving.now).axes
+    if is_moving:
+        moving.move("PTP", {"A1": left[0] + 3.0})
+        moving.play(until=moving.now + 30_000)
+    moving.arm.brake(moving.now, True)
+    moving.play()
+    moving.arm.proceed(moving.now)
+    moving.play()
+    assert not [event for event in moving.events if (event.kind, event.motion) == ("motion_end", 2)]
+    if is_moving:
+        assert left[0] + 3.0 == pytest.approx(moving.arm.position(moving.now).axes[0])
+        moving.move("PTP", {f"A{i}": value for i, value in enumerate(left[:6], start=1)})
+        moving.play()
+    moving.arm.proceed(moving.now)
+    moving.play()
+    assert moving.time("motion_end", 4) == moving.now
+    moving.check_limits()
+
+
+@pytest.mark.parametrize("after", range(9))
+def test_going_on_at_the_very_end(driver: Driver, after: int) -> None:
+    """Whatever a microsecond cuts off, a brake at the end of a motion loses nothing."""
+    driver.move("PTP", {**FIRST, "Y": 200.0 - after})
+    driver.play()
+    driver.move("LIN", SECOND)
+    driver.arm.brake(driver.now, False)
+    driver.play()
+    driver.move("LIN", {"Z": 20.0 + after}, is_relative=True)
+    driver.move("LIN", {"Z": -20.0 - after}, is_relative=True)
+    driver.play()
+    driver.arm.proceed(driver.now)
+    driver.play()
+    assert (500.0, -100.0, 600.0) == pytest.approx(driver.tool(driver.time("motion_end", 2)))
+
+
 @pytest.mark.parametrize("is_braked", [False, True])
 def test_forgetting_the_rest(moving: Driver, is_braked: bool) -> None:
     """What is discarded never happens; the next motion starts where the arm stands [INT-14]."""

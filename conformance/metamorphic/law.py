@@ -1,0 +1,67 @@
+"""A law: what may be changed about a program, or about how it is run, and must not be noticed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from random import Random
+
+from conformance.metamorphic.comparing import Compare
+from conformance.metamorphic.program import Program, Run
+
+__all__ = ["Attempt", "Law", "run_law"]
+
+#: A changed program with the comparison it asks for (``None``: that of the law), or ``None`` where
+#: the law does not apply to it.
+Change = Callable[[Program, Random], "Program | tuple[Program, Compare] | None"]
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """A law.
+
+    ``states`` is what it says, ``rules`` what it rests on. ``change`` gives the changed program;
+    ``None`` there: the program stays, and is run as ``other`` tells. ``is_of_text``: the change is
+    one of the text as it was written, not of its trees. ``usual`` is how both are run.
+    """
+
+    name: str
+    states: str
+    rules: tuple[str, ...]
+    compare: Compare
+    change: Change | None = None
+    usual: Run = Run()  # noqa: RUF009 - frozen
+    other: Run | None = None
+    is_of_text: bool = False
+    needs: Callable[[Program], bool] = lambda _program: True
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """What became of a law on a program: ``difference`` is empty where it held."""
+
+    law: str
+    program: str
+    difference: str
+    changed: tuple[tuple[str, str], ...] = ()
+
+
+def run_law(law: Law, program: Program, seed: int = 0) -> Attempt | None:
+    """Try a law on a program; ``None`` where it does not apply."""
+    if program.modules is None or not law.needs(program):
+        return None
+    before = program if law.is_of_text or law.change is None else program.plain
+    after, compare = before, law.compare
+    if law.change is not None:
+        if program.knows_lines:
+            return None
+        found = law.change(before, Random(f"{seed}/{law.name}/{program.name}"))
+        if found is None:
+            return None
+        after, compare = found if isinstance(found, tuple) else (found, law.compare)
+    left = before.run(law.usual)
+    if left.ending == "crash":
+        return None
+    difference = compare(left, after.run(law.other or law.usual))
+    texts = tuple((one.path, one.text) for one in after.case.sources) if difference else ()
+    return Attempt(law.name, program.name, difference, texts)

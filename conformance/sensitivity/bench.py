@@ -1,0 +1,88 @@
+"""The record of `krl bench conform`: how many faults the cases find, and how fast cases run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+from conformance.case import Case
+from conformance.observing import Setup
+from conformance.runner import run_case
+from conformance.sensitivity.planting import Fault
+from conformance.sensitivity.trial import Verdict, try_faults
+from conformance.verdicts import KnownFailures
+
+__all__ = ["AIM", "measure", "record_of"]
+
+#: The share of faults that has to be found for a green night to mean something.
+AIM: Final = 0.95
+_EXECUTOR: Final = "tree"
+
+
+def measure(
+    cases: Sequence[Case],
+    faults: Sequence[Fault],
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> dict[str, Any]:
+    """Time all cases once, on one executor without a robot and in one process; then try the faults.
+
+    ``on_done`` is told how many faults were judged since it was told last.
+    """
+    known = KnownFailures.load()
+    begun = time.perf_counter()
+    for case in cases:
+        run_case(case, [Setup(_EXECUTOR, "none")], known)
+    cases_took = time.perf_counter() - begun
+    begun = time.perf_counter()
+    verdicts = try_faults(faults, cases, jobs, on_done)
+    return {
+        **record_of(verdicts),
+        "seconds": round(time.perf_counter() - begun, 3),
+        "executor": _EXECUTOR,
+        "robot": "none",
+        "cases": len(cases),
+        "cases_seconds": round(cases_took, 3),
+        "cases_per_s": round(len(cases) / cases_took, 1) if cases_took > 0 else 0.0,
+    }
+
+
+def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """What is written as JSON, but for the times."""
+    groups = list(dict.fromkeys(one.group for one in verdicts))
+    return {
+        "mutants": len(verdicts),
+        **_counts(verdicts),
+        "aim": AIM,
+        "groups": [
+            {"group": group, "mutants": len(own), **_counts(own)}
+            for group in groups
+            if (own := [one for one in verdicts if one.group == group])
+        ],
+        "survivors": [
+            {"group": one.group, "fault": one.words, "runs": one.runs}
+            for one in verdicts
+            if one.case is None
+        ],
+        "verdicts": [
+            {
+                "group": one.group,
+                "fault": one.words,
+                "case": one.case,
+                "verdict": one.verdict,
+                "runs": one.runs,
+            }
+            for one in verdicts
+        ],
+    }
+
+
+def _counts(verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """``failing`` are those that turn a night red, the others only change a verdict."""
+    killed = sum(one.case is not None for one in verdicts)
+    return {
+        "killed": killed,
+        "failing": sum(one.verdict == "fail" for one in verdicts),
+        "share": round(killed / len(verdicts), 4) if verdicts else 0.0,
+    }

@@ -1,0 +1,328 @@
+"""A foundry of hostile input: our own programs, images and records, damaged in many ways."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import random
+import re
+import struct
+import zipfile
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+
+#: What breaks readers, pages and terminals.
+PIECES = [
+    "</script><script>alert(1)</script>",
+    "<img src=x onerror=alert(1)>",
+    "<!--",
+    "\x1b[2J\x1b[31m",
+    "\x1b]0;title\x07",
+    "\x9b31m",
+    "\u202e\u2066",
+    "\x00",
+    "\ufeff",
+    "𝄞",
+    "é" * 50,
+    "(" * 500,
+    "NOT " * 300,
+    "[1," * 200,
+    "{A1 0,",
+    '"' * 3,
+    "9" * 400,
+    "1E" + "9" * 30,
+    "'HFFFFFFFFFFFFFFFF'",
+    "IF TRUE THEN\n" * 120,
+    "LOOP\n" * 400,
+    "DEF A()\nEND\n",
+    "DEFDAT X\nENDDAT\n",
+    "FOR I=1 TO 9 STEP 0\nENDFOR\n",
+    "DECL INT A[2147483647]\n",
+    "DECL CHAR C[99999,99999,9]\n",
+    "GOTO X\nX:\n",
+    "PTP {A1 1E38}\n",
+    "LIN {X 1E30,Y 0,Z 0}\n",
+    "WAIT SEC -1\n",
+    "$OV_PRO=0\n",
+    "INTERRUPT DECL 5 WHEN TRUE DO X()\nINTERRUPT ON\n",
+    "TRIGGER WHEN PATH=1E9 DELAY=-1E9 DO $OUT[1]=TRUE\n",
+    "&ACCESS RVO\n&REL 1\n",
+    "\r",
+    "\r\n\r\n",
+    "\x1a",
+    ";FOLD " * 60,
+]
+#: What stands in the place of a number or a name, where a program shall stay readable.
+TOKENS = [
+    "0",
+    "-1",
+    "2147483647",
+    "-2147483648",
+    "1.0E38",
+    "1E-40",
+    "TRUE",
+    "$POS_ACT",
+    '"a"',
+    "#X",
+]
+#: Texts that are small and ask much of a reader of TOML or JSON.
+BOMBS = [
+    "a = " + "[" * 50_000,
+    "a" + ".a" * 20_000 + " = 1",
+    "[" + "a." * 20_000 + "a]\n",
+    "a = " + "9" * 6_000,
+    "a = 0x" + "f" * 90_000,
+    'a = """' + "\\" * 60_000,
+    "[[a]]\n" * 20_000,
+    "a = {" + "a = {" * 20_000,
+    "[" * 100_000,
+    '{"a":' * 50_000,
+    '"' + "\\u0000" * 9_000 + '"',
+    "9" * 6_000,
+    "[1e999, NaN, -Infinity]",
+]
+#: Values that no record has.
+VALUES: list[Any] = [None, -1, 1e308, 10**30, float("inf"), "", "\x1b[31m</script>", [], {}, [[]]]
+NAMES = [
+    "../../up.src",
+    "/etc/up.src",
+    "C:\\up.src",
+    "a/../../b.src",
+    "a\x00b.src",
+    "KRC/R1/x.src",
+    "KRC/R1/x.dat",
+    "R1/\x1b[31m.dat",
+    "R1/<b>\u202ecrs.src",
+    "con.src",
+    "x.src/",
+    "é.src",
+    "a" * 300 + ".src",
+    "/".join("d" * 300) + "/x.src",
+]
+_WORD = re.compile(rb"[A-Za-z_$][\w$]*|\d+(?:\.\d+)?")
+
+
+class Foundry:
+    """Makes inputs by chance; the same seed gives the same."""
+
+    def __init__(self) -> None:
+        self.chance = random.Random()  # seeded before each input; nobody's secret depends on it
+        own = [*(REPOSITORY / "corpus").rglob("*.src"), *(REPOSITORY / "corpus").rglob("*.dat")]
+        own = [file for file in own if "open" not in file.relative_to(REPOSITORY).parts]
+        self.own = [file.read_bytes() for file in sorted(own) if file.stat().st_size < 20_000]
+
+    @cached_property
+    def compiled(self) -> list[tuple[bytes, str]]:
+        """Some of our programs as images and as text of the bytecode machine."""
+        from interp.bytecode.compiler import compile_program
+        from interp.bytecode.disassembler import disassemble
+        from interp.bytecode.image import write_image
+        from interp.faults import LinkError
+        from krl.programs import load_program
+
+        made = []
+        for file in sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src")):
+            with contextlib.suppress(LinkError):
+                program = compile_program(load_program(file)[0]).program
+                made.append((write_image(program), disassemble(program)))
+            if len(made) == 8:
+                break
+        return made
+
+    def program(self) -> bytes:
+        """A program: hardly readable any more, or readable and strange."""
+        data = bytearray(self.chance.choice(self.own))
+        if self.chance.random() < 0.5:
+            for _ in range(self.chance.randrange(1, 6)):
+                self._damage(data)
+        else:
+            for _ in range(self.chance.randrange(1, 12)):
+                self._estrange(data)
+        return bytes(data[:400_000])
+
+    def _damage(self, data: bytearray) -> None:
+        chance = self.chance
+        place = chance.randrange(len(data) + 1)
+        match chance.randrange(9):
+            case 0:
+                data[place:place] = self._piece()
+            case 1:
+                data[place : place + chance.randrange(200)] = b""
+            case 2:
+                data[place:place] = chance.randbytes(chance.randrange(1, 60))
+            case 3:
+                other = chance.choice(self.own)
+                start = chance.randrange(len(other))
+                data[place:place] = other[start : start + 300]
+            case 4:
+                lines = bytes(data).split(b"\n")
+                chance.shuffle(lines)
+                data[:] = b"\n".join(lines)
+            case 5:
+                line = bytes(data).split(b"\n")[0]
+                data[place:place] = line * chance.randrange(1, 200)
+            case 6:
+                data[place:place] = b"x" * chance.randrange(1, 60_000)
+            case 7:
+                data[:] = bytes(data).replace(b"(", b"((", 3).replace(b"END", b"EN", 1)
+            case 8:
+                with contextlib.suppress(UnicodeDecodeError):
+                    text = bytes(data).decode("utf-8")
+                    data[:] = text.encode(chance.choice(["utf-16", "utf-8-sig", "utf-32-be"]))
+
+    def _estrange(self, data: bytearray) -> None:
+        """Change a program so that it may well be read, checked and run still."""
+        chance = self.chance
+        lines = bytes(data).split(b"\n")
+        place = chance.randrange(len(lines))
+        words = list(_WORD.finditer(lines[place]))
+        match chance.randrange(4):
+            case 0:
+                lines.insert(place, b"; " + self._piece().replace(b"\n", b" "))
+            case 1 if words:
+                word = chance.choice(words)
+                new = chance.choice(TOKENS).encode()
+                lines[place] = lines[place][: word.start()] + new + lines[place][word.end() :]
+            case 2:
+                lines[place:place] = lines[place : place + chance.randrange(1, 9)]
+            case _:
+                lines[place] += b" ;" + self._piece().replace(b"\n", b" ")
+        data[:] = b"\n".join(lines)
+
+    def _piece(self) -> bytes:
+        return self.chance.choice(PIECES).encode("utf-8", "surrogatepass")
+
+    def archive(self) -> bytes:
+        """An archive whose names lead out of it, lie about sizes, are links, bombs, nested."""
+        stream = io.BytesIO()
+        with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+            for _ in range(self.chance.randrange(1, 5)):
+                self._member(archive)
+        return self._damaged_archive(bytearray(stream.getvalue()))
+
+    def _member(self, archive: zipfile.ZipFile) -> None:
+        chance = self.chance
+        entry = zipfile.ZipInfo(chance.choice(NAMES))
+        entry.compress_type = zipfile.ZIP_DEFLATED
+        match chance.randrange(6):
+            case 0:
+                entry.external_attr = 0o120777 << 16  # a symbolic link
+                archive.writestr(entry, "/etc/passwd")
+            case 1:
+                archive.writestr(entry, b"DEF A()\n" + b" " * chance.choice([10, 30_000_000]))
+            case 2:
+                content = b"DEF A()\nEND\n"
+                for _ in range(chance.randrange(1, 5)):
+                    inner = io.BytesIO()
+                    with zipfile.ZipFile(inner, "w") as nested:
+                        nested.writestr("n.zip" if content[:2] == b"PK" else "n.src", content)
+                    content = inner.getvalue()
+                entry.filename = "nested.zip"
+                archive.writestr(entry, content)
+            case 3:
+                entry.compress_type = chance.choice([zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+                archive.writestr(entry, self.program())
+            case _:
+                archive.writestr(entry, self.program())
+
+    def _damaged_archive(self, data: bytearray) -> bytes:
+        chance = self.chance
+        place, listed = bytes(data).find(b"PK\x03\x04"), bytes(data).find(b"PK\x01\x02")
+        match chance.randrange(6):
+            case 0:
+                for _ in range(chance.randrange(1, 30)):
+                    data[chance.randrange(len(data))] = chance.randrange(256)
+            case 1:
+                data = data[: chance.randrange(len(data))]
+            case 2:  # encrypted, it says
+                data[place + 6 : place + 8] = data[listed + 8 : listed + 10] = struct.pack("<H", 1)
+            case 3:  # a size that is not that of the content
+                size = struct.pack("<I", chance.choice([0, 1, 0x7FFFFFFF, 0xFFFFFFFE]))
+                data[listed + 24 : listed + 28] = size
+            case 4:  # its content lies elsewhere, or in itself
+                data[listed + 42 : listed + 46] = struct.pack("<I", chance.randrange(1 << 20))
+        return bytes(data)
+
+    def image(self) -> bytes:
+        """An image of the bytecode machine, some bytes of it changed."""
+        data = bytearray(self.chance.choice(self.compiled)[0])
+        for _ in range(self.chance.randrange(9)):
+            data[self.chance.randrange(len(data))] = self.chance.randrange(256)
+        if self.chance.random() < 0.1:
+            data = data[: self.chance.randrange(len(data))]
+        return bytes(data)
+
+    def bytes_of(self, data: bytes) -> bytes:
+        """Bytes of any format, some of them changed, or cut."""
+        changed = bytearray(data)
+        for _ in range(self.chance.choice([1, 4, 40])):
+            changed[self.chance.randrange(len(changed))] = self.chance.randrange(256)
+        return bytes(changed[: self.chance.choice([len(changed), self.chance.randrange(9_000)])])
+
+    def text(self, given: str) -> bytes:
+        """A text of some format: words exchanged, damaged, or a bomb behind its first lines."""
+        chance = self.chance
+        if chance.random() < 0.1:
+            head = given.splitlines(keepends=True)[: chance.randrange(5)]
+            return ("".join(head) + chance.choice(BOMBS)).encode()
+        data = bytearray(given.encode())
+        if chance.random() < 0.5:
+            for _ in range(chance.randrange(1, 4)):
+                words = list(_WORD.finditer(data))
+                if words:
+                    word, other = chance.choice(words), chance.choice(words)[0]
+                    new = chance.choice([other, chance.choice(TOKENS).encode()])
+                    data[word.start() : word.end()] = new
+        else:
+            for _ in range(chance.randrange(1, 4)):
+                self._damage(data)
+        return bytes(data[:200_000])
+
+    def record(self, given: Any) -> bytes:
+        """A record as JSON, some of its values those of no record, or the text damaged."""
+        if self.chance.random() < 0.3:
+            return self.text(json.dumps(given))
+        given = json.loads(json.dumps(given))
+        for _ in range(self.chance.randrange(1, 5)):
+            self._exchange(given)
+        return json.dumps(given).encode()
+
+    def _exchange(self, node: Any) -> None:
+        """Go down by chance, and put another value there."""
+        while isinstance(node, dict | list) and node:
+            key: Any = self.chance.choice(
+                list(node) if isinstance(node, dict) else range(len(node))
+            )
+            deeper = isinstance(node[key], dict | list) and node[key]
+            if not deeper or self.chance.random() < 0.15:
+                node[key] = self.chance.choice(VALUES)
+                return
+            node = node[key]
+
+    def messages(self, valid: Sequence[Any]) -> bytes:
+        """Messages of the Language Server Protocol, some damaged, some with a wrong frame."""
+        out = b""
+        for message in valid:
+            body = json.dumps(message).encode()
+            if self.chance.random() < 0.4:
+                body = self.record(message)
+            length = len(body)
+            if self.chance.random() < 0.05:
+                length = self.chance.choice([0, -1, length + 7, 10**12])
+            out += f"Content-Length: {length}\r\n\r\n".encode() + body
+            if self.chance.random() < 0.05:
+                out += self.chance.randbytes(40) + b"\r\n\r\n"
+        return out
+
+
+@pytest.fixture(scope="module")
+def foundry() -> Foundry:
+    """A foundry, to be seeded before each input."""
+    return Foundry()
