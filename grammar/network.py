@@ -8,7 +8,6 @@ that a candidate edit costs one rule.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -375,9 +374,7 @@ def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> f
         found |= more
 
 
-def _opening(
-    network: Network, name: str, empty: Collection[str]
-) -> tuple[set[str], list[int]]:
+def _opening(network: Network, name: str, empty: Collection[str]) -> tuple[set[str], list[int]]:
     """The rules that a rule may call before it has read a token, and where it may then end."""
     entry = network.entry[name]
     callees: set[str] = set()

@@ -35,7 +35,9 @@ def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
         key = tuple(edits)
         if key not in known:
             wider = edited(recognizer, edits)
-            known[key] = 0 if wider is None else len(rejected.accepted(wider, used_by(edits, wider)))
+            known[key] = (
+                0 if wider is None else len(rejected.accepted(wider, used_by(edits, wider)))
+            )
         return known[key]
 
     return judge

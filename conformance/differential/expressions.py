@@ -112,6 +112,8 @@ class Expressions(Functions):
     def argument(self, type_: Type, *, is_out: bool) -> str:
         """An argument; for a parameter :OUT a variable nearly always."""
         choices = self.choices
+        if choices.chance(1) and not isinstance(type_, Array):
+            return ""  # left out [SCO-13]
         if isinstance(type_, Array):
             found = self.array(type_)
             self.passes_arrays |= found.startswith("P")
@@ -266,6 +268,8 @@ class Expressions(Functions):
         else:
             left = right = BOOL
         sign = choices.pick(_EQUAL if left == BOOL else _ORDERS)
+        if left == right == CHAR and self.risks():
+            return f'{self._operand(CHAR, depth - 1)} {sign} ""'  # which is no letter
         return f"{self._operand(left, depth - 1)} {sign} {self._operand(right, depth - 1)}"
 
     def _near(self, type_: Type) -> str:

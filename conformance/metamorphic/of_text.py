@@ -278,7 +278,7 @@ LAWS: Final[Sequence[Law]] = (
     Law(
         "names of local variables",
         "it does not matter what a local variable is called",
-        ("SCO-02",),
+        ("TYP-05", "SCO-03"),
         same_trace,
         _renamed,
     ),

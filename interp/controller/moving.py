@@ -238,7 +238,7 @@ class Moving(World):
         return self.core.arm.next_event() is not None
 
     def hold_up(self) -> None:
-        """The advance run has been stopped behind the motion planned last: only that one lacks a next.
+        """The advance run has been stopped behind the motion planned last, which has no next one.
 
         Why an earlier one does not blend is told by 1123 and not by 1442 [ADV-12].
         """

@@ -40,7 +40,7 @@ _FEWEST = 33
 _MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
-_JUMP = 5.0  # degrees between points that lie as near to each other as can be
+_ROUGH = 0.05  # degrees of them at which, with most points, an axis is taken to jump
 
 
 class Curve(Protocol):
@@ -323,14 +323,15 @@ class CourseCurve:
         while True:
             grid = np.linspace(0.0, 1.0, count)
             axes = self._along(grid, start)
-            if np.abs(np.diff(axes, n=4, axis=0)).max() < _SMOOTH:
+            rough = np.abs(np.diff(axes, n=4, axis=0)).max()
+            if rough < _SMOOTH:
                 break
             if count >= _MOST:
-                if np.abs(np.diff(axes, axis=0, prepend=start[None])).max() > _JUMP:
+                if rough > _ROUGH:
                     raise _singular()
                 break
             count = 2 * count - 1
-        if np.abs(axes[0] - start).max() > _JUMP:
+        if np.abs(axes[0] - start).max() > _ROUGH:
             raise _singular()
         for values in (axes.min(axis=0), axes.max(axis=0)):
             check_limits(self.arm.machine.axes, values.tolist())

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.bench_arm import arm
+from krl.commands.bench_conform import conform
 from krl.commands.bench_fuzz import fuzz
 from krl.commands.bench_mutation import mutation
 from krl.commands.bench_real_code import real_code
@@ -28,6 +29,7 @@ app = typer.Typer(help="Measure the tools themselves.")
 app.command("mutation")(mutation)
 app.command("vm")(bench_vm)
 app.command("arm")(arm)
+app.command("conform")(conform)
 app.command("fuzz")(fuzz)
 app.command("real-code")(real_code)
 

@@ -27,7 +27,6 @@ _NEEDED = {
     "scipy": "arm",
     "py_opw_kinematics": "arm",
     "ruckig": "arm",
-    "toppra": "arm",
     "mujoco": "arm",
     "pandas": "records",
     "pyarrow": "records",

@@ -37,6 +37,16 @@ def test_an_unknown_block_with_parts_in_the_middle() -> None:
     )
 
 
+def test_what_no_block_goes_without_has_to_be_there() -> None:
+    """A part met in every block, and twice in one, comes once or more; else any number of times."""
+    meant = frozenset({"SWITCH", "CASE"})
+    twice, once, none = ("SWITCH A\n" + "CASE 1\nB=1\n" * n + "ENDSWITCH" for n in (2, 1, 0))
+    forms = blocks("SWITCH", twice, once, meant=meant)
+    assert "eol statement*)+ ENDSWITCH" in forms[0]
+    forms = blocks("SWITCH", twice, none, meant=meant)
+    assert "eol statement*)* ENDSWITCH" in forms[0]
+
+
 def test_what_nothing_closes_is_no_block() -> None:
     """A statement is not taken for an opener, nor an opener whose closer is missing somewhere."""
     assert [] == blocks("HALT", "HALT\nB=1")

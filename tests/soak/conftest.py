@@ -9,6 +9,7 @@ import random
 import re
 import struct
 import zipfile
+import zlib
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -257,6 +258,8 @@ class Foundry:
             data[self.chance.randrange(len(data))] = self.chance.randrange(256)
         if self.chance.random() < 0.1:
             data = data[: self.chance.randrange(len(data))]
+        if self.chance.random() < 0.8 and len(data) > 16:  # a wrong checksum would end it all
+            data[8:16] = struct.pack("<II", len(data), zlib.crc32(data[16:]))
         return bytes(data)
 
     def bytes_of(self, data: bytes) -> bytes:

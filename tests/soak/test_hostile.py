@@ -259,7 +259,8 @@ def _framed(messages: list[Any]) -> bytes:
 WORDS = (
     "recover check run growth conform fuzz construct corpus robot bench --json --out --jobs 0 -1 "
     "99999999999999 nothing/here.src /dev/null --seed x compile asm -- - é --help --io --profile"
-).split() + ["", "\x1b[31m", "\ud800", "a\x00b"]
+).split()
+WORDS += ["", "\x1b[31m", "\ud800", "a\x00b"]
 
 
 def words(_folder: Path, foundry: Any) -> Given:

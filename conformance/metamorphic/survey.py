@@ -1,0 +1,146 @@
+"""Laws tried on cases and on generated programs: which apply, hold, or are broken, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import lru_cache
+from multiprocessing import get_context
+from random import Random
+from typing import Any, Final
+
+from conformance.case import Case
+from conformance.differential import seeded
+from conformance.metamorphic import of_cell, of_control, of_text
+from conformance.metamorphic.law import Attempt, Law, run_law
+from conformance.metamorphic.program import Program
+from interp.executors import available
+
+__all__ = ["Standing", "laws", "record_of", "try_laws"]
+
+#: For each generated program that a law is to apply to, so many are looked at.
+_LOOKED_AT: Final = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How a law stands: on how many programs it was tried, and where it was broken.
+
+    ``inapplicable`` are the programs that were looked at and had nothing to change.
+    """
+
+    law: Law
+    applied: int
+    inapplicable: int
+    broken: tuple[Attempt, ...]
+
+    @property
+    def held(self) -> int:
+        """How often it was kept."""
+        return self.applied - len(self.broken)
+
+
+def laws() -> tuple[Law, ...]:
+    """All laws that can be tried here: without a C compiler there is no machine in C."""
+    every = (*of_text.LAWS, *of_control.LAWS, *of_cell.LAWS)
+    return tuple(one for one in every if one.other is None or one.other.executor in available())
+
+
+def try_laws(
+    cases: Sequence[Case],
+    programs: int,
+    seed: int = 1,
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> list[Standing]:
+    """Try each law on so many cases, and on as many generated programs, to which it applies.
+
+    Which these are follows from the seed. ``on_done`` is told how many laws were tried.
+    """
+    running = [case for case in cases if case.phase == "run"]
+    numbers = range(len(laws()))
+    if jobs <= 1:
+        found = []
+        for number in numbers:
+            found.append(_standing(number, running, programs, seed))
+            on_done(1)
+        return [_whole(one) for one in found]
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        tasks = [pool.submit(_standing, number, running, programs, seed) for number in numbers]
+        found = []
+        for task in tasks:
+            found.append(task.result())
+            on_done(1)
+    return [_whole(one) for one in found]
+
+
+#: Number of the law, applied, inapplicable, broken: what goes from process to process.
+_Counted = tuple[int, int, int, tuple[Attempt, ...]]
+
+
+def _whole(counted: _Counted) -> Standing:
+    number, *rest = counted
+    return Standing(laws()[number], *rest)
+
+
+def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
+    law = laws()[number]
+    drawn = list(cases)
+    Random(f"{seed}/{law.name}").shuffle(drawn)
+    applied, inapplicable = 0, 0
+    broken: list[Attempt] = []
+    for source in (_of_cases(drawn), _generated(programs * _LOOKED_AT, seed)):
+        wanted = programs
+        for program in source:
+            if not wanted:
+                break
+            attempt = run_law(law, program, seed)
+            if attempt is None:
+                inapplicable += 1
+                continue
+            wanted -= 1
+            applied += 1
+            if attempt.difference:
+                broken.append(attempt)
+    return number, applied, inapplicable, tuple(broken)
+
+
+def _of_cases(cases: Sequence[Case]) -> Iterator[Program]:
+    return (Program(case) for case in cases)
+
+
+def _generated(most: int, seed: int) -> Iterator[Program]:
+    return (_program(seed, number) for number in range(most))
+
+
+@lru_cache(maxsize=256)
+def _program(seed: int, number: int) -> Program:
+    return Program.of_sample(seeded(seed, number), f"generated/{seed}/{number}")
+
+
+def record_of(standings: Sequence[Standing], programs: int, seed: int) -> dict[str, Any]:
+    """What is written as JSON."""
+    return {
+        "programs": programs,
+        "seed": seed,
+        "laws": [
+            {
+                "name": one.law.name,
+                "states": one.law.states,
+                "rules": list(one.law.rules),
+                "applied": one.applied,
+                "held": one.held,
+                "inapplicable": one.inapplicable,
+                "broken": [
+                    {
+                        "program": attempt.program,
+                        "difference": attempt.difference,
+                        "changed": dict(attempt.changed),
+                    }
+                    for attempt in one.broken
+                ],
+            }
+            for one in standings
+        ],
+    }

@@ -1,0 +1,81 @@
+"""`krl bench conform`: how many planted faults the conformance cases find, and how fast they run."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.door import FINE, Unusable
+from krl.progress import progress_bar
+from krl.writing import write_json
+
+__all__ = ["conform"]
+
+
+def conform(
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+    group: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Only faults of this group; may be repeated."),
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    ] = None,
+) -> int:
+    """Plant faults into the controller, the arm and the machine in Python; see which cases notice.
+
+    A fault is found by a case that passes without it and not with it. Cases a second are those of
+    all cases, with the tree interpreter and no robot, in one process.
+    """
+    if json_file is not None and json_file.is_dir():
+        raise Unusable(f"{json_file}: a folder, not a file")
+    try:
+        from conformance.case import CaseError, find_cases
+        from conformance.sensitivity import measure
+        from conformance.sensitivity.trial import all_faults
+    except ModuleNotFoundError as error:
+        raise Unusable(
+            f"this needs {error.name}, which is not installed: pip install 'krl-workbench[arm]'"
+        ) from error
+    groups = list(dict.fromkeys(one.group for one in all_faults()))
+    for name in group or ():
+        if name not in groups:
+            raise Unusable(f"--group {name}: the groups are {', '.join(groups)}")
+    faults = [one for one in all_faults() if not group or one.group in group]
+    try:
+        cases = find_cases()
+    except CaseError as error:
+        raise Unusable(str(error)) from error
+    with progress_bar("planting faults", len(faults)) as bar:
+        record = {"bench": "conform", **measure(cases, faults, jobs or os.cpu_count() or 1, bar)}
+    if json_file is not None:
+        write_json(record, json_file)
+    _print(record)
+    return FINE
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    table.add_column("faults in")
+    for heading in ("planted", "found", "by a failure", "share"):
+        table.add_column(heading, justify="right")
+    every = {"group": "all", **record}
+    for row in (*record["groups"], every):
+        figures = (row["mutants"], row["killed"], row["failing"])
+        table.add_row(row["group"], *(f"{one:,}" for one in figures), f"{row['share']:.1%}")
+    console.print(table)
+    console.print(
+        f"{record['cases_per_s']:,.1f} cases a second ({record['cases']:,} cases, "
+        f"{record['executor']}, robot {record['robot']}); aim {record['aim']:.0%} of faults found",
+        soft_wrap=True,
+    )
+    for one in record["survivors"]:
+        console.print(f"Not found: {one['group']}: {one['fault']}", markup=False, soft_wrap=True)

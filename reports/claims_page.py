@@ -1,0 +1,29 @@
+"""The page of the paper's claims: what it says, and what was measured here."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from reports.claims_view import claims_view
+from reports.embed import embedded_json
+from reports.page import render, write_page
+
+__all__ = ["write_claims_page"]
+
+
+def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of the paper's claims, and return its path.
+
+    ``records`` are what commands wrote with ``--json``, by the names of a night's steps: growth,
+    recover, conform, bench-vm, bench-arm, bench-conform. Any of them may be absent: the page then
+    says which command measures it. The page appears whole or not at all. Raises OSError when the
+    folder cannot be made or written.
+    """
+    page = render(
+        "claims.html.j2",
+        script="",
+        styles=["page.css", "conform.css", "claims.css"],
+        data=embedded_json({}),
+        view=claims_view(records),
+    )
+    return write_page(page, folder / "index.html")

@@ -1,0 +1,354 @@
+"""What the page of the paper's claims says: each claim beside what was measured here.
+
+The paper is Mühe, Angerer, Hoffmann and Reif, "On reverse-engineering the KUKA Robot Language"
+(2010). Everything here is text ready to print; all foreign text has passed through `shown`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from reports.fields import Record, count, nested, number, records, text
+from reports.plain import shown
+from reports.spelling import Figure, percent, share
+
+__all__ = ["Bar", "Claim", "ClaimsView", "Curve", "LeftOut", "claims_view"]
+
+#: The commands that make each record, by its name in a night.
+_COMMANDS: Final[Mapping[str, str]] = {
+    "growth": "krl growth --json growth.json",
+    "recover": "krl recover --grammar grammar/preliminary.g4 --json recover.json",
+    "bench-vm": "krl bench vm --json bench-vm.json",
+    "bench-arm": "krl bench arm --json bench-arm.json",
+    "bench-conform": "krl bench conform --json bench-conform.json",
+    "conform": "krl conform --json conform.json",
+}
+_MOST_BARS: Final = 12
+_WIDTH: Final = 860
+_HEIGHT: Final = 220
+#: Around the plot: left, right, top, bottom.
+_LEFT, _RIGHT, _TOP, _BOTTOM = 44, 12, 10, 26
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """A row of a table with a bar: ``share`` of the longest one, 0 to 1."""
+
+    label: str
+    values: tuple[str, ...]
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A curve as the points of an SVG polyline, with lines at 0, 50 and 100 % and a caption."""
+
+    points: str
+    grid: tuple[tuple[float, str], ...]
+    last: tuple[float, float]
+    caption: str
+    width: int = _WIDTH
+    height: int = _HEIGHT
+    left: int = _LEFT
+    right: int = _WIDTH - _RIGHT
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A claim of the paper: what it says, what was found, and in figures.
+
+    ``command`` is set where nothing was measured: the one that does. ``is_kept``: whether the
+    figure reaches the paper's; ``None`` where that is no question.
+    """
+
+    anchor: str
+    title: str
+    paper: str
+    found: str = ""
+    is_kept: bool | None = None
+    headings: tuple[str, ...] = ()
+    bars: tuple[Bar, ...] = ()
+    curve: Curve | None = None
+    command: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """Something that the paper left out, and a case that shows it here with its verdict."""
+
+    what: str
+    paper: str
+    case: str
+    title: str
+    verdict: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimsView:
+    """The page."""
+
+    figures: tuple[Figure, ...]
+    claims: tuple[Claim, ...]
+    left_out: tuple[LeftOut, ...]
+    left_out_command: str = field(default="")
+
+
+def claims_view(found: Mapping[str, Any]) -> ClaimsView:
+    """The page of records by their names; any of them may be absent."""
+    told = {name: nested(found, name) for name in _COMMANDS}
+    claims = (
+        _growth(told["growth"]),
+        _clusters(told["recover"]),
+        _bytecode(told["bench-vm"]),
+        _in_c(told["bench-vm"]),
+        _batches(told["bench-arm"]),
+        _sensitivity(told["bench-conform"]),
+    )
+    return ClaimsView(
+        figures=tuple(_figures(told)),
+        claims=claims,
+        left_out=tuple(_left_out(told["conform"])),
+        left_out_command="" if told["conform"] else _COMMANDS["conform"],
+    )
+
+
+def _figures(told: Mapping[str, Record]) -> Iterable[Figure]:
+    steps = records(told["growth"], "steps")
+    if steps:
+        files = count(told["growth"], "files")
+        parsed = count(steps[-1], "parsed")
+        yield Figure("files parse", percent(parsed, files), f"after {len(steps) - 1} constructs")
+    for key, label, paper in (
+        ("vm_vs_tree", "bytecode against tree", "about 6 in the paper"),
+        ("native_vs_tree", "C against tree", "up to 300 in the paper"),
+    ):
+        if number(told["bench-vm"], key):
+            yield Figure(label, _times(number(told["bench-vm"], key)), paper)
+    arm = told["bench-arm"]
+    if number(arm, "simulated_s_batch"):
+        delay = number(arm, "simulated_s_batch") - number(arm, "simulated_s_lookahead")
+        yield Figure("batches cost", f"{delay:+.2f} s", f"over {count(arm, 'motions'):,} motions")
+    if count(told["bench-conform"], "mutants"):
+        bench = told["bench-conform"]
+        killed, planted = count(bench, "killed"), count(bench, "mutants")
+        yield Figure(
+            "planted faults found", percent(killed, planted), f"{killed:,} of {planted:,}"
+        )
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:,.{0 if ratio >= 100 else 1}f} ×"
+
+
+def _absent(anchor: str, title: str, paper: str, name: str) -> Claim:
+    return Claim(anchor, title, paper, command=_COMMANDS[name])
+
+
+# ------------------------------------------------------------------------------------ the grammar
+
+
+def _growth(record: Record) -> Claim:
+    title = "A grammar grows from what does not parse"
+    paper = (
+        "A grammar that begins restrictive and is widened at each parse error comes to read real "
+        "controller source: about 1 MB of it."
+    )
+    steps, files = records(record, "steps"), count(record, "files")
+    if not steps or not files:
+        return _absent("growth", title, paper, "growth")
+    first, last = count(steps[0], "parsed"), count(steps[-1], "parsed")
+    found = (
+        f"{files:,} files, {count(record, 'bytes') / 1e6:.1f} MB. {percent(first, files)} parse "
+        f"under the restrictive start, {percent(last, files)} after {len(steps) - 1:,} constructs, "
+        "each accepted with its evidence."
+    )
+    curve = _curve([count(one, "parsed") / files for one in steps])
+    return Claim("growth", title, paper, found, curve=curve)
+
+
+def _curve(values: Sequence[float]) -> Curve:
+    """Stairs: a value holds from its construct to the next."""
+    width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
+    step = width / max(1, len(values) - 1)
+
+    def y(value: float) -> float:
+        return round(_TOP + height * (1.0 - min(1.0, max(0.0, value))), 1)
+
+    points: list[tuple[float, float]] = []
+    for place, value in enumerate(values):
+        x = round(_LEFT + place * step, 1)
+        if points:
+            points.append((x, points[-1][1]))
+        points.append((x, y(value)))
+    grid = tuple((y(value), f"{100 * value:.0f} %") for value in (1.0, 0.5, 0.0))
+    caption = (
+        f"Files that parse, from {percent(values[0], 1)} to {percent(values[-1], 1)}, "
+        f"over {len(values) - 1:,} constructs"
+    )
+    return Curve(" ".join(f"{x},{one}" for x, one in points), grid, points[-1], caption)
+
+
+def _clusters(record: Record) -> Claim:
+    title = "Failures are few causes"
+    paper = "Parse errors were looked at one by one, and each led to a construct that was missing."
+    failures, clusters = count(record, "failures"), records(record, "clusters")
+    if not record:
+        return _absent("clusters", title, paper, "recover")
+    if not clusters:
+        found = "No failure is left under the grammar in force: there is nothing to group."
+        return Claim("clusters", title, paper, found, command=_COMMANDS["recover"])
+    found = (
+        f"{failures:,} failures have {len(clusters):,} causes; the first "
+        f"{min(_MOST_BARS, len(clusters))} in the order of mending are shown. A cause is what one "
+        "edit of the grammar mends, and that edit has been tried."
+    )
+    ranked = clusters[:_MOST_BARS]
+    most = max(count(one, "failures") for one in ranked) or 1
+    bars = tuple(
+        Bar(
+            shown(text(one, "title"), 120),
+            (f"{count(one, 'failures'):,}", f"{count(one, 'files'):,}", f"{count(one, 'unlocks'):,}"),
+            share(count(one, "failures"), most),
+        )
+        for one in ranked
+    )
+    headings = ("cause", "failures", "files", "unlocks")
+    return Claim("clusters", title, paper, found, headings=headings, bars=bars)
+
+
+# ------------------------------------------------------------------------------------ executors
+
+
+def _bytecode(record: Record) -> Claim:
+    title = "Bytecode is some six times as fast as the tree"
+    paper = "The bytecode interpreter was about 6 times as fast as the tree interpreter in the same language."
+    return _speed("bytecode", title, paper, record, "vm", "in Python", 6.0)
+
+
+def _in_c(record: Record) -> Claim:
+    title = "In C it is up to 300 times as fast, and drives the robot"
+    paper = "A prototype in C was up to 300 times as fast, but it could not drive the robot."
+    return _speed("c", title, paper, record, "native", "in C", 300.0)
+
+
+def _speed(
+    anchor: str, title: str, paper: str, record: Record, name: str, where: str, aim: float
+) -> Claim:
+    ratio = number(record, f"{name}_vs_tree")
+    if not ratio:
+        return _absent(anchor, title, paper, "bench-vm")
+    rows = [
+        (text(row, "name"), number(ns, "tree"), number(ns, name))
+        for row in records(record, "kernels")
+        if number(ns := nested(row, "ns"), name)
+    ]
+    most = max((tree / fast for _, tree, fast in rows), default=1.0)
+    bars = tuple(
+        Bar(
+            shown(kernel, 60),
+            (f"{tree:,.0f}", f"{fast:,.{0 if fast >= 100 else 1}f}", _times(tree / fast)),
+            share(tree / fast, most),
+        )
+        for kernel, tree, fast in rows
+    )
+    found = (
+        f"The machine {where} is {_times(ratio)} as fast as the tree interpreter: the geometric "
+        f"mean over {len(rows):,} kernels, {_times(most)} at best."
+    )
+    is_kept = ratio >= aim or (name == "native" and most >= aim)
+    headings = ("kernel", "tree, ns", f"{where}, ns", "times")
+    return Claim(anchor, title, paper, found, is_kept, headings, bars)
+
+
+# ------------------------------------------------------------------------------------ motion
+
+
+def _batches(record: Record) -> Claim:
+    title = "Motions queued and executed in one go cost time"
+    paper = (
+        "Motions are queued until one cannot be blended, then executed as a batch: blending is "
+        "right, and the arm starts late."
+    )
+    batch, ahead = number(record, "simulated_s_batch"), number(record, "simulated_s_lookahead")
+    if not batch or not ahead:
+        return _absent("batches", title, paper, "bench-arm")
+    thinking = number(record, "thinking_us") / 1000
+    found = (
+        f"{count(record, 'motions'):,} motions take {ahead:.2f} s when each is planned as soon as "
+        f"it is known, and {batch:.2f} s in batches: {batch - ahead:+.2f} s, where the program "
+        f"needs {thinking:g} ms to come to its next motion. The path is the same."
+    )
+    bars = tuple(
+        Bar(label, (f"{value:.2f} s",), share(value, max(batch, ahead)))
+        for label, value in (("look-ahead", ahead), ("batches", batch))
+    )
+    return Claim("batches", title, paper, found, None, ("strategy", "simulated"), bars)
+
+
+def _sensitivity(record: Record) -> Claim:
+    title = "What agreement is worth"
+    paper = "The paper compares its interpreters by their speed; how far they agree, it does not measure."
+    planted = count(record, "mutants")
+    if not planted:
+        return _absent("worth", title, paper, "bench-conform")
+    killed = count(record, "killed")
+    aim = number(record, "aim")
+    found = (
+        f"{planted:,} faults were planted, one at a time, into the controller, the arm and the "
+        f"machine; cases noticed {killed:,} of them, {percent(killed, planted)}."
+    )
+    bars = tuple(
+        Bar(
+            shown(text(one, "group"), 60),
+            (
+                f"{count(one, 'mutants'):,}",
+                f"{count(one, 'killed'):,}",
+                percent(count(one, "killed"), count(one, "mutants")),
+            ),
+            share(count(one, "killed"), count(one, "mutants")),
+        )
+        for one in records(record, "groups")
+    )
+    headings = ("faults in", "planted", "found", "share")
+    return Claim("worth", title, paper, found, killed >= aim * planted, headings, bars)
+
+
+# ------------------------------------------------------------------------------------ left out
+
+#: What it is, what the paper says of it, the case that shows it, and which executor and robot.
+_SHOWN: Final = (
+    ("Submit interpreter", "not looked at", "submit/runs_beside", "", ""),
+    ("Submit interpreter", "outputs beside a motion", "submit/while_moving", "", ""),
+    ("C drives the robot", "the C prototype could not", "motion/lin_is_straight", "native", ""),
+    ("C drives the robot", "the same, blended", "blending/corner_parabola", "native", ""),
+    ("C and a simulated arm", "the C prototype could not", "motion/tracking_lin", "native", "mujoco"),
+    ("Triggers that call routines", "linked commands only", "trigger/calls_routine", "", ""),
+    ("Triggers in a blend", "not looked at", "trigger/path_into_blend", "", ""),
+    ("Triggers in spline blocks", "not looked at", "spline/trigger_in_block", "", ""),
+    ("Triggers and interrupts at once", "not looked at", "trigger/prio_system", "", ""),
+    ("RESUME from an interrupt", "a stack of threads", "interrupt/resume_deep", "", ""),
+)
+
+
+def _left_out(record: Record) -> Iterable[LeftOut]:
+    cases = {text(one, "name"): one for one in records(record, "cases")}
+    for what, paper, name, executor, robot in _SHOWN:
+        case = cases.get(name, {})
+        verdict = _verdict(case, executor, robot) if record else ""
+        yield LeftOut(what, paper, name, shown(text(case, "title"), 200), verdict)
+
+
+def _verdict(case: Record, executor: str, robot: str) -> str:
+    """The verdict on the executor and robot that it is about: the last of those there are."""
+    fitting = [
+        one
+        for one in records(case, "results")
+        if executor in ("", text(one, "executor")) and robot in ("", text(one, "robot"))
+    ]
+    if not fitting:
+        return "not run"
+    verdict = text(fitting[-1], "verdict")
+    where = f"{text(fitting[-1], 'executor')}/{text(fitting[-1], 'robot')}"
+    return f"{shown(verdict, 20)} on {shown(where, 40)}"
