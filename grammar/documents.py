@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import io
 import json
+import math
 import os
 import stat
 import tomllib
@@ -71,10 +72,17 @@ def toml_of(text: str) -> dict[str, Any]:
 
 
 def json_of(text: str) -> Any:
-    """The value of a JSON text; raises `DocumentError`."""
+    """The value of a JSON text, its numbers finite; raises `DocumentError`."""
     try:
-        return json.loads(text)
+        return json.loads(text, parse_float=_finite, parse_constant=_finite)
     except RecursionError:
         raise DocumentError("not JSON: nested too deeply") from None
     except ValueError as error:
         raise DocumentError(f"not JSON: {error}") from None
+
+
+def _finite(written: str) -> float:
+    value = float(written)
+    if not math.isfinite(value):
+        raise ValueError(f"{written[:20]} is no finite number")
+    return value

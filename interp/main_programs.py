@@ -1,5 +1,4 @@
-"""Main programs of controllers' backups, run whole: which of them get to their end, and what stops
-the others.
+"""Main programs of controllers' backups, run whole: which get to their end, what stops the others.
 
 A main program is the first routine of a file below R1, outside the folders of the controller and of
 its packages, that takes no arguments, moves the arm, and is called by no other program but the one
@@ -10,7 +9,7 @@ goes on after a HALT, acknowledges messages and gives each dialogue its first an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
@@ -26,7 +25,7 @@ from interp.faults import Fault, LinkError
 from interp.program import CheckedProgram, Routine, load_all
 from interp.session import Setup, run_program
 
-__all__ = ["OPERATOR", "MainProgram", "Ran", "Result", "main_programs", "run_main"]
+__all__ = ["OPERATOR", "PATIENCE", "MainProgram", "Ran", "Result", "main_programs", "run_main"]
 
 #: What the person at the panel does, as lines of a script.
 OPERATOR: Final = (
@@ -37,8 +36,12 @@ _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
 _CHOOSES: Final = "CELL"
 _MOVES: Final = (ast.Motion, ast.SplineBlock)
 
-#: How a main program ended: as a run ends, or ``waits`` where it ran out of time and the arm had
-#: stood for half of it, ``goes on`` where it moved, ``refused`` where it could not begin.
+#: So long in µs may the arm stand before a program counts as one that waits.
+PATIENCE: Final = 20_000_000
+
+#: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
+#: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
+#: ``refused`` where it could not begin.
 Result = Literal["end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused"]
 
 
@@ -163,7 +166,8 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
     """
     seen = _Seen()
     text = script + "\n" + OPERATOR
-    setup = replace(setup, submit=main.submit, script=Script.read(text, f"{main.routine}.io"))
+    script_read = Script.read(text, f"{main.routine}.io")
+    setup = replace(setup, submit=main.submit, script=script_read, patience=PATIENCE)
     try:
         run = run_program(main.prepared, setup, take=seen.take)
     except LinkError as error:
@@ -178,7 +182,7 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
     if outcome.ending == "crash":
         raise RuntimeError(f"{place}: {outcome.error}")
     if outcome.ending == "time":
-        result = "waits" if seen.last_motion < outcome.time / 2 else "goes on"
+        result = "goes on" if outcome.time >= setup.until else "waits"
     elif outcome.ending == "fault" and not isinstance(outcome.error, Fault):
         result = "unlinked"
     else:
@@ -187,9 +191,7 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
     number = getattr(outcome.error, "number", None)
     if number is not None:
         reason += f" (message {number})"
-    return Ran(
-        result, outcome.time / 1e6, seen.motions, place, reason, run.machine.name, furthest
-    )
+    return Ran(result, outcome.time / 1e6, seen.motions, place, reason, run.machine.name, furthest)
 
 
 @dataclass(slots=True)
@@ -197,9 +199,6 @@ class _Seen:
     """What a trace tells of motions, which is all that is kept of it."""
 
     motions: int = 0
-    last_motion: int = -1
 
     def take(self, event: TraceEvent) -> None:
-        if event.kind == "motion_end":
-            self.motions += 1
-            self.last_motion = event.time
+        self.motions += event.kind == "motion_end"

@@ -46,8 +46,8 @@ class Setup:
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
     assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
-    ``until`` is the most virtual time in µs, ``limits`` the most statements and calls.
-    ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
+    ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand before it
+    counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
     """
 
     executor: str = "tree"
@@ -61,6 +61,7 @@ class Setup:
     is_full: bool = False
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
+    patience: int = HOUR
     limits: Limits | None = None
     make_robot: Callable[[Machine, int], Robot] | None = None
 
@@ -130,7 +131,7 @@ def run_program(
         values=values,
         following=following,
     )
-    outcome = _run(controller, setup.until, on_time)
+    outcome = _run(controller, setup, on_time)
     path = following.record() if robot.step else None
     return Run(outcome, trace.events, path, machine, tuple(start), controller)
 
@@ -139,13 +140,17 @@ def run_program(
 _REPORT = 1_000_000
 
 
-def _run(controller: Controller, until: int, on_time: Callable[[int], None]) -> Outcome:
-    now = 0
+def _run(controller: Controller, setup: Setup, on_time: Callable[[int], None]) -> Outcome:
+    now = moved = known = 0
     while True:
-        now = min(now + _REPORT, until)
+        now = min(now + _REPORT, setup.until)
         outcome = controller.run(now)
         on_time(outcome.time)
-        if outcome.ending != "time" or now >= until or outcome.time < now:
+        if outcome.ending != "time" or now >= setup.until or outcome.time < now:
+            return outcome
+        if controller.core.pending() or len(controller.points) > known:
+            moved, known = now, len(controller.points)
+        if now - moved >= setup.patience:
             return outcome
 
 

@@ -6,6 +6,7 @@ cut off must not hide those before it.
 
 import hashlib
 import json
+import math
 import secrets
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -32,15 +33,7 @@ def read_nights(file: Path) -> list[Json]:
         lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     except FileNotFoundError:
         return []
-    nights = []
-    for line in lines:
-        try:
-            night = json.loads(line)
-        except (ValueError, RecursionError):
-            continue
-        if isinstance(night, dict):
-            nights.append(night)
-    return nights
+    return [night for line in lines if (night := _night(line)) is not None]
 
 
 def append_night(file: Path, night: Mapping[str, Any]) -> None:
@@ -60,12 +53,25 @@ def append_night(file: Path, night: Mapping[str, Any]) -> None:
         draft.unlink(missing_ok=True)
 
 
-def _is_of(line: str, night: Mapping[str, Any]) -> bool:
+def _night(line: str) -> Json | None:
+    """The night of a line; ``None`` where it is damaged or has numbers that are not finite."""
     try:
-        other = json.loads(line)
+        night = json.loads(line, parse_float=_finite, parse_constant=_finite)
     except (ValueError, RecursionError):
-        return False
-    return isinstance(other, dict) and other.get("date") == night.get("date")
+        return None
+    return night if isinstance(night, dict) else None
+
+
+def _finite(written: str) -> float:
+    value = float(written)
+    if not math.isfinite(value):
+        raise ValueError(written)
+    return value
+
+
+def _is_of(line: str, night: Mapping[str, Any]) -> bool:
+    other = _night(line)
+    return other is not None and other.get("date") == night.get("date")
 
 
 def night_of(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:

@@ -34,7 +34,7 @@ __all__ = ["LAWS"]
 _KINEMATIC: Final = Run(robot="kinematic")
 _SHIFT: Final = {"X": 24.0, "Y": -36.0, "Z": 12.0}
 #: What tells a program where the arm is or which base is in force, or changes either.
-_KNOW_PLACES: Final = ("$BASE", "$POS_", "$IPO_MODE", "INVERSE", "FORWARD", "$ROBROOT", "BAS")
+_KNOW_PLACES: Final = ("$POS_", "$IPO_MODE", "INVERSE", "FORWARD", "$ROBROOT", "BAS")
 #: What may make it matter when something happens.
 _KNOW_TIMES: Final = (
     "$TIMER",
@@ -104,7 +104,9 @@ def _number(node: ast.Expression) -> float | None:
             return float(value)
         case ast.RealLiteral():
             return node.value
-        case ast.Unary("-", ast.IntegerLiteral() | ast.RealLiteral() as operand):
+        case ast.Unary(
+            operator="-", operand=ast.IntegerLiteral() | ast.RealLiteral() as operand
+        ):
             return -float(operand.value)
     return None
 
@@ -150,13 +152,6 @@ def _shifted(program: Program, _random: Random) -> Program | None:
         return None
     back = {key: -value for key, value in _SHIFT.items()}
 
-    def change(node: ast.Node) -> ast.Node:
-        if not isinstance(node, ast.Motion) or node.kind.endswith("_REL"):
-            return node
-        auxiliary = None if node.auxiliary is None else _moved(node.auxiliary, back)
-        return replace(node, target=_moved(node.target, back), auxiliary=auxiliary)
-
-    changed = {path: rewritten(one, change) for path, one in (program.modules or {}).items()}
     frame = ast.Aggregate(
         MADE,
         None,
@@ -165,9 +160,36 @@ def _shifted(program: Program, _random: Random) -> Program | None:
             for key, value in {**_SHIFT, "A": 0.0, "B": 0.0, "C": 0.0}.items()
         ),
     )
-    return _with_prelude(
-        program.written(changed), ast.Assignment(MADE, variable("$BASE"), frame)
-    )
+    sets = _sets_base(program)
+    if sets is None:
+        return None
+
+    def change(node: ast.Node) -> ast.Node:
+        if id(node) in sets and isinstance(node, ast.Assignment):
+            return replace(node, value=frame)
+        if not isinstance(node, ast.Motion) or node.kind.endswith("_REL"):
+            return node
+        auxiliary = None if node.auxiliary is None else _moved(node.auxiliary, back)
+        return replace(node, target=_moved(node.target, back), auxiliary=auxiliary)
+
+    changed = {path: rewritten(one, change) for path, one in (program.modules or {}).items()}
+    shifted = program.written(changed)
+    if sets:
+        return shifted
+    return _with_prelude(shifted, ast.Assignment(MADE, variable("$BASE"), frame))
+
+
+def _sets_base(program: Program) -> frozenset[int] | None:
+    """Where $BASE is made zero, by identity; ``None`` where anything else is done with it."""
+    found = []
+    mentions = 0
+    for one in _nodes(program):
+        mentions += isinstance(one, ast.Variable) and one.name.key == "$BASE"
+        match one:
+            case ast.Assignment(target=ast.Variable() as target, value=ast.Variable() as value):
+                if (target.name.key, value.name.key) == ("$BASE", "$NULLFRAME"):
+                    found.append(id(one))
+    return frozenset(found) if len(found) == mentions else None
 
 
 def _knows_no_places(program: Program) -> bool:

@@ -143,7 +143,7 @@ def _without_exit(node: ast.Statement, label: ast.Name) -> ast.Statement:
 def _if_to_switch(node: ast.Node) -> ast.Node:
     """``IF V == 3`` for a variable of the program that is compared with a number."""
     match node:
-        case ast.If(condition=ast.Binary("==", ast.Variable() as selector, right)):
+        case ast.If(condition=ast.Binary(operator="==", left=ast.Variable() as selector, right=right)):
             if not isinstance(right, ast.IntegerLiteral) or selector.name.text.startswith("$"):
                 return node
             branch = ast.CaseBranch(MADE, (right,), node.body)

@@ -136,7 +136,7 @@ class Controller(Answering):
             then = self._next_time()
             if then is None or then > limit:
                 self._go_to(max(limit, self.clock.now))
-                self._outcome = Outcome("time", self.clock.now)
+                self._outcome = Outcome("time", self.clock.now, _place_of(self.robot))
                 return self._outcome
             self._go_to(then)
 

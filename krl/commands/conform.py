@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["conform"]
 
 _SHOWN = 20
-_NEEDED = frozenset({"numpy", "scipy", "py_opw_kinematics", "ruckig", "toppra"})
+_NEEDED = frozenset({"numpy", "scipy", "py_opw_kinematics", "ruckig"})
 
 
 def conform(

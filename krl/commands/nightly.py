@@ -1,6 +1,5 @@
 """`krl nightly`: everything once, into one dated folder, and what changed since the last night."""
 
-import json
 import subprocess
 import sys
 import time
@@ -160,8 +159,10 @@ def _performed(
 
 def _record(folder: Path, name: str) -> dict[str, Any] | None:
     """The record of a step; ``None`` where there is none that can be read."""
+    from grammar.documents import json_of, read_bytes
+
     try:
-        record = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        record = json_of(read_bytes(folder / f"{name}.json").decode("utf-8"))
+    except (OSError, ValueError):
         return None
     return record if isinstance(record, dict) else None

@@ -120,6 +120,12 @@ class Foundry:
         self.own = [file.read_bytes() for file in sorted(own) if file.stat().st_size < 20_000]
 
     @cached_property
+    def cases(self) -> list[bytes]:
+        """Programs of the judge, which say what they expect and can be run."""
+        folder = REPOSITORY / "conformance" / "cases"
+        return [file.read_bytes() for file in sorted(folder.rglob("*.src"))]
+
+    @cached_property
     def compiled(self) -> list[tuple[bytes, str]]:
         """Some of our programs as images and as text of the bytecode machine."""
         from interp.bytecode.compiler import compile_program
@@ -144,9 +150,16 @@ class Foundry:
             for _ in range(self.chance.randrange(1, 6)):
                 self._damage(data)
         else:
-            for _ in range(self.chance.randrange(1, 12)):
+            for _ in range(self.chance.randrange(1, 5)):
                 self._estrange(data)
         return bytes(data[:400_000])
+
+    def runnable(self) -> bytes:
+        """A program that can be run for the most part."""
+        data = bytearray(self.chance.choice(self.cases))
+        for _ in range(self.chance.randrange(3)):
+            self._estrange(data)
+        return bytes(data)
 
     def _damage(self, data: bytearray) -> None:
         chance = self.chance
@@ -189,10 +202,12 @@ class Foundry:
                 lines.insert(place, b"; " + self._piece().replace(b"\n", b" "))
             case 1 if words:
                 word = chance.choice(words)
-                new = chance.choice(TOKENS).encode()
+                new = chance.choice(NUMBERS).encode()
+                if not word[0][:1].isdigit():
+                    new = chance.choice(_WORD.findall(bytes(data)))
                 lines[place] = lines[place][: word.start()] + new + lines[place][word.end() :]
             case 2:
-                lines[place:place] = lines[place : place + chance.randrange(1, 9)]
+                lines[place:place] = [lines[place]] * chance.choice([1, 1, 300])
             case _:
                 lines[place] += b" ;" + self._piece().replace(b"\n", b" ")
         data[:] = b"\n".join(lines)
@@ -293,7 +308,7 @@ class Foundry:
         if self.chance.random() < 0.3:
             return self.text(json.dumps(given))
         given = json.loads(json.dumps(given))
-        for _ in range(self.chance.randrange(1, 5)):
+        for _ in range(self.chance.choice([0, 1, 1, 2])):
             self._exchange(given)
         return json.dumps(given).encode()
 
@@ -304,7 +319,9 @@ class Foundry:
                 list(node) if isinstance(node, dict) else range(len(node))
             )
             deeper = isinstance(node[key], dict | list) and node[key]
-            if not deeper or self.chance.random() < 0.15:
+            if not deeper and len(node) > 1 and self.chance.random() < 0.6:
+                continue  # what lies deeper is met less often by itself
+            if not deeper or self.chance.random() < 0.05:
                 node[key] = self.chance.choice(VALUES)
                 return
             node = node[key]

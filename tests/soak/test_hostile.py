@@ -73,6 +73,13 @@ def program(folder: Path, foundry: Any) -> Path:
     return put(folder, foundry.chance.choice(names), foundry.program())
 
 
+def runnable(folder: Path, foundry: Any) -> Path:
+    """A file with a program that can be run as often as not."""
+    if foundry.chance.random() < 0.3:
+        return program(folder, foundry)
+    return put(folder, foundry.chance.choice(["a.src", "<b>\u202ecrs.src"]), foundry.runnable())
+
+
 GRAMMAR = (REPOSITORY / "grammar" / "KRL.g4").read_text(encoding="utf-8")
 CONSTRUCTS = sorted((REPOSITORY / "grammar" / "constructs").glob("*.toml"))
 CONSTRUCT = CONSTRUCTS[3].read_text(encoding="utf-8")
@@ -277,7 +284,7 @@ def run(folder: Path, foundry: Any) -> Given:
     )
     executor = foundry.chance.choice(["tree", "vm", "native"])
     limits = ("--executor", executor, "--max-time", "5")
-    return krl("run", *limits, *more, "--", program(folder, foundry))
+    return krl("run", *limits, *more, "--", runnable(folder, foundry))
 
 
 def _ran(folder: Path, *options: str | Path) -> Given:
@@ -324,7 +331,7 @@ ENTRIES: dict[str, tuple[int, Entry]] = {
     "run archive": (2, lambda d, f: krl("run", put(d, "a.zip", f.archive()) / "KRC/R1/x.src")),
     "run io": (4, lambda d, f: _ran(d, "--io", put(d, "s.txt", f.text(SCRIPT)))),
     "run profile": (3, lambda d, f: _ran(d, "--profile", put(d, "p.toml", f.text(PROFILE)))),
-    "compile": (6, lambda d, f: krl("compile", "-o", d / "out.krlb", "--", program(d, f))),
+    "compile": (6, lambda d, f: krl("compile", "-o", d / "out.krlb", "--", runnable(d, f))),
     "asm": (
         5,
         lambda d, f: krl("asm", put(d, "a.krla", f.text(f.chance.choice(f.compiled)[1]))),
