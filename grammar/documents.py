@@ -28,6 +28,9 @@ __all__ = [
 
 #: No document that a person writes is nearly as large; recordings may have some MB.
 MOST_BYTES: Final = 64 << 20
+# `tomllib` needs seconds for a dotted key of thousands of parts, and minutes for tens of thousands.
+_MOST_DOTS = 100
+_LONGEST_TOML = 1_000_000
 
 
 class DocumentError(ValueError):
@@ -43,7 +46,7 @@ def open_file(file: Path) -> io.FileIO:
     stream = io.FileIO(os.open(file, flags), "rb")
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         stream.close()
-        raise OSError(None, "not a regular file")
+        raise OSError(errno.EINVAL, "not a regular file", str(file))
     return stream
 
 
@@ -63,6 +66,13 @@ def read_text(file: Path, encoding: str = "utf-8") -> str:
 
 def toml_of(text: str) -> dict[str, Any]:
     """The tables of a TOML text; raises `DocumentError`."""
+    if len(text) > _LONGEST_TOML:
+        raise DocumentError(f"not TOML that is read: longer than {_LONGEST_TOML:,} characters")
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > _MOST_DOTS:
+            raise DocumentError(
+                f"not TOML that is read: more than {_MOST_DOTS} dots, line {number}"
+            )
     try:
         return tomllib.loads(text)
     except RecursionError:

@@ -18,6 +18,7 @@ from grammar import ast
 from grammar.source import Source
 from grammar.uses import calls_in
 from grammar.walk import walk
+from interp.controller.profile import Profile
 from interp.controller.script import Script
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
@@ -25,7 +26,16 @@ from interp.faults import Fault, LinkError
 from interp.program import CheckedProgram, Routine, load_all
 from interp.session import Setup, run_program
 
-__all__ = ["OPERATOR", "PATIENCE", "MainProgram", "Ran", "Result", "main_programs", "run_main"]
+__all__ = [
+    "OPERATOR",
+    "PATIENCE",
+    "MainProgram",
+    "Ran",
+    "Result",
+    "main_programs",
+    "run_main",
+    "survey_profile",
+]
 
 #: What the person at the panel does, as lines of a script.
 OPERATOR: Final = (
@@ -33,6 +43,8 @@ OPERATOR: Final = (
 )
 #: Folders of a backup that hold what the controller and its packages bring along.
 _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
+#: Requests of the submit program in a cycle: it goes round many times a second all the same.
+_SUBMIT_REQUESTS: Final = 20
 _CHOOSES: Final = "CELL"
 _MOVES: Final = (ast.Motion, ast.SplineBlock)
 
@@ -42,7 +54,9 @@ PATIENCE: Final = 20_000_000
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
 #: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
 #: ``refused`` where it could not begin.
-Result = Literal["end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused"]
+Result = Literal[
+    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused", "crash"
+]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,6 +173,11 @@ def _has_machine(program: CheckedProgram) -> bool:
     )
 
 
+def survey_profile() -> Profile:
+    """The default profile with a slower submit program: less of it, more of what moves."""
+    return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
+
+
 def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
     """Run a main program; ``script`` adds to what the person at the panel does.
 
@@ -179,8 +198,6 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
         furthest = float(((path.tips_measured - path.tips) ** 2).sum(axis=1).max() ** 0.5)
     place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
     result: Result
-    if outcome.ending == "crash":
-        raise RuntimeError(f"{place}: {outcome.error}")
     if outcome.ending == "time":
         result = "goes on" if outcome.time >= setup.until else "waits"
     elif outcome.ending == "fault" and not isinstance(outcome.error, Fault):

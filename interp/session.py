@@ -47,7 +47,8 @@ class Setup:
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
     assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
     ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand before it
-    counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
+    counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another
+    robot than ``robot`` names, of the machine and the cycle in µs.
     """
 
     executor: str = "tree"
@@ -99,6 +100,7 @@ def run_program(
     if isinstance(prepared, CheckedProgram):
         prepared = Prepared(prepared, setup.routine)
     program, profile = prepared.program, setup.profile
+    program.start(prepared.routine)  # what is wrong with it is said alike for all executors
     values = system_values(program)
     machine = setup.machine or machine_of_program(program, profile)
     start = setup.start or _home(values, machine)

@@ -18,7 +18,9 @@ from grammar.recognizer import Recognizer
 from recovery.aligned import common_phrases
 from recovery.blocks import Block, BlockFinder
 from recovery.layout import Layout
-from recovery.openings import UNLIKELY, Line, Opening, OpeningFinder, Ranked
+from recovery.likeness import Likeness
+from recovery.opening import UNLIKELY, Line, Opening, Ranked
+from recovery.openings import OpeningFinder
 from recovery.phrases import Phraser, Word, repeated
 
 __all__ = ["BREADTH_COSTS", "Candidate", "CandidateFinder", "Line"]
@@ -61,7 +63,8 @@ class CandidateFinder:
         self.layout = Layout(recognizer)
         self.phraser = Phraser(recognizer)
         self._blocks = BlockFinder(recognizer, self.layout, self.phraser)
-        self._openings = OpeningFinder(recognizer, self.layout, self.phraser)
+        self.likeness = Likeness(self.layout)
+        self._openings = OpeningFinder(self.layout, self.likeness, self.phraser)
 
     def find(self, line: Line) -> list[Candidate]:
         """Candidates for a line, the most restrictive first, each once."""
@@ -127,7 +130,7 @@ class CandidateFinder:
         if rule not in self.layout.of_lines:
             rank += _NO_LINES
         symbols = (*block.symbols, *self._closing(rule))
-        return rank + self.layout.unlike(rule, symbols), (
+        return rank + self.likeness.unlike(rule, symbols), (
             *self.layout.reserve(k for k in block.keywords if k not in known),
             AddAlternative(rule, " ".join(symbols)),
         )
@@ -213,9 +216,11 @@ class CandidateFinder:
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
     ) -> Iterator[Ranked]:
         text = " ".join(symbols)
-        if text not in self.layout.alternatives(rule) and not self.layout.is_foreign(rule, symbols):
-            rank += self.layout.unlike(rule, symbols)
-            if self.layout.repeats_sibling(rule, symbols):
+        if text not in self.layout.alternatives(rule) and not self.likeness.is_foreign(
+            rule, symbols
+        ):
+            rank += self.likeness.unlike(rule, symbols)
+            if self.likeness.repeats_sibling(rule, symbols):
                 rank += 2 * UNLIKELY
             yield rank, (*tokens, AddAlternative(rule, text))
 

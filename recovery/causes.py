@@ -213,8 +213,8 @@ class Search:
                     negatives,
                 )
             )
-        useful = [proposal for proposal in proposals if self._gain(proposal)]
-        return self._ranked(useful, heavy)[:_SHOWN]
+        useful = {proposal.edits: proposal for proposal in proposals if self._gain(proposal)}
+        return self._ranked(list(useful.values()), heavy)[:_SHOWN]
 
     def _tried(
         self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
@@ -288,7 +288,8 @@ class Search:
         for edits, breadth in self._for_both(one, other):
             both = self.proposal(edits, breadth)
             if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
-                return Cause(lines, (both, *first.proposals)[:_SHOWN])
+                others = (p for p in first.proposals if p.edits != both.edits)
+                return Cause(lines, (both, *others)[:_SHOWN])
         return None
 
     def _for_both(self, one: Proposal, other: Proposal) -> Iterator[tuple[tuple[Edit, ...], int]]:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from difflib import SequenceMatcher
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from grammar.edits import (
@@ -26,15 +25,11 @@ from grammar.edits import (
 from grammar.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.recognizer import Recognizer
 
-__all__ = ["Layout"]
+__all__ = ["HUB", "Layout"]
 
 #: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
-_HUB = 4
-_ALIKE = 0.6
+HUB = 4
 _NAMES = re.compile(r"\w+")
-_TOGETHER = 6
-_LIKE = 6
-_LOOSE = 2
 # Twice as many rules around a rule are so many steps in breadth.
 _WIDENS = 5
 
@@ -46,8 +41,6 @@ class Layout:
         self.recognizer = recognizer
         self.grammar = recognizer.grammar
         self._sequences: dict[str, dict[Address, Alternative]] = {}
-        self._classes: dict[str, list[list[str]]] = {}
-        self._leading_words: dict[str, frozenset[str]] = {}
 
     def sequence(self, rule: str, address: Address) -> Alternative:
         """The alternative at an address of a rule."""
@@ -142,7 +135,7 @@ class Layout:
 
     def is_hub(self, rule: str) -> bool:
         """Whether a rule gathers kinds of something."""
-        return len(self.grammar.by_name[rule].alternatives) >= _HUB
+        return len(self.grammar.by_name[rule].alternatives) >= HUB
 
     def has_choice(self, rule: str) -> bool:
         """Whether a rule has more than one alternative."""
@@ -164,18 +157,18 @@ class Layout:
     @cached_property
     def _ancestors(self) -> dict[str, int]:
         out = {}
-        for name in self._callers:
+        for name in self.callers:
             seen: set[str] = set()
             todo = [name]
             while todo:
-                for caller in self._callers[todo.pop()] - seen:
+                for caller in self.callers[todo.pop()] - seen:
                     seen.add(caller)
                     todo.append(caller)
             out[name] = round(_WIDENS * math.log2(1 + len(seen)))
         return out
 
     @cached_property
-    def _callers(self) -> dict[str, set[str]]:
+    def callers(self) -> dict[str, set[str]]:
         """For each rule those that call it."""
         network = self.recognizer.network
         callers: dict[str, set[str]] = {name: set() for name in network.entry}
@@ -287,93 +280,7 @@ class Layout:
             and lexer.is_keyword(lexer.kind_of[element.name])
         )
 
-    # --------------------------------------------------------------------------- alternatives
-
-    def unlike(self, rule: str, symbols: Sequence[str]) -> int:
-        """How little a rule asks for an alternative: below 0 where it has one just like it.
-
-        Keywords are alike; so are the same rules, signs and kinds of token. A rule of many
-        alternatives is made to take more, one of a single form is not.
-        """
-        known = self._classes.get(rule)
-        if known is None:
-            known = self._classes[rule] = [
-                [self._class(rule, e) for e in a.elements]
-                for a in self.grammar.by_name[rule].alternatives
-            ]
-        new = [self._class_of(symbol) for symbol in symbols]
-        matcher = SequenceMatcher(None, b=new, autojunk=False)
-        best = 0.0
-        for old in known:
-            matcher.set_seq1(old)
-            best = max(best, matcher.ratio())
-        if self.only_passes_on(rule):
-            return 0
-        if len(symbols) == 1 and self.has_choice(rule) and self.is_set_of_words(rule):
-            return -3 * _LIKE
-        if self.gathers(rule):
-            if not self._is_single(symbols):
-                return _LOOSE
-            kinds = {old[0] for old in known if old}
-            return -3 * _LIKE if new[0] in kinds else -2 * _LIKE
-        leads = self._leads(rule)
-        if len(leads) == 1 and "" not in leads:
-            return -_LIKE if symbols[0] in leads else 2 * _LIKE
-        if best >= _ALIKE and len(known) > 1:
-            return -round(_LIKE * best)
-        return 2 + max(0, _TOGETHER - len(known))
-
-    def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether the symbols begin with a rule that stands beside this one wherever it is called.
-
-        What may follow that rule is better said there.
-        """
-        return len(symbols) > 1 and bool(
-            self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
-        )
-
-    def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether a rule is one kind of statement, known by its words, and the symbols another."""
-        leads = self._leads(rule)
-        another_word = self.has_choice(rule) and self.is_set_of_words(rule) and len(symbols) == 1
-        known = "" in leads or symbols[0] in leads or len(leads) >= _HUB
-        return rule in self._gathered and not (known or another_word)
-
-    @cached_property
-    def _gathered(self) -> dict[str, frozenset[str]]:
-        """For each rule the rules that gather it."""
-        found: dict[str, set[str]] = defaultdict(set)
-        for rule in self.grammar.rules:
-            if not rule.is_lexer and self.gathers(rule.name):
-                for alternative in rule.alternatives:
-                    only = self._only(rule, alternative)
-                    if only is not None:
-                        found[only.name].add(rule.name)
-        return {name: frozenset(rules) for name, rules in found.items()}
-
-    def gathers(self, rule: str) -> bool:
-        """Whether most alternatives of a rule are one rule or token each."""
-        found = self.grammar.by_name[rule]
-        single = sum(self._only(found, a) is not None for a in found.alternatives)
-        return len(found.alternatives) > 2 and 2 * single >= len(found.alternatives)
-
-    def _only(self, rule: Rule, alternative: Alternative) -> Reference | None:
-        """The one rule or token that an alternative is, a line end behind it left aside."""
-        elements = alternative.elements
-        if len(elements) == 2 and rule.source_of(elements[1]) == self.line_end:
-            elements = elements[:1]
-        first = elements[0] if len(elements) == 1 else None
-        return first if isinstance(first, Reference) else None
-
-    def _is_single(self, symbols: Sequence[str]) -> bool:
-        """Whether the symbols are one rule or one reserved word, a line end left aside."""
-        if len(symbols) == 2 and symbols[1] == self.line_end:
-            symbols = symbols[:1]
-        if len(symbols) != 1:
-            return False
-        known = self.grammar.by_name.get(symbols[0])
-        is_rule = known is not None and not known.is_lexer
-        return is_rule or self._class_of(symbols[0]) != symbols[0]
+    # ------------------------------------------------------------------------------- words
 
     @cached_property
     def word_lists(self) -> tuple[str, ...]:
@@ -395,39 +302,6 @@ class Layout:
             edits.append(AddToken(word))
             edits += [AddAlternative(rule, word) for rule in self.word_lists]
         return tuple(edits)
-
-    def _leads(self, rule: str) -> frozenset[str]:
-        """The reserved words that alternatives begin with; an empty one for those without."""
-        found = self._leading_words.get(rule)
-        if found is None:
-            alternatives = self.grammar.by_name[rule].alternatives
-            words = (self._words(a.elements[0]) if a.elements else [""] for a in alternatives)
-            found = self._leading_words[rule] = frozenset(word for some in words for word in some)
-        return found
-
-    def _words(self, element: Element) -> list[str]:
-        """A reserved word, or those of a choice; an empty one for anything else."""
-        if isinstance(element, Reference) and self.is_keyword(element):
-            return [element.name]
-        if isinstance(element, Group) and self.is_keyword(element):
-            return [w for a in element.alternatives for w in self._words(a.elements[0])]
-        return [""]
-
-    def _class(self, rule: str, element: Element) -> str:
-        return self._class_of(self.grammar.by_name[rule].source_of(element))
-
-    def _class_of(self, symbol: str) -> str:
-        suffix = symbol[-1] if symbol[-1] in "?*+" else ""
-        name = symbol.rstrip("?*+")
-        if name in self.grammar.by_name and not name[0].isupper():
-            if len(self._callers[name]) > 1 or name in self.line_ends:
-                return symbol
-            return ("block" if name in self.blocks else "kind") + suffix
-        lexer = self.recognizer.lexer
-        kind = lexer.kind_of.get(name)
-        if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
-            return "keyword" + suffix
-        return symbol
 
     # ------------------------------------------------------------------------- left recursion
 

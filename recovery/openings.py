@@ -8,19 +8,19 @@ decided here: see `recovery.candidates`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
-from typing import Literal as OneOf
 
 from grammar.edits import AddAlternative, Address, Edit, Insert, MakeOptional
 from grammar.failures import Form
 from grammar.model import Alternative, Element, Group, Reference, Repeat
-from grammar.paths import Paths
-from grammar.recognizer import Configuration, Recognizer, State
+from grammar.recognizer import Configuration, State
 from recovery.layout import Layout
+from recovery.likeness import Likeness
+from recovery.line_openings import LineOpenings
+from recovery.opening import UNLIKELY, Line, Opening, Ranked, places_of, sites_of
 from recovery.phrases import Phraser, Word
 
-__all__ = ["Line", "Opening", "OpeningFinder", "Ranked"]
+__all__ = ["OpeningFinder"]
 
 _MOST_SKIPPED = 3
 # Elements of a sequence in which one word may well stand for another at its beginning.
@@ -28,62 +28,18 @@ _SHARED = 4
 _LONGEST_RUN = 24
 # What a rule may have in front of it and still be the same thing.
 _LONGEST_PREFIX = 3
-_LONGEST_LINE = 1_000
-# Frames on the stacks a line begins with: a block adds two or three. The deepest line that fails in
-# our own programs has 15; hundreds cost minutes, for they are read anew at each trial.
-_DEEPEST = 150
-#: What an opening loses in rank that is hardly ever meant.
-UNLIKELY = 8
-
-#: Edits that need no phrase, and how much they let in.
-Ranked = tuple[int, tuple[Edit, ...]]
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A failing line: its form, and the names in it that are meant as keywords, by place."""
-
-    form: Form
-    keywords: tuple[tuple[int, str], ...]
-
-    @property
-    def is_enormous(self) -> bool:
-        """Whether it is too long, or too deeply nested, to be worth a search: nobody wrote it."""
-        deepest = max(map(len, self.form.before), default=0)
-        return len(self.form.kinds) > _LONGEST_LINE or deepest > _DEEPEST
-
-    def words(self) -> list[Word]:
-        """The tokens of the line."""
-        meant = dict(self.keywords)
-        return [(kind, meant.get(i)) for i, kind in enumerate(self.form.kinds)]
-
-
-@dataclass(frozen=True, slots=True)
-class Opening:
-    """A place, and the words of a line that would have to be let in there.
-
-    ``insert`` before the element at the place, ``lines`` the same with a line end behind them and
-    any number of times; ``widen`` instead of that element; ``alternative`` of the rule, whatever
-    the place, and ``line`` that with a line end behind it. ``rank`` says how much an edit there
-    lets in besides what is written.
-    """
-
-    kind: OneOf["insert", "lines", "line", "widen", "alternative"]
-    rule: str
-    place: Address
-    words: tuple[Word, ...]
-    rank: int
 
 
 class OpeningFinder:
     """Finds openings under one grammar."""
 
-    def __init__(self, recognizer: Recognizer, layout: Layout, phraser: Phraser) -> None:
-        self.recognizer = recognizer
-        self.grammar = recognizer.grammar
+    def __init__(self, layout: Layout, likeness: Likeness, phraser: Phraser) -> None:
+        self.recognizer = layout.recognizer
+        self.grammar = layout.grammar
         self.layout = layout
+        self.likeness = likeness
         self.phraser = phraser
-        self._paths = Paths(recognizer.network)
+        self._lines = LineOpenings(layout, phraser)
 
     def find(self, line: Line) -> Iterator[Opening | Ranked]:
         """Openings of a line, and edits that need no phrase; some more than once."""
@@ -95,23 +51,23 @@ class OpeningFinder:
         starts |= {i for i, _ in line.keywords if i < form.index}
         for start in sorted(starts):
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in self._sites(state):
+            for site in sites_of(self.recognizer, state):
                 yield from self._at_site(state, site, words, start)
         if form.index:
             # the last token may have been read as what the line leaves out
             start = form.index - 1
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in self._sites(state):
-                for place in self._places(site):
+            for site in sites_of(self.recognizer, state):
+                for place in places_of(self.recognizer, site):
                     if place[-1] <= len(self._sequence_at(site, place).elements):
                         yield from self._omissions(state, site, place, words, start)
             yield from self._taken_for_something_else(before, form, words)
             yield from self._earlier(before, form, words)
         if form.index and 0 not in starts:
-            yield from self._as_new_line(before, words)
-        yield from self._as_lines(before, words)
+            yield from self._lines.as_new_line(before, words)
+        yield from self._lines.as_lines(before, words)
         if form.index == 0:
-            yield from self._after_line_end(form, words)
+            yield from self._lines.after_line_end(form, words)
 
     def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
         """The edits that reserve the would-be keywords among the words."""
@@ -123,14 +79,6 @@ class OpeningFinder:
         sites = self.recognizer.sites(self.recognizer.restore(line.form.before))
         rules = {network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]}
         return sorted(rules & (self.layout.of_lines | self.layout.blocks))
-
-    def _sites(self, state: State) -> list[Configuration]:
-        return sorted(self.recognizer.sites(state), key=lambda c: (c[0], c[1].depth))
-
-    def _places(self, site: Configuration) -> list[Address]:
-        network = self.recognizer.network
-        rule = network.rule[site[0]]
-        return sorted(network.automata[rule].places[site[0] - network.entry[rule]])
 
     def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
         return self.layout.sequence(self.recognizer.network.rule[site[0]], place[:-1])
@@ -147,7 +95,7 @@ class OpeningFinder:
         latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
         state = before
         for start in range(form.index):
-            for position, stack in self._sites(state):
+            for position, stack in sites_of(self.recognizer, state):
                 below = stack.positions()
                 for entry, back in network.calls[position]:
                     frames = (back, *below)
@@ -175,7 +123,7 @@ class OpeningFinder:
         recognizer, network = self.recognizer, self.recognizer.network
         for start in range(max(0, form.index - _MOST_SKIPPED), form.index):
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in self._sites(state):
+            for site in sites_of(self.recognizer, state):
                 rule = network.rule[site[0]]
                 if rule in self.layout.line_ends:
                     continue
@@ -187,7 +135,7 @@ class OpeningFinder:
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
                 ends = self._reading_on(recognizer.at(site, state), words, start, form.index)
-                for end, place in product(ends, self._places(site)):
+                for end, place in product(ends, places_of(self.recognizer, site)):
                     sequence = self.layout.sequence(rule, place[:-1])
                     if not is_first or words[end][0] in self.layout.first(sequence, place[-1]):
                         yield self._insertion(rule, place, words[start:end])
@@ -197,93 +145,6 @@ class OpeningFinder:
         kinds = [kind for kind, _ in words]
         ends = range(max(start + 1, failed), min(len(kinds), start + _MOST_SKIPPED + 1))
         return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
-
-    def _as_new_line(self, before: State, words: list[Word]) -> Iterator[Opening]:
-        """The whole line as an alternative of a rule that can stand there."""
-        last = len(words) - 1
-        end = [words[last][0]]
-        network = self.recognizer.network
-        for position, stack in self.recognizer.sites(before):
-            for entry, back in network.calls[position]:
-                rule = network.rule[entry]
-                if not self.layout.is_hub(rule):
-                    continue
-                beyond = self.recognizer.at((back, stack), before)
-                if self.recognizer.run(beyond, end)[1] is None:
-                    rank = self.layout.width(rule) + 8 + UNLIKELY
-                    yield Opening("alternative", rule, (1, 1), tuple(words[:last]), rank)
-
-    # --------------------------------------------------------------------------- whole lines
-
-    def _as_lines(self, before: State, words: list[Word]) -> Iterator[Opening | Ranked]:
-        """The line, any number of times, where no such line was thought of."""
-        recognizer, layout = self.recognizer, self.layout
-        kinds = tuple(kind for kind, _ in words)
-        if kinds[-1] != recognizer.line_kind:
-            return
-        known = any(keyword for _, keyword in words)
-        blank = len(kinds) == 1
-        readers = () if known or blank else self._readers(kinds)
-        if not blank:
-            yield from self._as_alternatives(before, words)
-        for site in self._sites(before):
-            rule = recognizer.network.rule[site[0]]
-            if rule in layout.line_ends:
-                continue
-            rank = layout.width(rule) + 8
-            for place in self._places(site):
-                if rule != self.grammar.start and layout.is_at_start(rule, place):
-                    continue  # what comes before a rule belongs to the rule that calls it
-                if blank:
-                    yield rank, (Insert(rule, place, "NEWLINE*"),)
-                    continue
-                for reader in readers:
-                    fits = reader in layout.loops or self.phraser.is_unused(reader)
-                    worth = rank + self.phraser.breadth([reader]) + (0 if fits else UNLIKELY)
-                    yield worth, (Insert(rule, place, f"{reader}*"),)
-                if not readers:
-                    phrase = tuple(words[:-1])
-                    yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY)
-
-    def _after_line_end(self, form: Form, words: list[Word]) -> Iterator[Ranked]:
-        """What would let the line be read had the line end before it been taken otherwise."""
-        recognizer, layout = self.recognizer, self.layout
-        way = min(map(self._paths.prefix, form.before), key=len)
-        if not way or way[-1] != recognizer.line_kind:
-            return
-        state, _ = recognizer.run(recognizer.start, way[:-1])
-        kinds = tuple(kind for kind, _ in words)
-        known = any(keyword for _, keyword in words)
-        readers = () if known else self._readers(kinds)
-        for site in self._sites(state):
-            rule = recognizer.network.rule[site[0]]
-            if rule in layout.line_ends:
-                continue
-            goes_on = recognizer.run(recognizer.at(site, state), kinds[:1])[1] is None
-            rank = layout.width(rule) + 8
-            for place in self._places(site):
-                if rule != self.grammar.start and layout.is_at_start(rule, place):
-                    continue
-                if goes_on:
-                    yield rank, (Insert(rule, place, "NEWLINE*"),)
-                for reader in readers:
-                    text = f"({layout.line_end} {reader})*"
-                    yield rank + self.phraser.breadth([reader]) + 2, (Insert(rule, place, text),)
-
-    def _as_alternatives(self, before: State, words: list[Word]) -> Iterator[Opening]:
-        """The line as an alternative of a rule whose alternatives are whole lines."""
-        network = self.recognizer.network
-        rules = {network.rule[e] for site in self._sites(before) for e, _ in network.calls[site[0]]}
-        for rule in sorted(rules):
-            end = self.layout.closing(rule)
-            if end is not None:
-                rank = self.layout.width(rule) + 8
-                yield Opening("line", rule, (1, 1), tuple(words[:-1]), rank)
-
-    def _readers(self, kinds: tuple[int, ...]) -> tuple[str, ...]:
-        """Rules of which the line is a whole sentence or the first line."""
-        whole = self.phraser.rules_for(kinds) | frozenset(self.phraser.opened_by(kinds))
-        return tuple(sorted(whole - self.layout.line_ends))
 
     # --------------------------------------------------------------------------- at one site
 
@@ -305,7 +166,7 @@ class OpeningFinder:
             # inserting what is missing, to go on where we are
             is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
             begins_loop = number == 1 and len(place) > 2
-            gathers = self.layout.gathers(rule)
+            gathers = self.likeness.gathers(rule)
             for end in ends:
                 comes_next = words[end][0] in self.layout.first(sequence, number)
                 # behind all that may be left out, but for what the line has behind it; before the
@@ -389,8 +250,8 @@ class OpeningFinder:
                 if len(self.grammar.by_name[hub].alternatives) > 1:
                     end = self.layout.closing(hub)
                     symbols = (block, end) if end else (block,)
-                    if not self.layout.is_foreign(hub, symbols):
-                        worth = self.layout.width(hub) + 8 + self.layout.unlike(hub, symbols)
+                    if not self.likeness.is_foreign(hub, symbols):
+                        worth = self.layout.width(hub) + 8 + self.likeness.unlike(hub, symbols)
                         yield worth, (AddAlternative(hub, " ".join(symbols)),)
             if rule != self.grammar.start and self.layout.is_at_start(rule, place):
                 continue

@@ -8,6 +8,7 @@
 `of_text`       folds, letter case, names, the order of declarations
 `of_control`    loops, branches, inlining, constants
 `of_cell`       frames, override, lines, batches, executors, robots
+`moving`        made up programs that move
 `survey`        all laws on cases and on generated programs
 =============== ====================================================================================
 

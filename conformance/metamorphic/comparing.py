@@ -116,7 +116,8 @@ def same_geometry(left: Observation, right: Observation) -> str:
     if left.path is None or right.path is None or not len(left.path.axes):
         return ""
     one, other = (_thinned(run.path.axes) for run in (left, right) if run.path is not None)
-    if np.abs(one[-1] - other[-1]).max() > _SAME or np.abs(one[0] - other[0]).max() > _SAME:
+    # the last set-point is that of the last cycle, which is not quite the end
+    if max(np.abs(one[place] - other[place]).max() for place in (0, -1)) > _BESIDE:
         return "the path does not begin and end where it did"
     for mine, theirs, which in ((one, other, "old"), (other, one, "new")):
         off = _beside(mine, theirs)
@@ -206,7 +207,9 @@ def _beside(points: Array, path: Array) -> Array:
         off = np.abs(starts[window] + share[:, None] * ways[window] - point).max(axis=1)
         nearest = int(np.argmin(off))
         found[number] = off[nearest]
-        first += max(0, nearest - 1)
+        # the first place that is near: where a path comes back over itself, there are several
+        near = np.flatnonzero(off <= max(off[nearest], _BESIDE / 5))
+        first += max(0, int(near[0]) - 1)
     return found
 
 

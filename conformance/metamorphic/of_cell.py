@@ -104,9 +104,7 @@ def _number(node: ast.Expression) -> float | None:
             return float(value)
         case ast.RealLiteral():
             return node.value
-        case ast.Unary(
-            operator="-", operand=ast.IntegerLiteral() | ast.RealLiteral() as operand
-        ):
+        case ast.Unary(operator="-", operand=ast.IntegerLiteral() | ast.RealLiteral() as operand):
             return -float(operand.value)
     return None
 
@@ -187,7 +185,7 @@ def _sets_base(program: Program) -> frozenset[int] | None:
         mentions += isinstance(one, ast.Variable) and one.name.key == "$BASE"
         match one:
             case ast.Assignment(target=ast.Variable() as target, value=ast.Variable() as value):
-                if (target.name.key, value.name.key) == ("$BASE", "$NULLFRAME"):
+                if target.name.key == "$BASE" and value.name.key == "$NULLFRAME":
                     found.append(id(one))
     return frozenset(found) if len(found) == mentions else None
 
@@ -238,7 +236,7 @@ def _middle(before: ast.Statement | None, one: ast.Statement) -> ast.Aggregate |
     if one.kind != "LIN" or one.criteria or before.criteria or before.kind.endswith("_REL"):
         return None
     start, end = _components(before.target), _components(one.target)
-    if start is None or end is None or not _POINT <= set(start) or not _POINT <= set(end):
+    if start is None or end is None or not set(start) >= _POINT or not set(end) >= _POINT:
         return None
     if any(start.get(key) != value for key, value in end.items() if key in "ABC"):
         return None
@@ -267,9 +265,7 @@ def _where_all_blends(compare: Compare) -> Compare:
     """Nothing is said where a blend has failed: in a batch all of them are known in time."""
 
     def found(left: Observation, right: Observation) -> str:
-        failed = any(
-            one.fields.get("number") in (1123, 1442) for one in left.of_kind("message")
-        )
+        failed = any(one.fields.get("number") in (1123, 1442) for one in left.of_kind("message"))
         return "" if failed else compare(left, right)
 
     return found

@@ -143,7 +143,9 @@ def _without_exit(node: ast.Statement, label: ast.Name) -> ast.Statement:
 def _if_to_switch(node: ast.Node) -> ast.Node:
     """``IF V == 3`` for a variable of the program that is compared with a number."""
     match node:
-        case ast.If(condition=ast.Binary(operator="==", left=ast.Variable() as selector, right=right)):
+        case ast.If(
+            condition=ast.Binary(operator="==", left=ast.Variable() as selector, right=right)
+        ):
             if not isinstance(right, ast.IntegerLiteral) or selector.name.text.startswith("$"):
                 return node
             branch = ast.CaseBranch(MADE, (right,), node.body)
@@ -228,9 +230,7 @@ def _inlined(program: Program, _random: Random) -> Program | None:
         return None  # which routine declared an interrupt matters
     changed, is_other = {}, False
     for path, module in modules.items():
-        bodies = {
-            one.name.key: one.body for one in routines(module)[1:] if _may_be_inlined(one)
-        }
+        bodies = {one.name.key: one.body for one in routines(module)[1:] if _may_be_inlined(one)}
         hidden = {key for one in routines(module) for key in _own_names(one)}
         bodies = {
             key: body
@@ -294,13 +294,9 @@ def _unfolded(program: Program, random: Random) -> Program | None:
     def operand(node: ast.Expression) -> ast.Expression:
         if isinstance(node, ast.IntegerLiteral) and 0 < node.value < _MOST_FOLDED:
             less = random.randint(0, node.value)
-            return parenthesised(
-                ast.Binary(MADE, "+", integer(node.value - less), integer(less))
-            )
+            return parenthesised(ast.Binary(MADE, "+", integer(node.value - less), integer(less)))
         if isinstance(node, ast.RealLiteral) and math.isfinite(node.value):
-            return parenthesised(
-                ast.Binary(MADE, "*", node, ast.RealLiteral(MADE, "1.0"))
-            )
+            return parenthesised(ast.Binary(MADE, "*", node, ast.RealLiteral(MADE, "1.0")))
         return node
 
     def change(node: ast.Node) -> ast.Node:

@@ -220,12 +220,12 @@ def _routines_moved(program: Program, random: Random) -> Program | None:
     """All routines but the first one, which gives the file its name, in another order."""
     changed, is_other = {}, False
     for path, module in (program.modules or {}).items():
-        first, *others = [*routines(module)] or [None]
-        if first is None or len(others) < 2:
+        others = list(routines(module)[1:])
+        if len(others) < 2:
             changed[path] = module
             continue
         moved = [*others[1:], others[0]] if random.random() < 0.5 else others[::-1]
-        changed[path], is_other = with_routines(module, [first, *moved]), True
+        changed[path], is_other = with_routines(module, (routines(module)[0], *moved)), True
     return program.written(changed) if is_other else None
 
 

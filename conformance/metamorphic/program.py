@@ -45,10 +45,10 @@ class Program:
     case: Case
 
     @staticmethod
-    def of_sample(sample: Sample, name: str) -> Program:
-        """A generated program."""
+    def of_sample(sample: Sample, name: str, seconds: float = _WATCHED) -> Program:
+        """A generated program, and the virtual seconds that it is watched."""
         sources = tuple(Source(text, path) for path, text in sample.files)
-        made = Case(name, Path(name), "", ("CTL-01",), "run", "kss8", sources, (), seconds=_WATCHED)
+        made = Case(name, Path(name), "", ("CTL-01",), "run", "kss8", sources, (), seconds=seconds)
         return Program(made)
 
     @property

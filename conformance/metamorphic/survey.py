@@ -14,6 +14,7 @@ from conformance.case import Case
 from conformance.differential import seeded
 from conformance.metamorphic import of_cell, of_control, of_text
 from conformance.metamorphic.law import Attempt, Law, run_law
+from conformance.metamorphic.moving import moving_program
 from conformance.metamorphic.program import Program
 from interp.executors import available
 
@@ -54,7 +55,7 @@ def try_laws(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> list[Standing]:
-    """Try each law on so many cases, and on as many generated programs, to which it applies.
+    """Try each law on so many cases, generated programs and such that move, where it applies.
 
     Which these are follows from the seed. ``on_done`` is told how many laws were tried.
     """
@@ -80,8 +81,8 @@ _Counted = tuple[int, int, int, tuple[Attempt, ...]]
 
 
 def _whole(counted: _Counted) -> Standing:
-    number, *rest = counted
-    return Standing(laws()[number], *rest)
+    number, applied, inapplicable, broken = counted
+    return Standing(laws()[number], applied, inapplicable, broken)
 
 
 def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
@@ -90,7 +91,8 @@ def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _
     Random(f"{seed}/{law.name}").shuffle(drawn)
     applied, inapplicable = 0, 0
     broken: list[Attempt] = []
-    for source in (_of_cases(drawn), _generated(programs * _LOOKED_AT, seed)):
+    most = programs * _LOOKED_AT
+    for source in (_of_cases(drawn), _generated(most, seed), _moving(most, seed)):
         wanted = programs
         for program in source:
             if not wanted:
@@ -108,6 +110,15 @@ def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _
 
 def _of_cases(cases: Sequence[Case]) -> Iterator[Program]:
     return (Program(case) for case in cases)
+
+
+def _moving(most: int, seed: int) -> Iterator[Program]:
+    return (_moving_program(seed, number) for number in range(most))
+
+
+@lru_cache(maxsize=256)
+def _moving_program(seed: int, number: int) -> Program:
+    return Program.of_sample(moving_program(seed, number), f"moving/{seed}/{number}", seconds=60.0)
 
 
 def _generated(most: int, seed: int) -> Iterator[Program]:

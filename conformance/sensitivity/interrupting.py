@@ -30,7 +30,9 @@ def faults() -> tuple[Fault, ...]:
         ("triggers", ("trigger", "spline"), _TRIGGERS),
     )
     return tuple(
-        Fault(group, words, suites, plant) for group, suites, rows in groups for words, plant in rows
+        Fault(group, words, suites, plant)
+        for group, suites, rows in groups
+        for words, plant in rows
     )
 
 

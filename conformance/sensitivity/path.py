@@ -12,7 +12,7 @@ from interp.controller.motions import MotionBuilder
 from interp.robot import agenda, blending, blocks, planned_arm, programmed, tracks
 from interp.robot.blending import Zone
 from interp.robot.course import Blend, Line
-from interp.robot.frames import IDENTITY
+from interp.robot.curve import JointLine
 from interp.robot.kinematics import Arm
 from interp.robot.placement import Placement
 from interp.robot.planned_arm import PlannedArm
@@ -29,12 +29,12 @@ def faults() -> tuple[Fault, ...]:
     """All of them; they are looked for on the kinematic robot, which records the path."""
     groups: tuple[tuple[str, tuple[str, ...], tuple[tuple[str, Plant], ...]], ...] = (
         ("blends", ("blending", "trigger", "spline", "advance"), _BLENDS),
-        ("motions", ("motion", "posture", "spline", "interrupt", "blending"), _MOTIONS),
+        ("motions", ("motion", "posture", "spline", "interrupt", "blending", "message"), _MOTIONS),
         ("frames and targets", ("motion", "posture", "data"), _TARGETS),
         ("splines", ("spline",), _SPLINES),
     )
     return tuple(
-        Fault(group, words, suites, plant, robot="kinematic")
+        Fault(group, words, suites, plant)
         for group, suites, rows in groups
         for words, plant in rows
     )
@@ -201,7 +201,7 @@ _MOTIONS: Final = (
     ),
     ("axes are 10 % faster than they can be", on(tracks, "axis_limits", _fast_axes)),
     ("a straight line bulges by 0.2 mm", on(Line, "at", _bulging)),
-    ("the first axis is out of step with the others", on(tracks.JointLine, "axes", _uneven)),
+    ("the first axis is out of step with the others", on(JointLine, "axes", _uneven)),
     (
         "CA counts nothing",
         on(tracks, "circle_through", lambda right: lambda a, b, c, _angle: right(a, b, c)),
@@ -225,7 +225,10 @@ _MOTIONS: Final = (
     ("no path is too fast for an axis", on(Tracks, "check_speed", lambda _: lambda *_given: None)),
     ("the override counts twice", _override(lambda percent: percent * percent / 100)),
     ("an override of 0 moves on", _override(lambda percent: percent or 100.0)),
-    ("motions without length are not told", on(Track, "notices", lambda _: property(lambda _s: ()))),
+    (
+        "motions without length are not told",
+        on(Track, "notices", lambda _: property(lambda _s: ())),
+    ),
     ("CIRC behind RESUME stays a circle", on(Tracks, "track", _never_aborted)),
     (
         "set-points come a cycle late",
@@ -266,7 +269,9 @@ def _components(alter: Any) -> Plant:
 def _zero_where_missing(right: Any) -> Any:
     def components(self: Programmed, target: Any, placement: Placement, *more: Any) -> Any:
         whole = dict.fromkeys("XYZABC", 0.0)
-        is_plain = not (more and more[0]) and not any(name[0] == "A" and name != "A" for name in target)
+        is_plain = not (more and more[0]) and not any(
+            name[0] == "A" and name != "A" for name in target
+        )
         return right(self, {**whole, **target} if is_plain else target, placement, *more)
 
     return components
@@ -289,14 +294,7 @@ _TARGETS: Final = (
     ),
     (
         "$TOOL counts nothing",
-        several(
-            on(Placement, "after", lambda _: property(lambda _self: IDENTITY)),
-            on(
-                Placement,
-                "point",
-                lambda _: lambda self, flange: self.before.inverse() @ flange,
-            ),
-        ),
+        on(Placement, "flange", lambda _: lambda self, point: self.before @ point),
     ),
     (
         "$ROBROOT counts nothing",
@@ -346,7 +344,6 @@ _SPLINES: Final = (
     ("CONST_VEL and TIME_BLOCK count nothing", constant(blocks, "with_ranges", lambda _m, p: p)),
     ("conditional stops brake at their place only", on(agenda._Clock, "last_chance", _late_chance)),
     ("places in blocks count from the end always", on(agenda._Clock, "_on_path", _on_end)),
-    ("axes in blocks may take any speed", on(Tracks, "check_speed", lambda _: lambda *_g: None)),
     ("blocks of SPL are 5 % too fast", _paths(_scaled(velocity=1.05))),
     (
         "values behind WITH count nothing",

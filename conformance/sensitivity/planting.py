@@ -33,7 +33,7 @@ class Fault:
     words: str
     suites: tuple[str, ...]
     plant: Plant
-    robot: str = "none"
+    robot: str = "kinematic"
     executor: str = "tree"
     op: str = ""
 

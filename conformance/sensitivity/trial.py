@@ -99,10 +99,11 @@ class _Trial:
             if len(self._found) == len(self._faults):
                 break
             self._try(case)
-        return [
-            Verdict(one.group, one.words, *self._found.get(number, (None, "")), self._runs[number])
-            for number, one in enumerate(self._faults)
-        ]
+        verdicts = []
+        for number, one in enumerate(self._faults):
+            name, verdict = self._found.get(number, (None, ""))
+            verdicts.append(Verdict(one.group, one.words, name, verdict, self._runs[number]))
+        return verdicts
 
     def _try(self, case: Case) -> None:
         usual: dict[tuple[str, str], _Usual | None] = {}
@@ -176,5 +177,3 @@ def _ending() -> Iterator[Callable[[], Any]]:
 
     yield on(Controller, "_collect", make)
     yield on(ControlCore, "_pass", make)
-
-

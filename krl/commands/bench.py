@@ -14,6 +14,7 @@ from krl.commands.bench_arm import arm
 from krl.commands.bench_conform import conform
 from krl.commands.bench_fuzz import fuzz
 from krl.commands.bench_mutation import mutation
+from krl.commands.bench_programs import programs
 from krl.commands.bench_real_code import real_code
 from krl.commands.bench_vm import bench_vm
 from krl.door import FINE, Unusable
@@ -29,6 +30,7 @@ app = typer.Typer(help="Measure the tools themselves.")
 app.command("mutation")(mutation)
 app.command("vm")(bench_vm)
 app.command("arm")(arm)
+app.command("programs")(programs)
 app.command("conform")(conform)
 app.command("fuzz")(fuzz)
 app.command("real-code")(real_code)

@@ -1,4 +1,4 @@
-"""`krl bench conform`: how many planted faults the conformance cases find, and how fast they run."""
+"""`krl bench conform`: how many planted faults the cases find, and how fast they run."""
 
 import os
 from collections.abc import Mapping

@@ -52,6 +52,14 @@ def conform(
     lint: Annotated[
         bool, typer.Option("--lint", help="See whether the cases are well formed; run nothing.")
     ] = False,
+    metamorphic: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            metavar="N",
+            help="Change so many cases and generated programs in ways that nobody may notice.",
+        ),
+    ] = None,
     list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
     jobs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
@@ -74,6 +82,10 @@ def conform(
     with _installed():
         if lint:
             return _lint(words)
+        if metamorphic is not None:
+            from krl.commands.conform_laws import check_laws
+
+            return check_laws(_cases(words), metamorphic, json_file, jobs)
         return _conform(words, executor, robot, json_file, junit, html, jobs, list_=list_)
 
 

@@ -2,13 +2,16 @@
 
 import logging
 import sys
-from typing import Annotated
+from typing import Annotated, BinaryIO, cast
 
 import typer
 
 from krl.door import FINE, Unusable
 
 __all__ = ["lsp"]
+
+_LARGEST = 64_000_000
+_LONGEST_LINE = 1_000
 
 
 def lsp(
@@ -30,5 +33,25 @@ def lsp(
             f"the server needs {error.name}, which is not installed: "
             "pip install 'krl-workbench[lsp]'"
         ) from error
-    server().start_io()
+    server().start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)))
     return FINE
+
+
+class _Bounded:
+    """Standard input as the server reads it, with limits: the length of a message is a claim."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+
+    def readline(self) -> bytes:
+        """A line of the head of a message."""
+        line = self._stream.readline(_LONGEST_LINE)
+        if len(line) == _LONGEST_LINE:
+            raise Unusable(f"a line of more than {_LONGEST_LINE:,} bytes before a message")
+        return line
+
+    def read(self, size: int) -> bytes:
+        """A message."""
+        if size > _LARGEST:
+            raise Unusable(f"a message of {size:,} bytes; the largest may have {_LARGEST:,}")
+        return self._stream.read(size)

@@ -127,15 +127,17 @@ def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, 
 
 
 def _read_points(path: Path) -> list[_Point]:
-    from grammar.documents import DocumentError, json_of, read_bytes
+    from grammar.documents import read_bytes
 
     try:
         text = read_bytes(path).decode("utf-8-sig")
-        given = json_of(text)
+        given = json.loads(text)
     except UnicodeDecodeError:
         raise Unusable(f"{path}: not a text in UTF-8") from None
-    except DocumentError as error:
-        raise Unusable(f"{path}: {error}") from None
+    except json.JSONDecodeError as error:
+        raise Unusable(f"{path}:{error.lineno}: not JSON: {error.msg}") from None
+    except (RecursionError, ValueError):  # nested too deeply, or a number of too many digits
+        raise Unusable(f"{path}: not JSON that can be read") from None
     if not isinstance(given, list):
         raise Unusable(f"{path}: not a list of points")
     return [_point(f"{path}: point {place}", point) for place, point in enumerate(given, start=1)]

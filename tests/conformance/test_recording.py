@@ -116,6 +116,8 @@ def test_changed_and_unknown_cases_are_told(tmp_path: Path, cases: list[Case]) -
     [
         ("{", "cannot be read"),
         ("[]", "format"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": 7}', "no list"),
         ('{"format": "krl-recording/1"}', "controller"),
         ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cycle": 0}', "cycle"),
         ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": [{}]}', "case 1"),

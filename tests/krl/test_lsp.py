@@ -1,6 +1,7 @@
 """`krl lsp`, driven by a real client over pipes."""
 
 import asyncio
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -165,3 +166,18 @@ def test_formatting_is_that_of_krl_format(heard: _Heard) -> None:
     """A file is set out as `krl format` sets it out."""
     assert layouter().layout(PROGRAM) == heard.set_out
     assert PROGRAM != heard.set_out
+
+
+@pytest.mark.parametrize(
+    ("said", "answer"),
+    [
+        (b"Content-Length: 1000000000000\r\n\r\n{}", "a message of 1,000,000,000,000 bytes"),
+        (b"x" * 5_000, "a line of more than 1,000 bytes"),
+    ],
+)
+def test_a_message_larger_than_any_is_refused(said: bytes, answer: str) -> None:
+    """The length is a claim: nothing of that size is laid out in memory."""
+    command = [sys.executable, "-m", "krl", "lsp"]
+    done = subprocess.run(command, input=said, capture_output=True, check=False, timeout=60)
+    assert 2 == done.returncode
+    assert done.stderr.decode().startswith(f"krl: {answer}")

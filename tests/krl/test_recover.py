@@ -101,7 +101,7 @@ WRONG = {
     "an unknown option": ["{here}/corpus", "--fast"],
     "no process": ["{here}/corpus", "--jobs", "0"],
     "no number of processes": ["{here}/corpus", "--jobs", "many"],
-    "a scheduler, which is not built": ["{here}/corpus", "--scheduler", "tcp://localhost:1"],
+    "an address without a scheduler": ["{here}/corpus", "--scheduler", "tcp://localhost:1"],
     "a file as output folder": ["{here}/corpus", "--out", "{here}/notes.txt"],
     "a folder as record": ["{here}/corpus", "--json", "{here}/empty"],
 }

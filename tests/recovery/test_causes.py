@@ -104,6 +104,17 @@ def test_lines_that_nothing_mends_stay_together_without_a_proposal() -> None:
     assert ((0, 1), ()) == (found.lines, found.proposals)
 
 
+def test_lines_nested_beyond_measure_get_no_search() -> None:
+    """A search would read hundreds of openers at each trial; such lines are still in a cause."""
+    deep = "LOOP\n" * 300
+    [line] = lines_of(f"{deep}DECL INT A,B")
+    assert line.is_enormous
+    [usual] = lines_of("LOOP\n" * 20 + "DECL INT A,B")
+    assert not usual.is_enormous
+    [found] = find_causes(RECOGNIZER, [line], [1], [[0]], nothing_wrong)
+    assert Cause((0,), ()) == found
+
+
 def test_proposals_mend_what_they_say(all_causes: list[Cause]) -> None:
     """The best proposal mends lines of its cause only, and each tells all lines it mends."""
     lines = lines_of(*(text for group in ALL for text in group))

@@ -1,12 +1,13 @@
 """Several files written together: all of them, or none."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from recovery.together import finish, write_together
+from recovery.together import JournalError, finish, write_together
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -99,3 +100,27 @@ def test_a_killed_process_has_changed_all_or_nothing(tmp_path: Path, exchanges: 
     after = {p.name: p.read_bytes() for p in tmp_path.iterdir() if not p.name.endswith(".part")}
     old, new = {"a": b"1", "b": b"1", "gone": b"1"}, {"a": b"2", "b": b"2"}
     assert (old if exchanges == 0 else new) == after
+
+
+@pytest.mark.parametrize("wanted", ["[", "[1]", '{"relative": null}', "[" * 50_000])
+def test_a_damaged_journal_is_not_followed(tmp_path: Path, wanted: str) -> None:
+    """It is named, and stays for somebody to look at."""
+    journal = tmp_path / "ledger" / ".journal"
+    journal.parent.mkdir()
+    journal.write_text(wanted, encoding="utf-8")
+    with pytest.raises(JournalError, match=r"\.journal"):
+        finish(journal)
+    assert journal.is_file()
+
+
+def test_a_journal_has_no_power_outside(tmp_path: Path) -> None:
+    """A ledger that somebody sends may not remove or exchange files elsewhere."""
+    journal = tmp_path / "grammar" / "ledger" / ".journal"
+    journal.parent.mkdir(parents=True)
+    outside = tmp_path / "outside"
+    outside.write_bytes(b"1")
+    for name in (outside, journal.parent / ".." / ".." / "outside"):
+        journal.write_text(json.dumps({str(name): None}), encoding="utf-8")
+        with pytest.raises(JournalError):
+            finish(journal)
+    assert b"1" == outside.read_bytes()

@@ -70,6 +70,14 @@ def test_damaged_lines_hide_no_night(tmp_path: Path) -> None:
     assert '{"date": "2", "con' in file.read_text(encoding="utf-8")
 
 
+def test_a_night_with_numbers_that_are_none_is_damaged(tmp_path: Path) -> None:
+    """No record may hold them, so nothing that is made of such a night could be written."""
+    file = tmp_path / "history.jsonl"
+    file.write_text('{"date": "1", "x": 1e999}\n{"date": "2", "x": NaN}\n', encoding="utf-8")
+    append_night(file, {"date": "3"})
+    assert [{"date": "3"}] == read_nights(file)
+
+
 def test_the_page_of_a_night_shows_what_changed(tmp_path: Path) -> None:
     """Changes stand on the page, foreign text made harmless."""
     night = _night("2031-05-06", _conform(_case("a/x", "pass")))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import io
 import json
 import random
@@ -60,6 +61,7 @@ PIECES = [
     "\x1a",
     ";FOLD " * 60,
 ]
+NUMBERS = ["0", "-1", "1", "7", "128", "32768", "2147483647", "1.0E38", "1E-40", "0.5", "1E9"]
 #: What stands in the place of a number or a name, where a program shall stay readable.
 TOKENS = [
     "0",
@@ -322,7 +324,7 @@ class Foundry:
             if not deeper and len(node) > 1 and self.chance.random() < 0.6:
                 continue  # what lies deeper is met less often by itself
             if not deeper or self.chance.random() < 0.05:
-                node[key] = self.chance.choice(VALUES)
+                node[key] = copy.deepcopy(self.chance.choice(VALUES))
                 return
             node = node[key]
 

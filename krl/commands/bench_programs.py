@@ -1,0 +1,176 @@
+"""`krl bench programs`: which main programs of controllers' backups run to their end."""
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from krl.commands.run import Executor, Robot
+from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from grammar.source import Source
+    from interp.main_programs import MainProgram
+
+__all__ = ["programs"]
+
+_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
+_RESULTS = {
+    "end": "to its end",
+    "halt": "to a HALT",
+    "waits": "waits for an input",
+    "goes on": "never ends",
+    "fault": "a fault",
+    "unlinked": "needs what no file has",
+    "refused": "cannot begin",
+    "budget": "out of statements",
+    "crash": "a defect of ours",
+}
+
+
+def programs(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Files, folders, .zip archives; default: the programs in corpus/.",
+        ),
+    ] = None,
+    executor: Annotated[
+        Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
+    ] = None,
+    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE,
+    scripts: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Scripts: DIR/ARCHIVE.io for all programs of an archive, DIR/NAME.io for one.",
+        ),
+    ] = None,
+    every: Annotated[
+        bool,
+        typer.Option("--every", help="Programs without machine data of their own too."),
+    ] = False,
+    max_time: Annotated[
+        float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
+    ] = 600.0,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    ] = None,
+) -> int:
+    """Run the main programs of backups with their own machine, tools, bases and points.
+
+    Their submit program runs beside them; somebody goes on after a HALT and acknowledges messages.
+    A program waits when its arm has stood for 20 s. Exit status 1 after a defect of ours.
+    """
+    from interp.controller.script import ScriptError
+    from interp.executors import available
+    from interp.main_programs import main_programs, run_main, survey_profile
+    from interp.session import Setup
+
+    origins = _sources(paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()])
+    setup = Setup(
+        executor=executor.value if executor is not None else available()[-1],
+        robot=robot.value,
+        profile=survey_profile(),
+        until=round(max_time * 1e6),
+    )
+    rows: list[dict[str, Any]] = []
+    unread: list[dict[str, str]] = []
+    with progress_bar("running programs") as bar:
+        for origin, sources in origins.items():
+            mains, left = main_programs(sources)
+            unread += [{"path": path, "reason": reason} for path, reason in left]
+            wanted = [main for main in mains if every or main.has_machine]
+            bar.expect(len(wanted))
+            for main in wanted:
+                try:
+                    ran = run_main(main, setup, _script(scripts, origin, main))
+                except ScriptError as error:
+                    raise Unusable(f"--scripts: {error}") from error
+                rows.append({"origin": origin, "path": main.path, **asdict(ran)})
+                bar()
+    record = {
+        "bench": "programs",
+        "executor": setup.executor,
+        "robot": setup.robot,
+        "results": dict(Counter(row["result"] for row in rows)),
+        "programs": rows,
+        "unread": unread,
+    }
+    if json_file is not None:
+        json_file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+    _print(record)
+    return FINDINGS if "crash" in record["results"] else FINE
+
+
+def _sources(roots: Sequence[Path]) -> "dict[str, list[Source]]":
+    """The files by the archive or repository that they come from."""
+    from grammar.source import Source
+    from recovery.decode import decode
+    from recovery.ingest import Found, IngestError, Skipped, discover, read
+
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    found: dict[str, list[Source]] = {}
+    try:
+        for one in discover(roots):
+            data = read(one) if isinstance(one, Found) else one
+            text = data.reason if isinstance(data, Skipped) else decode(data)
+            if not isinstance(text, str):
+                found.setdefault(one.origin, []).append(Source(text.text, one.path))
+    except IngestError as error:
+        raise Unusable(str(error)) from error
+    return found
+
+
+def _script(folder: Path | None, origin: str, main: "MainProgram") -> str:
+    """What the inputs of a program do, from the files for its archive and for itself."""
+    if folder is None:
+        return ""
+    if not folder.is_dir():
+        raise Unusable(f"--scripts: {folder}: no such folder")
+    names = (Path(origin).name, Path(main.path).stem)
+    files = [folder / f"{name}.io" for name in names]
+    return "\n".join(file.read_text(encoding="utf-8") for file in files if file.is_file())
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    rows = record["programs"]
+    console.print(
+        f"{len(rows):,} main programs on the robot {record['robot']}, {record['executor']}; "
+        f"{len(record['unread']):,} files that cannot be read",
+        soft_wrap=True,
+    )
+    for origin in dict.fromkeys(row["origin"] for row in rows):
+        console.print(one_line(origin), soft_wrap=True, markup=False)
+        table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+        table.add_column("program")
+        table.add_column("ran")
+        table.add_column("virtual s", justify="right")
+        table.add_column("motions", justify="right")
+        table.add_column("where and why", overflow="fold")
+        for row in (row for row in rows if row["origin"] == origin):
+            where = "" if row["result"] == "end" else f"{row['at'].rpartition('/')[2]} "
+            table.add_row(
+                one_line(row["path"].rpartition("/")[2]),
+                _RESULTS[row["result"]],
+                f"{row['seconds']:,.1f}",
+                f"{row['motions']:,}",
+                one_line(where + row["reason"]),
+            )
+        console.print(table)
+    counts = record["results"]
+    told = [f"{words}: {counts[name]:,}" for name, words in _RESULTS.items() if name in counts]
+    console.print("; ".join(told), soft_wrap=True)

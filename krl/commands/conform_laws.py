@@ -1,0 +1,40 @@
+"""`krl conform --metamorphic N`: programs changed in ways that nobody may notice."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from krl.door import FINDINGS, FINE, one_line
+from krl.progress import progress_bar
+
+if TYPE_CHECKING:
+    from conformance.case import Case
+
+__all__ = ["check_laws"]
+
+_SHOWN = 5
+
+
+def check_laws(
+    cases: "Sequence[Case]", programs: int, json_file: Path | None, jobs: int | None
+) -> int:
+    """Try every law, tell how each stands, and write the record; 1 where one was broken."""
+    from conformance.metamorphic import laws, record_of, try_laws
+    from krl.writing import write_json
+
+    seed = 1
+    with progress_bar("trying laws", len(laws())) as bar:
+        found = try_laws(cases, programs, seed, jobs or os.cpu_count() or 1, bar)
+    if json_file is not None:
+        write_json({"metamorphic": record_of(found, programs, seed)}, json_file)
+    for one in found:
+        broken = f", {len(one.broken)} broken" if one.broken else ""
+        typer.echo(f"{one.law.name:26} {one.held:5,} of {one.applied:5,} held{broken}")
+        for attempt in one.broken[:_SHOWN]:
+            typer.echo(one_line(f"  {attempt.program}: {attempt.difference}"))
+    applied, held = (sum(getattr(one, name) for one in found) for name in ("applied", "held"))
+    typer.echo(f"{len(found)} laws on {applied:,} programs: {held:,} held")
+    return FINDINGS if held < applied else FINE

@@ -1,0 +1,104 @@
+"""Planted faults: they change what they say, are removed again, and cases notice them."""
+
+import pytest
+
+from conformance.case import find_cases
+from conformance.sensitivity import bench, interrupting, path, timing
+from conformance.sensitivity.planting import Fault, constant, entry, on, several
+from conformance.sensitivity.trial import all_faults, try_faults
+from interp.controller.clock import Clock
+from interp.robot import blending
+
+
+def _fault(words: str) -> Fault:
+    return next(one for one in all_faults() if one.words == words)
+
+
+def _cases(*names: str) -> list:  # type: ignore[type-arg]
+    return [case for case in find_cases() if case.name in names]
+
+
+def test_a_fault_is_there_only_while_it_is_planted() -> None:
+    """The clock rounds down within the context and up outside of it, even after an error."""
+    clock, fault = Clock(12_000), _fault("times to wait are rounded down to cycles")
+    seen = []
+
+    def fails() -> None:
+        with fault.plant():
+            seen.append(clock.tick_after(23_000))
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        fails()
+    assert [12_000] == seen
+    assert 24_000 == clock.tick_after(23_000)
+
+
+def test_plants_are_put_back_in_any_combination() -> None:
+    """Attributes, constants and entries of tables come back as they were."""
+    table = {"a": 1}
+    half = blending._HALF
+    plant = several(entry(table, "a", lambda one: one + 1), constant(blending, "_HALF", 0.9))
+    with plant(), on(Clock, "cycle", lambda _one: 3)():
+        assert (2, 0.9) == (table["a"], blending._HALF)
+    assert (1, half) == (table["a"], blending._HALF)
+
+
+def test_there_are_enough_faults_and_each_has_its_name() -> None:
+    """Besides those of the machine there are sixty and more; no two are called the same."""
+    own = [*timing.faults(), *interrupting.faults(), *path.faults()]
+    assert len(own) >= 60
+    names = [(one.group, one.words) for one in all_faults()]
+    assert len(names) == len(set(names))
+    suites = {case.suite for case in find_cases()}
+    assert set() == {suite for one in all_faults() for suite in one.suites} - suites
+
+
+@pytest.mark.parametrize(
+    ("words", "case"),
+    [
+        ("outputs are switched a cycle late", "trigger/start_distance_0"),
+        ("DELAY has the other sign", "trigger/delay_later"),
+        ("an event is a level, not an edge", "interrupt/called_once"),
+        ("zones are 10 % too large", "blending/cdis_distance"),
+        ("CONTINUE does nothing", "advance/continue_spares"),
+    ],
+)
+def test_a_case_finds_a_fault(words: str, case: str) -> None:
+    """A case that passes as things are does not with the fault."""
+    (found,) = try_faults([_fault(words)], _cases(case))
+    assert case == found.case
+    assert found.verdict in ("fail", "unconfirmed")
+
+
+def test_a_fault_of_the_machine_is_found_by_comparison() -> None:
+    """A wrong instruction is found by a case that has it, whatever that case expects."""
+    fault = next(one for one in all_faults() if one.op == "MUL_INT")
+    (found,) = try_faults([fault], _cases("control/recursion"))
+    assert ("control/recursion", "fail") == (found.case, found.verdict)
+
+
+def test_a_fault_that_changes_nothing_survives() -> None:
+    """A fault that nobody can see is told as not found, with how often it was looked for."""
+    nothing = Fault("none", "nothing", ("control",), constant(blending, "_HALF", blending._HALF))
+    (found,) = try_faults([nothing], _cases("control/recursion", "control/if_else"))
+    assert (None, 2) == (found.case, found.runs)
+    record = bench.record_of([found])
+    assert [{"group": "none", "fault": "nothing", "runs": 2}] == record["survivors"]
+    assert 0.0 == record["share"]
+
+
+def test_a_run_without_end_is_found() -> None:
+    """A fault that lets a program go round for ever is stopped, and counts as found."""
+    from interp.controller.controller import Controller
+
+    def make(_right: object) -> object:
+        def settle(self: Controller) -> None:
+            while True:
+                self._collect()
+
+        return settle
+
+    endless = Fault("none", "endless", (), on(Controller, "_settle", make))
+    (found,) = try_faults([endless], _cases("control/recursion"))
+    assert "control/recursion" == found.case

@@ -1,0 +1,58 @@
+"""`krl bench conform` and `krl conform --metamorphic`: what they print, write, and refuse."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from conformance import case as cases
+from krl.cli import main
+
+pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("ruckig")
+pytest.importorskip("scipy")
+
+
+def test_faults_of_a_group_are_planted_and_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each fault of the group is in the record, found or not; cases are timed."""
+    names = ("io/wait_seconds", "io/wait_to_the_cycle", "control/if_else")
+    known = [one for one in cases.find_cases() if one.name in names]
+    monkeypatch.setattr(cases, "find_cases", lambda: known)
+    target = tmp_path / "bench.json"
+    words = ["bench", "conform", "--group", "the clock", "--jobs", "1", "--json", str(target)]
+    assert 0 == main(words)
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert ["the clock"] == [one["group"] for one in record["groups"]]
+    assert (
+        record["mutants"] == len(record["verdicts"]) == record["killed"] + len(record["survivors"])
+    )
+    assert record["killed"] >= 2
+    assert record["cases_per_s"] > 0
+    assert "Not found: the clock: the submit program" in capsys.readouterr().out
+
+
+def test_an_unknown_group_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """The line says which groups there are."""
+    assert 2 == main(["bench", "conform", "--group", "nothing"])
+    assert "the clock" in capsys.readouterr().err
+
+
+def test_laws_are_told_one_by_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each law has its line and its place in the record; a broken one is status 1."""
+    from conformance.metamorphic import law, survey
+
+    right = survey.laws()[0]
+    wrong = law.Law("wrong", "", (), lambda _left, _right: "they differ", right.change)
+    for made, status in (((right,), 0), ((right, wrong), 1)):
+        monkeypatch.setattr(survey, "laws", lambda made=made: made)
+        monkeypatch.setattr("conformance.metamorphic.laws", survey.laws)
+        target = tmp_path / f"{status}.json"
+        words = ["conform", "control/if_else", "--metamorphic", "1", "--jobs", "1"]
+        assert status == main([*words, "--json", str(target)])
+        record = json.loads(target.read_text(encoding="utf-8"))["metamorphic"]
+        assert [one.name for one in made] == [row["name"] for row in record["laws"]]
+    assert "they differ" in capsys.readouterr().out

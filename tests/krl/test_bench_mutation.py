@@ -1,0 +1,61 @@
+"""`krl bench mutation`: what it prints and writes, and what it refuses."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+
+GRAMMAR = """grammar S;
+options { caseInsensitive = true; }
+program : DEF NAME '(' ')' eol statement* END eol* EOF ;
+eol : NEWLINE+ ;
+statement : HALT eol | WAIT NAME eol ;
+DEF : 'DEF' ;
+END : 'END' ;
+HALT : 'HALT' ;
+WAIT : 'WAIT' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+NAME : [A-Z]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' ' -> skip ;
+"""
+
+
+def test_figures_beside_the_aims(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every figure has its row, and the record says what they rest on."""
+    grammar, programs = tmp_path / "s.g4", tmp_path / "programs"
+    grammar.write_text(GRAMMAR, encoding="utf-8", newline="\n")
+    programs.mkdir()
+    for number, line in enumerate(("HALT", "WAIT B", "HALT", "WAIT C")):
+        text = f"DEF A()\n{line}\nEND\n"
+        (programs / f"{number}.src").write_text(text, encoding="utf-8", newline="\n")
+    negatives = tmp_path / "negatives"
+    negatives.mkdir()
+    target = tmp_path / "out" / "mutation.json"
+    options = ["--grammar", str(grammar), "--negatives", str(negatives), "--singles", "3"]
+    options += ["--multiple", "0", "--jobs", "1", "--repeated", "1", "--runs", "2"]
+    assert 0 == main(["bench", "mutation", str(programs), *options, "--json", str(target)])
+    said, complained = capsys.readouterr()
+    assert "" == complained
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert (3, 1.0, 1.0, 1, 2) == (
+        record["mutants"],
+        record["detected"],
+        record["same_ranking"],
+        record["repeated"],
+        record["runs"],
+    )
+    assert ("s.g4", 2) == (record["grammar"], record["held_out"])
+    for row in ("rule_top1", "repair_top5", "clusters_per_cause", "false_accept", "same_ranking"):
+        assert row in said
+
+
+def test_what_is_no_grammar_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A grammar that is not there is one line on stderr and status 2."""
+    assert 2 == main(["bench", "mutation", "--grammar", str(tmp_path / "none.g4")])
+    said, complained = capsys.readouterr()
+    assert "" == said
+    assert 1 == complained.count("\n")

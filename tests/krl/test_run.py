@@ -1,0 +1,320 @@
+"""`krl run` from the outside: what it prints and writes, exit status, one line for bad input."""
+
+import json
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import pytest
+
+from krl.cli import main
+
+INI = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 90,A6 0}\n"
+"""The default arm with its hand down: the flange at X 445, Y 0, Z 810."""
+
+Said = tuple[int, str, str]
+Run = Callable[..., Said]
+
+
+@pytest.fixture
+def run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run `krl run` on a program of some lines, or on what the options name."""
+
+    def run(body: str | None, *options: str, script: str | None = None, data: str = "") -> Said:
+        arguments = ["run"]
+        if body is not None:
+            file = tmp_path / "main.src"
+            file.write_text(f"DEF main ( )\n{body}END\n", encoding="utf-8")
+            arguments.append(str(file))
+        if data:
+            (tmp_path / "main.dat").write_text(f"DEFDAT main\n{data}\nENDDAT\n", encoding="utf-8")
+        if script is not None:
+            (tmp_path / "script.io").write_text(script, encoding="utf-8")
+            arguments += ["--io", str(tmp_path / "script.io")]
+        status = main([*arguments, *options])
+        said = capsys.readouterr()
+        return status, said.out, said.err
+
+    return run
+
+
+def events(file: Path) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+
+
+# -- how a run ends --------------------------------------------------------------------------------
+
+
+def test_a_program_that_ends(run: Run) -> None:
+    """A program that runs to its end has status 0 and one line, with the time that it took."""
+    assert (0, "main.src: end after 0.204 s at main.src:2\n", "") == run("WAIT SEC 0.2\n")
+
+
+def test_a_program_that_halts(run: Run) -> None:
+    """HALT is an end like any other: status 0."""
+    assert (0, "main.src: halt after 0 s at main.src:2\n", "") == run("HALT\n")
+
+
+def test_a_fault(run: Run) -> None:
+    """A fault in the program has status 1, its place, its words and the number of its message."""
+    status, out, err = run("INT I[3]\nI[4]=1\n")
+    text = "an array index lies outside the array (message 1444)"
+    assert (1, f"main.src: fault after 0 s at main.src:3: {text}\n", "") == (status, out, err)
+
+
+def test_time_that_is_over(run: Run) -> None:
+    """Where the time is over before the program is, the status is 1 and the line tells where."""
+    status, out, _ = run("WAIT FOR $IN[1]\n", "--max-time", "0.5")
+    assert (1, "main.src: time after 0.5 s at main.src:2\n") == (status, out)
+
+
+def test_what_no_file_has(run: Run) -> None:
+    """A call of what no file has fails when it is reached, and with --strict before anything is."""
+    status, out, _ = run("NOWHERE ( )\n")
+    assert 1 == status
+    assert "main.src: fault after 0 s at main.src:2: NOWHERE is declared nowhere\n" == out
+
+
+def test_strict(run: Run) -> None:
+    """With --strict an error of the checker is told in one line with status 2, and nothing runs."""
+    status, out, err = run("DECL INT I\nI=TRUE\n", "--strict")
+    assert (2, "") == (status, out)
+    assert err.startswith("krl: main.src:3: ")
+    assert 1 == err.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("body", "number", "said"),
+    [
+        ("PTP {X 2000,Y 0,Z 500,A 0,B 180,C 0,S 2,T 2}\n", None, "reach"),
+        ("PTP {A1 171}\n", 1447, "software limit"),
+        ("LIN {X 445,Y 0,Z 2000}\n", 1366, "the path cannot be followed"),
+        ("CIRC {X 460,Y 0,Z 780},{X 475,Y 0,Z 750}\n", None, "circle"),
+        ("$VEL.CP=0.0\nLIN {Z 700}\n", 1422, "$VEL.CP"),
+    ],
+    ids=["unreachable", "software-limit", "line-out-of-reach", "degenerate-circle", "no-speed"],
+)
+def test_motions_that_cannot_be(run: Run, body: str, number: int | None, said: str) -> None:
+    """What the arm cannot do stops the program at its line with the message of the controller."""
+    lines = body.count("\n") + 4
+    status, out, err = run(INI + body)
+    assert (1, "") == (status, err)
+    assert f"at main.src:{lines}: " in out
+    assert said in out
+    assert "(message " in out if number is None else f"(message {number})" in out
+    assert 1 == out.count("\n")
+
+
+@pytest.mark.parametrize(("missing", "number"), [("$TOOL", 1419), ("$BASE", 1516)])
+def test_missing_frames(run: Run, tmp_path: Path, missing: str, number: int) -> None:
+    """Where the profile has none, a Cartesian target needs a tool and a base first [MOT-15]."""
+    text = resources.files("interp.controller").joinpath("profiles", "kss8.toml").read_text("utf-8")
+    lines = [
+        f'"{missing}" = false' if line.startswith(f'"{missing}"') else line
+        for line in text.splitlines()
+    ]
+    profile = tmp_path / "bare.toml"
+    profile.write_text("\n".join(lines), encoding="utf-8")
+    body = "".join(f"{line}\n" for line in INI.splitlines() if not line.startswith(missing))
+    status, out, _ = run(body + "LIN {Z 700}\n", "--profile", str(profile))
+    assert 1 == status
+    assert f"(message {number})" in out
+
+
+def test_a_motion_of_length_zero(run: Run, tmp_path: Path) -> None:
+    """A motion to where the arm is stops nothing: it is told, and the program goes on."""
+    trace = tmp_path / "trace.jsonl"
+    status, _, _ = run(f"{INI}PTP {{A1 0}}\n", "--trace", str(trace))
+    assert 0 == status
+    assert [3171] == [one["number"] for one in events(trace) if one["kind"] == "message"][-1:]
+
+
+# -- what it takes ---------------------------------------------------------------------------------
+
+
+def test_routine(run: Run) -> None:
+    """--routine names what the program begins with."""
+    status, out, _ = run("HALT\nEND\nDEF other ( )\nWAIT SEC 0.012\n", "--routine", "other")
+    assert (0, "main.src: end after 0.012 s at main.src:5\n") == (status, out)
+
+
+def test_script(run: Run) -> None:
+    """--io plays a script: the input comes at its time, and so the program ends."""
+    status, out, _ = run("WAIT FOR $IN[7]\n", script="t=0.3 IN[7]=TRUE\n")
+    assert (0, "main.src: end after 0.3 s at main.src:2\n") == (status, out)
+
+
+def test_submit(run: Run, tmp_path: Path) -> None:
+    """--submit runs a second program beside the first, on the same variables."""
+    (tmp_path / "beside.sub").write_text("DEF beside ( )\n$FLAG[3]=TRUE\nEND\n", encoding="utf-8")
+    status, out, _ = run("WAIT FOR $FLAG[3]\n", "--submit", "beside", "--max-time", "1")
+    assert (0, "end") == (status, out.split()[1])
+    assert 1 == run("WAIT FOR $FLAG[3]\n", "--max-time", "1")[0]
+
+
+def test_batches_cost_time(run: Run) -> None:
+    """--motion batch makes the arm wait where look-ahead does not [the paper's strategy]."""
+    body = f"{INI}$ADVANCE=3\nPTP {{A1 20}}\nWAIT SEC 0\nPTP {{A1 40}}\n"
+    ahead, batch = (run(body, "--motion", one) for one in ("lookahead", "batch"))
+    assert (0, 0) == (ahead[0], batch[0])
+    assert float(ahead[1].split()[3]) <= float(batch[1].split()[3])
+
+
+@pytest.mark.parametrize("folder", ["KRC/R1/Program", "R1", "steu/Mada"])
+def test_project_of_a_backup(run: Run, tmp_path: Path, folder: str) -> None:
+    """A file below R1 or STEU belongs to all files there, wherever it was started from."""
+    place = tmp_path.joinpath(*folder.split("/"))
+    place.mkdir(parents=True)
+    root = tmp_path / ("KRC" if folder.startswith("KRC") else "")
+    (root / "R1" / "System").mkdir(parents=True)
+    (root / "R1" / "System" / "help.src").write_text("DEF help ( )\nHALT\nEND\n", "utf-8")
+    (place / "begin.src").write_text("DEF begin ( )\nhelp ( )\nEND\n", "utf-8")
+    status, out, _ = run(None, str(place / "begin.src"))
+    shown = (place / "begin.src").relative_to(root).as_posix()
+    assert (0, f"{shown}: halt after 0 s at R1/System/help.src:2\n") == (status, out)
+
+
+def test_project_of_a_loose_file(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file beside R1, not in it, belongs to the files of its own folder only."""
+    (tmp_path / "R1").mkdir()
+    for name, folder in (("near", tmp_path), ("far", tmp_path / "R1")):
+        (folder / f"{name}.src").write_text(f"DEF {name} ( )\nHALT\nEND\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.src").write_text("DEF a ( )\nnear ( )\nEND\n", encoding="utf-8")
+    assert (0, "a.src: halt after 0 s at near.src:2\n", "") == run(None, "a.src")
+    (tmp_path / "a.src").write_text("DEF a ( )\nfar ( )\nEND\n", encoding="utf-8")
+    assert 1 == run(None, "a.src")[0]
+
+
+def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
+    """A path may lead into an archive, whose files are the project."""
+    with ZipFile(tmp_path / "backup.zip", "w") as archive:
+        archive.writestr("KRC/R1/Program/go.src", "DEF go ( )\nhelp ( )\nEND\n")
+        archive.writestr("KRC/R1/System/help.src", "DEF help ( )\nHALT\nEND\n")
+    status, out, _ = run(None, str(tmp_path / "backup.zip" / "KRC/R1/Program/go.src"))
+    assert 0 == status
+    assert "halt after 0 s" in out
+
+
+# -- what it writes --------------------------------------------------------------------------------
+
+
+def test_trace(run: Run, tmp_path: Path) -> None:
+    """--trace writes what happened, --trace-level full each line and assignment too."""
+    world, full = tmp_path / "made" / "world.jsonl", tmp_path / "full.jsonl"
+    run("$OUT[3]=TRUE\n", "--trace", str(world))
+    run("$OUT[3]=TRUE\n", "--trace", str(full), "--trace-level", "full")
+    out = {"t": 0, "task": "robot", "kind": "out", "at": "main.src:2"}
+    assert {**out, "signal": "$OUT", "number": 3, "value": True} == events(world)[0]
+    assert ["out", "return", "end"] == [one["kind"] for one in events(world)]
+    assert "line" in [one["kind"] for one in events(full)]
+
+
+def test_trace_is_the_same_everywhere(run: Run, tmp_path: Path) -> None:
+    """Executors and robots do not show in the trace."""
+    texts = set()
+    for executor, robot in (("tree", "none"), ("vm", "kinematic"), ("tree", "kinematic")):
+        trace = tmp_path / f"{executor}-{robot}.jsonl"
+        body = f"{INI}LIN {{Z 780}} C_DIS\nLIN {{X 470}}\n"
+        run(body, "--executor", executor, "--robot", robot, "--trace", str(trace))
+        texts.add(trace.read_bytes())
+    assert 1 == len(texts)
+
+
+def test_path(run: Run, tmp_path: Path) -> None:
+    """--path writes a row for each interpolation cycle, up to the last one of the run."""
+    pandas = pytest.importorskip("pandas")
+    file = tmp_path / "path.csv"
+    assert 0 == run(f"{INI}LIN {{Z 780}}\n", "--robot", "kinematic", "--path", str(file))[0]
+    table = pandas.read_csv(file)
+    assert {12_000} == set(table["t"].diff().dropna()[:-1])
+    assert [445, 0, 780] == pytest.approx(table[["x", "y", "z"]].iloc[-1].tolist(), abs=0.01)
+
+
+def test_page(run: Run, tmp_path: Path) -> None:
+    """--html writes the page of the run and tells where it is."""
+    page = tmp_path / "page.html"
+    status, out, _ = run(f"{INI}$OUT[5]=TRUE\n", "--html", str(page))
+    assert (0, f"page: {page}") == (status, out.splitlines()[1])
+    text = page.read_text(encoding="utf-8")
+    assert "$OUT" in text
+    assert "main.src" in text
+
+
+# -- bad input -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--routine", "nowhere"], "krl: there is no routine nowhere\n"),
+        (["--submit", "nowhere"], "there is no routine "),
+        (["--profile", "kss99"], "kss99"),
+        (["--profile", "missing.toml"], "missing.toml cannot be read"),
+        (["--io", "missing.io"], "missing.io"),
+        (["--path", "path.csv"], "krl: --path: the robot none takes no set-points; say --robot "),
+        (["--robot", "kinematic", "--path", "p.txt"], "ends neither in .parquet nor in .csv\n"),
+        (["--video", "film.gif"], "krl: --video: only the MuJoCo arm can be filmed; say "),
+        (["--robot", "mujoco", "--video", "film.mov"], "film.mov"),
+        (["--executor", "lua"], "lua"),
+        (["--max-time", "-1"], "--max-time"),
+        (["--trace", "."], "krl: .: a folder, not a file\n"),
+    ],
+)
+def test_bad_options(run: Run, options: list[str], said: str) -> None:
+    """Each wrong option is one line that names it, with status 2; nothing runs."""
+    status, out, err = run("HALT\n", *options)
+    assert (2, "") == (status, out)
+    assert said in err
+    assert 1 == err.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("t=0.5 IN[1]=MAYBE\n", ":1: 'MAYBE' is no value"),
+        ("\nwhen HALT press START\n", ":2: "),
+        ("t=1 IN[0]=TRUE\n", ":1: "),
+        ("t=1 NOWHERE=TRUE\n", ":1: "),
+    ],
+    ids=["value", "cause", "index", "name"],
+)
+def test_broken_scripts(run: Run, script: str, said: str) -> None:
+    """What is wrong with a script is told with its line before anything runs."""
+    status, out, err = run("HALT\n", script=script)
+    assert (2, "") == (status, out)
+    assert said in err
+    assert 1 == err.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("missing.src", None, "no such file"),
+        ("data.dat", b"DEFDAT data\nENDDAT\n", "there is no routine"),
+        ("broken.src", b"DEF broken ( )\nIF THEN\nEND\n", "broken.src:2: "),
+        ("binary.src", b"\x00\x01\x02\xff\xfe" * 40, "binary.src"),
+        ("takes.src", b"DEF takes (A :IN )\nINT A\nEND\n", "takes has parameters"),
+        ("empty.src", b"", "empty.src"),
+    ],
+)
+def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, said: str) -> None:
+    """A file that cannot be run is one line with status 2."""
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    status, out, err = run(None, str(tmp_path / name))
+    assert (2, "") == (status, out)
+    assert said in err
+    assert 1 == err.count("\n")
+
+
+def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
+    """Other files of the project that cannot be read are told, and the program runs."""
+    (tmp_path / "other.src").write_text("DEF other ( )\nIF\nEND\n", encoding="utf-8")
+    status, out, err = run("HALT\n")
+    assert 0 == status
+    assert "main.src: halt" in out
+    assert err.startswith("left out: ")
+    assert "other.src:2: it cannot be read\n" in err
