@@ -206,11 +206,13 @@ class CandidateFinder:
             case "insert":
                 unit = repeated(symbols)
                 if unit is None and not looped:
-                    yield rank, (*tokens, Insert(rule, place, _optional(symbols)))
+                    text = _optional(symbols)
+                    yield rank - self.layout.said_so(text), (*tokens, Insert(rule, place, text))
                 again = unit or symbols
                 if again[0] == "','" or unit or looped:
                     text = f"({' '.join(again)})*" if len(again) > 1 else f"{again[0]}*"
-                    yield rank + 1, (*tokens, Insert(rule, place, text))
+                    rank += 1 - self.layout.said_so(text)
+                    yield rank, (*tokens, Insert(rule, place, text))
 
     def _alternative(
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]

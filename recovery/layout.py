@@ -30,6 +30,8 @@ __all__ = ["HUB", "Layout"]
 #: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
 HUB = 4
 _NAMES = re.compile(r"\w+")
+# Steps in breadth that are saved where something is written as elsewhere.
+_SAID_SO = 6
 # Twice as many rules around a rule are so many steps in breadth.
 _WIDENS = 5
 
@@ -100,6 +102,25 @@ class Layout:
     def unused_in(self, text: str) -> frozenset[str]:
         """Rules of a text that nothing in the grammar calls."""
         return self._unused.intersection(_NAMES.findall(text))
+
+    def is_free(self, name: str) -> bool:
+        """Whether a name is that of a rule which nothing calls, or of no rule."""
+        return name in self._unused or name not in self.recognizer.network.entry
+
+    def said_so(self, text: str) -> int:
+        """What speaks for a text that some rule has already, as what is optional or repeated."""
+        return _SAID_SO if "".join(text.split()) in self._said else 0
+
+    @cached_property
+    def _said(self) -> frozenset[str]:
+        return frozenset(
+            "".join(rule.source_of(element).split())
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            for a in rule.alternatives
+            for element in walk(a)
+            if isinstance(element, Repeat)
+        )
 
     @cached_property
     def _unused(self) -> frozenset[str]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from difflib import SequenceMatcher
 from functools import cached_property
 
-from grammar.model import Alternative, Element, Group, Reference, Rule
+from grammar.model import Alternative, Element, Group, Reference, Repeat, Rule
 from recovery.layout import HUB, Layout
 
 __all__ = ["Likeness"]
@@ -49,19 +49,28 @@ class Likeness:
             best = max(best, matcher.ratio())
         if self.layout.only_passes_on(rule):
             return 0
+        kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self.layout.has_choice(rule) and self.layout.is_set_of_words(rule):
-            return -3 * _LIKE
+            return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
         if self.gathers(rule):
             if not self._is_single(symbols):
-                return _LOOSE
-            kinds = {old[0] for old in known if old}
-            return -3 * _LIKE if new[0] in kinds else -2 * _LIKE
+                return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
+            if not self.layout.is_free(symbols[0]):
+                return -_LIKE  # it has its place already
+            return -3 * _LIKE if _kind(new[0]) in kinds else -2 * _LIKE
         leads = self._leads(rule)
         if len(leads) == 1 and "" not in leads:
             return -_LIKE if symbols[0] in leads else 2 * _LIKE
         if best >= _ALIKE and len(known) > 1:
             return -round(_LIKE * best)
         return 2 + max(0, _TOGETHER - len(known))
+
+    def _is_known_by(self, rule: str, word: str) -> bool:
+        """Whether one of the rules that a rule gathers is known by a word."""
+        return any(
+            rule in gathering and name in self.layout.callers and word in self._leads(name)
+            for name, gathering in self._gathered.items()
+        )
 
     def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
         """Whether the symbols begin with a rule that stands beside this one wherever it is called.
@@ -122,9 +131,16 @@ class Likeness:
         found = self._leading_words.get(rule)
         if found is None:
             alternatives = self.layout.grammar.by_name[rule].alternatives
-            words = (self._words(a.elements[0]) if a.elements else [""] for a in alternatives)
+            words = (self._words_of(a.elements) for a in alternatives)
             found = self._leading_words[rule] = frozenset(word for some in words for word in some)
         return found
+
+    def _words_of(self, elements: Sequence[Element]) -> list[str]:
+        """What a sequence begins with, what may be left out passed over."""
+        for element in elements:
+            if not isinstance(element, Repeat) or element.operator == "+":
+                return self._words(element)
+        return [""]
 
     def _words(self, element: Element) -> list[str]:
         """A reserved word, or those of a choice; an empty one for anything else."""
@@ -149,3 +165,8 @@ class Likeness:
         if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
             return "keyword" + suffix
         return symbol
+
+
+def _kind(symbol: str) -> str:
+    """Signs are of one kind."""
+    return "sign" if symbol[0] == "'" else symbol

@@ -234,6 +234,7 @@ class OpeningFinder:
         if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
             rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
+            rank -= self.layout.said_so(text)
             yield rank, (*self.reserved(words), Insert(rule, place, text))
 
     def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[Ranked]:

@@ -39,6 +39,7 @@ class Phraser:
         self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
         self._begun: dict[tuple[int, ...], Mapping[str, State]] = {}
         self._spans: dict[tuple[int, ...], frozenset[str]] = {}
+        self._a_name = (recognizer.lexer.kind_of.get("NAME", ERROR),)
 
     @cached_property
     def _entries(self) -> dict[str, State]:
@@ -162,7 +163,7 @@ class Phraser:
         rules = self.rules_for(kinds) - self._careless
         lexer = self.recognizer.lexer
         if rules and lexer.is_keyword(kinds[0]):
-            rules -= self.rules_for((lexer.kind_of.get("NAME", ERROR), *kinds[1:]))
+            rules -= self.rules_for((*self._a_name, *kinds[1:]))
         return bool(rules)
 
     @cached_property
@@ -242,7 +243,9 @@ class Phraser:
         depth = seams = 0
         was_value = False
         if self.recognizer.lexer.is_keyword(part[0][0]):  # what follows a word belongs to it
-            return int(not self._means_more(tuple(kind for kind, _ in part)))
+            kinds = tuple(kind for kind, _ in part)
+            is_operand = not self.rules_for(kinds).isdisjoint(self.rules_for(self._a_name))
+            return int(not is_operand and not self._means_more(kinds))
         for kind, _ in part:
             text = self.recognizer.lexer.display[kind]
             depth += (text in _OPENING) - (text in _CLOSING)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
@@ -25,6 +26,7 @@ __all__ = ["check"]
 
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
+_NOT_ASCII = re.compile(r"[^\n\x20-\x7e]")
 #: Findings that are no faults: why the robot stops.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
 
@@ -176,7 +178,14 @@ def _written(
 
 
 def _json(record: Any) -> str:
-    return json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+    """The record as JSON that steers no terminal: what is not printable is escaped."""
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+    return _NOT_ASCII.sub(_shown, text)
+
+
+def _shown(found: re.Match[str]) -> str:
+    char = found[0]
+    return char if char.isprintable() else json.dumps(char)[1:-1].replace("\x7f", "\\u007f")
 
 
 def _print_text(kept: "list[Diagnostic]", lines: Mapping[tuple[str, int], str]) -> None:

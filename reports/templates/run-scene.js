@@ -75,6 +75,7 @@ function scene() {
     if (path.measured.length) line(path.measured, colours.mark, 1);
     line(path.tool, colours.blue, 1.5);
     line(path.tool, colours.blue, 4, (n) => blended[n]);
+    const labels = [];
     for (const point of points) {
       const [x, y] = project(point.place);
       pen.beginPath();
@@ -84,7 +85,9 @@ function scene() {
       pen.lineWidth = 1.2;
       pen.fill();
       pen.stroke();
-      if (points.length <= 40) {
+      // A name that would lie upon another one is left out.
+      if (!labels.some(([a, b]) => Math.abs(a - x) < 44 && Math.abs(b - y) < 12)) {
+        labels.push([x, y]);
         pen.fillStyle = colours.soft;
         pen.fillText(`${point.motion} ${point.kind}`, x + 7, y - 5);
       }

@@ -204,6 +204,23 @@ def test_names_that_steer_terminals_are_shown(
     assert "\x1b" not in "".join(capsys.readouterr())
 
 
+@pytest.mark.parametrize("kind", ["json", "sarif"])
+def test_records_steer_no_terminal_either(
+    kind: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """What is not printable is escaped in JSON, and reads the same; letters stay letters."""
+    steering = ("\x7f", "\x9f", "\u202e", "\U000e0001")
+    lines = "".join(f"X = {char} 1\n" for char in (*steering, "é"))
+    file = tmp_path / "a.src"
+    file.write_text(f"DEF A()\n{lines}END\n", encoding="utf-8")
+    assert 1 == check("--format", kind, str(file))
+    told = capsys.readouterr().out
+    assert not [c for c in told if not c.isprintable() and c != "\n"]
+    whole = json.dumps(json.loads(told), ensure_ascii=False)
+    assert "é" in told
+    assert [] == [char for char in steering if f'\\"{char}\\" cannot stand here' not in whole]
+
+
 def test_colours_on_a_terminal(programs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where there are colours, text is the same with them taken away."""
     monkeypatch.setenv("FORCE_COLOR", "1")

@@ -149,7 +149,7 @@ def _timeless(value: Any) -> Any:
 def test_a_night_that_is_killed_goes_on(tmp_path: Path) -> None:
     """Its records are whole, what is done is not done again, and it is one line of the history."""
     corpus = _corpus(tmp_path / "corpus", 40_000)
-    options = ["--minutes", "10", "--date", "2026-01-02", "--only", "recover", "--only", "conform"]
+    options = ["--minutes", "30", "--date", "2026-01-02", "--only", "recover", "--only", "growth"]
     for folder in ("quiet", "disturbed"):
         (tmp_path / folder).mkdir()
     command = ["nightly", str(corpus), *options]
@@ -168,7 +168,7 @@ def test_a_night_that_is_killed_goes_on(tmp_path: Path) -> None:
     lines = (tmp_path / "disturbed" / "history.jsonl").read_text(encoding="utf-8").splitlines()
     assert ["2026-01-02"] == [json.loads(line)["date"] for line in lines]
     wanted = json.loads((tmp_path / "quiet" / "history.jsonl").read_text(encoding="utf-8"))
-    for step in ("recover", "conform"):
+    for step in ("recover", "growth"):
         assert _timeless(wanted[step]) == _timeless(json.loads(lines[0])[step])
     print(f"\nkrl nightly: killed {killer.killed} times at work")
     assert killer.killed > 0
