@@ -244,7 +244,7 @@ class Phraser:
         was_value = False
         if self.recognizer.lexer.is_keyword(part[0][0]):  # what follows a word belongs to it
             kinds = tuple(kind for kind, _ in part)
-            is_operand = not self.rules_for(kinds).isdisjoint(self.rules_for(self._a_name))
+            is_operand = not self._of_values.isdisjoint(self.rules_for(kinds))
             return int(not is_operand and not self._means_more(kinds))
         for kind, _ in part:
             text = self.recognizer.lexer.display[kind]
@@ -253,6 +253,13 @@ class Phraser:
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value
         return seams
+
+    @cached_property
+    def _of_values(self) -> frozenset[str]:
+        """Rules that read a name as well as values of other kinds."""
+        kinds = [(k,) for k in self.recognizer.lexer.kind_of.values() if self._is_operand(k)]
+        others = frozenset[str]().union(*(self.rules_for(k) for k in kinds if k != self._a_name))
+        return self.rules_for(self._a_name) & others
 
     def _may_be_a_name(self, kind: int) -> bool:
         """Whether a token is a reserved word that some rules read as any other name."""

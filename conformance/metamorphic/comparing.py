@@ -112,7 +112,12 @@ def same_axes(left: Observation, right: Observation) -> str:
 
 
 def same_geometry(left: Observation, right: Observation) -> str:
-    """The way of the axes from the first set-point to the last, however fast it is travelled."""
+    """The way of the axes from the first set-point to the last, however fast it is travelled.
+
+    Where a fault ends the old run nothing is said: it stops the arm at some time, not some place.
+    """
+    if left.ending == "fault":
+        return ""
     if left.path is None or right.path is None or not len(left.path.axes):
         return ""
     one, other = (_thinned(run.path.axes) for run in (left, right) if run.path is not None)
@@ -200,15 +205,14 @@ def _beside(points: Array, path: Array) -> Array:
     found = np.empty(len(points))
     first = 0
     for number, point in enumerate(points):
-        window = slice(first, first + 400)
-        share = np.clip(
-            ((point - starts[window]) * ways[window]).sum(axis=1) / squares[window], 0.0, 1.0
-        )
+        window = slice(first, None)
+        along = ((point - starts[window]) * ways[window]).sum(axis=1)
+        share = np.clip(along / squares[window], 0.0, 1.0)
         off = np.abs(starts[window] + share[:, None] * ways[window] - point).max(axis=1)
         nearest = int(np.argmin(off))
         found[number] = off[nearest]
         # the first place that is near: where a path comes back over itself, there are several
-        near = np.flatnonzero(off <= max(off[nearest], _BESIDE / 5))
+        near = np.flatnonzero(off <= max(off[nearest], _BESIDE))
         first += max(0, int(near[0]) - 1)
     return found
 

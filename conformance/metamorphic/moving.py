@@ -57,7 +57,7 @@ def _motion(random: Random, *, blends: bool) -> list[str]:
     blend = " C_DIS" if blends and random.random() < 0.7 else ""
     match random.choice(_MOTIONS):
         case "PTP":
-            return [f"PTP {{{_point(random)}, A 0.0, B 90.0, C 0.0}}{' C_PTP' if blend else ''}"]
+            return [f"PTP {{{_point(random)}}}{' C_PTP' if blend else ''}"]
         case "CIRC":
             return [
                 "LIN {X 500.0, Y -60.0, Z 700.0}",

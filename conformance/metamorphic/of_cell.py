@@ -262,10 +262,16 @@ def _is_for_batches(program: Program) -> bool:
 
 
 def _where_all_blends(compare: Compare) -> Compare:
-    """Nothing is said where a blend has failed: in a batch all of them are known in time."""
+    """Nothing is said of two kinds of programs.
+
+    Where a blend has failed: in a batch all of them are known in time. Where a motion cannot be
+    planned: then none of its batch is executed (`interp.robot.batch`).
+    """
 
     def found(left: Observation, right: Observation) -> str:
-        failed = any(one.fields.get("number") in (1123, 1442) for one in left.of_kind("message"))
+        failed = left.ending == "fault" or any(
+            one.fields.get("number") in (1123, 1442) for one in left.of_kind("message")
+        )
         return "" if failed else compare(left, right)
 
     return found

@@ -40,7 +40,7 @@ def wrong(monkeypatch: pytest.MonkeyPatch) -> Callable[[Mutant], None]:
     """Puts a mutant in place of the machine."""
 
     def planted(mutant: Mutant) -> None:
-        monkeypatch.setitem(runs.EXECUTORS, "vm", mutated(mutant))  # type: ignore[arg-type]
+        monkeypatch.setitem(runs.EXECUTORS, "vm", mutated(mutant))
 
     return planted
 

@@ -41,7 +41,7 @@ def test_a_choice_is_widened_and_keeps_what_reserves_its_words() -> None:
     """A word beside a choice of words is a choice of all; edits before the last stay."""
     edits = [Widen("motion", (1, 1), text) for text in ("(SLIN | SPTP)", "SPL")]
     listed = AddAlternative("keyword", "SPL")
-    pair = [Candidate(edits[:1], 3), Candidate((AddToken("SPL"), listed, edits[1]), 3)]
+    pair = [Candidate((edits[0],), 3), Candidate((AddToken("SPL"), listed, edits[1]), 3)]
     assert [(AddToken("SPL"), listed, Widen("motion", (1, 1), "(SLIN | SPL | SPTP)"))] == [
         c.edits for c in one_choice([Candidate(tuple(c.edits), c.breadth) for c in pair])
     ]
