@@ -16,6 +16,8 @@
 `kit`, `plugin`      somebody else's executor or robot proves itself; cases as pytest items
 `semantics`          makes docs/semantics.md of the registry
 `differential`       programs that are made up, run on all executors
+`metamorphic`        changes of programs that must not matter
+`sensitivity`        faults planted into the cell, which cases must find
 ===================  =============================================================================
 """
 

@@ -177,16 +177,17 @@ class Project:
             if module.table is None:
                 continue
             scope = self.scope(module)
+            is_list = module.suffix == ".dat"
             for space, symbol in module.table.table.symbols():
                 found = scope.own(space, symbol.key)
                 assert found is not None, "a scope has what its table has"
                 if not _is_exported(symbol, module):
                     self._hidden[space].setdefault(symbol.key, found)
-                elif symbol.kind is Kind.EXTERNAL:
+                elif symbol.kind is Kind.EXTERNAL or (space is Space.ROUTINE and is_list):
                     announced.append(found)
                 else:
                     self._names[space].setdefault(symbol.key, []).append(found)
-        for found in announced:  # EXT in $CONFIG; the routine itself says more
+        for found in announced:  # EXT, EXTP in a data list; the routine itself says more
             key = found.symbol.key
             if not isinstance(self._globals.system.find(Space.ROUTINE, key), Found):
                 self._names[Space.ROUTINE].setdefault(key, [found])

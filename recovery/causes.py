@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from grammar.edits import AddAlternative, Edit
+from grammar.edits import AddAlternative, AddToken, Edit
 from grammar.recognizer import Recognizer
 from recovery.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
 from recovery.joined import one_choice, reach_the_same, together
@@ -58,6 +58,8 @@ _A_FORM = 4
 _OTHERS_COUNT = 0.3
 # What an edit gains that mends every line which fails at the same token: it leaves none to explain.
 _ALL_ALIKE = 1.25
+# What an edit loses that reads a word as a name which all lines have as a keyword.
+_LEFT_A_NAME = 0.6
 # What an edit loses that gives some of its lines two readings.
 _TWO_READINGS = 0.97
 
@@ -155,6 +157,7 @@ class Search:
         self.trial = Trial(recognizer, lines)
         self.thorough = True
         self._sought: frozenset[int] = frozenset()
+        self._has_words = False  # whether all lines sought for have words the grammar lacks
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
@@ -166,6 +169,7 @@ class Search:
     def best_for(self, group: Sequence[int]) -> Cause | None:
         """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
         members = self._sought = frozenset(group)
+        self._has_words = all(self.lines[n].keywords for n in group)
         proposals = self._proposals(group)
         for place, best in enumerate(proposals):
             # what an edit lets be read further has its first cause here, and others behind it
@@ -204,15 +208,8 @@ class Search:
         proposals = []
         for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
             outcome = self.trial.outcome(candidate.edits, self.open)
-            proposals.append(
-                Proposal(
-                    candidate.edits,
-                    outcome.mended,
-                    outcome.advanced,
-                    candidate.breadth,
-                    negatives,
-                )
-            )
+            edits, breadth = candidate.edits, candidate.breadth
+            proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
         useful = {proposal.edits: proposal for proposal in proposals if self._gain(proposal)}
         return self._ranked(list(useful.values()), heavy)[:_SHOWN]
 
@@ -333,8 +330,10 @@ class Search:
         return whole + further / 4 + others * _OTHERS_COUNT
 
     def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
-        """Gain, less a little for all that an edit lets in besides."""
-        return self._gain(outcome) * BREADTH_COSTS**candidate.breadth
+        """Gain, less a little for all that an edit lets in besides, and for a word left a name."""
+        worth = self._gain(outcome) * BREADTH_COSTS**candidate.breadth
+        reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
+        return worth * _LEFT_A_NAME if self._has_words and not reserves else worth
 
     def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
         """The most worthwhile candidates, first those that let in no negatives."""

@@ -101,7 +101,11 @@ class Memory:
 
     def keep_record(self, digest: str, record: dict[str, Any]) -> None:
         """Remember a whole record."""
-        self._keep([(digest, record)])
+        self.keep_records([(digest, record)])
+
+    def keep_records(self, records: Iterable[tuple[str, dict[str, Any]]]) -> None:
+        """Remember whole records by their digests, all of them or none."""
+        self._keep(records)
 
     def _recalled(self, digest: str) -> Any:
         """What lies under a digest; ``None`` where nothing does, or nothing that can be read."""

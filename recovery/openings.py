@@ -280,7 +280,11 @@ class OpeningFinder:
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and layout.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
+        if place[-1] == 1 and len(place) == 2 and len(words) > _LONGEST_PREFIX:
+            return  # another beginning as long as that is another thing
         rank = layout.width(rule) + (22 if leading else 12)
+        if leading and len(elements) < _SHARED:
+            rank += 2 * UNLIKELY  # there is hardly anything that the two words have in common
         if isinstance(element, Repeat):
             rank += UNLIKELY  # one more thing in a loop made for something else
         if layout.is_keyword(element) and (len(words) > 1 or closing):

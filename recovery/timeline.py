@@ -130,10 +130,12 @@ def read_through(
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
-            if memory is not None and run[-1] == block.missing[-1]:
-                for member in block.members:
-                    if known[member.index].lasting:
-                        memory.keep_record(_key(member.content), known[member.index].record(names))
+            if memory is not None:  # after each run, so that a killed growth goes on from there
+                memory.keep_records(
+                    (_key(member.content), known[member.index].record(names))
+                    for member in block.members
+                    if known[member.index].lasting
+                )
             on_done(len(block.members) * len(run))
     return [
         Timeline(content, dict(sorted(entry.failing.items())), entry.reason)
@@ -178,7 +180,13 @@ class _Known:
     def record(self, names: Sequence[str]) -> dict[str, Any]:
         if self.reason:
             return {"reason": self.reason}
-        return {"grammars": names, "failing": [[line, hex(w)] for line, w in self.failing.items()]}
+        missing = frozenset(self.missing)
+        read = [n for n in range(len(names)) if n not in missing]
+        failing = [
+            [line, hex(sum((when >> n & 1) << bit for bit, n in enumerate(read)))]
+            for line, when in self.failing.items()
+        ]
+        return {"grammars": [names[n] for n in read], "failing": failing}
 
 
 def _key(content: Content) -> str:

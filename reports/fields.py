@@ -4,18 +4,22 @@ Fields may be absent, and a count may be given as the list of what was counted. 
 on purpose: the record of an older or newer release still gives a page.
 """
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 Record = Mapping[str, Any]
+_MOST = 1 << 63
+_LARGEST = 1e300
 
 
 def count(record: Record, key: str) -> int:
-    """The number at ``key``; the length where a list stands there; 0 where nothing fits."""
+    """The number at ``key``; the length where a list stands there; 0 where nothing fits.
+
+    What no computer could have counted fits nothing.
+    """
     value = record.get(key)
     if isinstance(value, int | float):
-        return int(value) if math.isfinite(value) else 0
+        return int(value) if -_MOST < value < _MOST else 0
     return len(value) if isinstance(value, list | tuple) else 0
 
 
@@ -27,7 +31,7 @@ def optional_count(record: Record, key: str) -> int | None:
 def number(record: Record, key: str) -> float:
     """The finite number at ``key``, else 0.0."""
     value = record.get(key)
-    return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
+    return float(value) if isinstance(value, int | float) and -_LARGEST < value < _LARGEST else 0.0
 
 
 def text(record: Record, key: str) -> str:

@@ -126,9 +126,9 @@ def _timing(case: Record) -> Iterator[tuple[str, int]]:
         events = records(result, "events")
         if events:
             for event in events:
-                if event.get("kind") in _TIMED and isinstance(event.get("t"), int):
+                if text(event, "kind") in _TIMED and isinstance(event.get("t"), int):
                     signal = text(event, "signal") or text(event, "motion") or text(event, "number")
-                    yield f"{text(event, 'kind')} {signal}".strip(), int(event["t"])
+                    yield f"{text(event, 'kind')} {signal}".strip(), count(event, "t")
             return
 
 
@@ -136,7 +136,7 @@ def _figures(record: Record) -> Iterator[tuple[str, float]]:
     """The figures of a bench that are ratios or speeds: those that stand at its top level."""
     for name, value in record.items():
         if isinstance(value, int | float) and not isinstance(value, bool) and "second" not in name:
-            yield name, round(float(value), 6)
+            yield name, round(number(record, name), 6)
 
 
 # ----------------------------------------------------------------------------------- what changed
@@ -245,10 +245,10 @@ _COSTS = ("_per_mb", "_us", "_ms", "cost", "clusters_per_cause", "false_accept",
 
 def _speeds(before: Record, now: Record) -> Iterator[str]:
     for name, value in now.items():
-        was = before.get(name)
-        if not isinstance(was, int | float) or not isinstance(value, int | float):
+        if not isinstance(before.get(name), int | float) or not isinstance(value, int | float):
             continue
+        was, became = number(before, name), number(now, name)
         is_cost = any(part in name for part in _COSTS)
-        worse, better = (value, was) if is_cost else (was, value)
+        worse, better = (became, was) if is_cost else (was, became)
         if better > 0 and worse / better >= _WORSE:
-            yield f"slower: {name} {was:.4g} → {value:.4g} ({worse / better:.2f} times worse)"
+            yield f"slower: {name} {was:.4g} → {became:.4g} ({worse / better:.2f} times worse)"

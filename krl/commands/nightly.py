@@ -58,7 +58,7 @@ def nightly(
     A night that was broken off goes on where it was: steps whose record is there are not done
     again. Exit status 1 where a step failed or a case did.
     """
-    from reports import write_night_page
+    from reports import write_claims_page, write_night_page
     from reports.history import append_night, changes, night_of, read_nights
 
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
@@ -83,6 +83,9 @@ def nightly(
     told = changes(last, night, before, made.get("conform"))
     append_night(history, night)
     write_json({**night, "changes": told}, folder / "night.json")
+    write_claims_page(made, folder / "claims")
+    pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
+    night = {**night, "steps": {**night["steps"], **pages}}
     page = write_night_page({**night, "changes": told, "history": [*nights, night]}, folder)
     for line in told or ["nothing changed since the last night"]:
         typer.echo(one_line(line))
@@ -105,6 +108,9 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     yield _Step(
         "conform", ("conform", "--html", str(folder / "conform")), 0.25, "conform/index.html"
     )
+    arm = ("motion", "blending", "program", "--executor", "native", "--robot", "mujoco")
+    yield _Step("conform-arm", ("conform", *arm), 0.15)
+    yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
     yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.3)
     yield _Step(
         "recover", ("recover", *given, "--out", str(folder / "recover")), 0.2, "recover/index.html"

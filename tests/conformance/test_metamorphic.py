@@ -79,7 +79,11 @@ def _program(text: str) -> Program:
 @pytest.mark.parametrize("law", laws(), ids=lambda law: law.name)
 def test_each_law_applies_and_holds(law: Law) -> None:
     """Every law changes one of three small programs at least, and nothing is noticed."""
-    programs = [_program(COMPUTES), _program(MOVES), Program.of_sample(moving_program(1, 1), "m")]
+    programs = [
+        _program(COMPUTES),
+        _program(MOVES),
+        Program.of_sample(moving_program(1, 1), "m", 60.0),
+    ]
     found = [run_law(law, program) for program in programs]
     tried = [one for one in found if one is not None]
     assert [""] * len(tried) == [one.difference for one in tried]

@@ -225,6 +225,19 @@ def test_announced_routine_that_is_missing(texts: Mapping[str, str]) -> None:
     assert ("WORK", Space.ROUTINE) == (unknown.key, unknown.space)
 
 
+def test_what_the_controller_has_is_not_hidden_by_ext() -> None:
+    """EXTP of a predefined routine in a list of the controller leaves its name the routine's."""
+    of = project(
+        {
+            "a.src": src("A()", "ERR_CLEAR($ERR)"),
+            "$operate.dat": dat("$OPERATE", "EXTP ERR_CLEAR (ERROR_T PERR :OUT)"),
+        }
+    )
+    answer = use(of, "a.src", "ERR_CLEAR")
+    assert isinstance(answer, Found)
+    assert answer.module is None
+
+
 def test_import() -> None:
     """ADV-05: IMPORT reaches data that are not GLOBAL, in a list that is PUBLIC."""
     texts = {

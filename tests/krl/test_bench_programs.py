@@ -42,7 +42,7 @@ def backup(tmp_path: Path) -> Path:
 
 def results(backup: Path, *options: str) -> dict[str, dict[str, Any]]:
     record = backup.parent / "record.json"
-    arguments = ["bench", "programs", str(backup), "--executor", "tree", "--max-time", "60"]
+    arguments = ["bench", "programs", str(backup), "--executor", "tree", "--max-time", "24"]
     assert 0 == main([*arguments, *options, "--json", str(record)])
     found = json.loads(record.read_text(encoding="utf-8"))["programs"]
     return {Path(row["path"]).stem: row for row in found}
@@ -66,7 +66,7 @@ def test_main_programs_and_their_results(backup: Path, capsys: pytest.CaptureFix
 
 
 def test_where_and_why(backup: Path) -> None:
-    """Each row has the place where it ended, why, the motions made (the arm was stopped) and the machine."""
+    """Each row has the place where it ended, why, the motions made and the machine."""
     row = results(backup)["fails"]
     assert row["at"].endswith("R1/Program/fails.src:3")
     assert "(message 1447)" in row["reason"]

@@ -141,6 +141,30 @@ def test_only_what_is_new_is_read(
     assert told(kept) == told(timelines(corpus))
 
 
+def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
+    corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was read under the first grammars is kept before the others have had their turn."""
+    asked: list[int] = []
+    perform = timeline._perform
+
+    def breaking(
+        run: tuple[tuple[int, Grammar], ...], contents: tuple[timeline.Content, ...]
+    ) -> Any:
+        asked.extend(number for number, _ in run)
+        if len(asked) == 3:
+            raise KeyboardInterrupt
+        return perform(run, contents)
+
+    monkeypatch.setattr(timeline, "_perform", breaking)
+    with pytest.raises(KeyboardInterrupt):
+        timelines(corpus, cache=tmp_path / "cache")
+    kept = timelines(corpus, cache=tmp_path / "cache")
+    assert [0, 1, 2, 2, 3, 4] == asked
+    monkeypatch.undo()
+    assert told(kept) == told(timelines(corpus))
+
+
 def test_what_is_kept_holds_for_another_row_of_the_same_grammars(
     corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

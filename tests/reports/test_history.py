@@ -78,6 +78,24 @@ def test_a_night_with_numbers_that_are_none_is_damaged(tmp_path: Path) -> None:
     assert [{"date": "3"}] == read_nights(file)
 
 
+def test_figures_beyond_measure_and_events_of_no_kind_count_nothing(tmp_path: Path) -> None:
+    """A damaged record still gives a night, what changed, and a page."""
+    events = [{"kind": [], "t": 5}, {"kind": "out", "t": 10**400}]
+    case = {"name": "a/b", "verdict": "pass", "results": [{"events": events}]}
+    made: dict[str, Any] = {
+        "recover": {"files": 1e308, "parsed": 10**400},
+        "conform": {"cases": [case], "seconds": 10**400},
+        "bench-vm": {"ratio": 10**400},
+    }
+    night = night_of("1", made, {})
+    assert (
+        0 == night["recover"]["files"] == night["recover"]["parsed"] == night["bench"]["vm.ratio"]
+    )
+    worse = {**night, "bench": {"vm.ratio": 10**400}}
+    assert [] == changes(worse, night, made["conform"], made["conform"])
+    write_night_page({**night, "changes": [], "history": [night]}, tmp_path)
+
+
 def test_the_page_of_a_night_shows_what_changed(tmp_path: Path) -> None:
     """Changes stand on the page, foreign text made harmless."""
     night = _night("2031-05-06", _conform(_case("a/x", "pass")))

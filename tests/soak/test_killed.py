@@ -13,6 +13,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+import zlib
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -80,15 +81,24 @@ def _whole_records(out: Path) -> Iterator[Any]:
 
 #: Notes each result that is written a second time, which is what reading a file again comes to.
 WATCHED = """
-CREATE TABLE IF NOT EXISTS again (digest TEXT);
+CREATE TABLE IF NOT EXISTS again (digest TEXT, old BLOB, new BLOB);
 CREATE TRIGGER IF NOT EXISTS watch BEFORE INSERT ON result
 WHEN EXISTS (SELECT 1 FROM result WHERE key = NEW.key AND digest = NEW.digest)
-BEGIN INSERT INTO again VALUES (NEW.digest); END;
+BEGIN
+  INSERT INTO again SELECT digest, body, NEW.body FROM result
+  WHERE key = NEW.key AND digest = NEW.digest;
+END;
 """
 
 
+def _knows_more(old: bytes, new: bytes) -> bool:
+    """Whether a file was read under further grammars, which is all that growth may do again."""
+    before, after = (json.loads(zlib.decompress(body)) for body in (old, new))
+    return "grammars" in before and set(before["grammars"]) < set(after["grammars"])
+
+
 def _kept(out: Path) -> set[str]:
-    """What is remembered of which content; sees to it that what is read again is noted."""
+    """The contents of which something is remembered; what is read again from now on is noted."""
     base = out / "cache" / "results.sqlite"
     if not base.is_file():
         return set()
@@ -97,7 +107,8 @@ def _kept(out: Path) -> set[str]:
             return set()
         opened.executescript(WATCHED)
         assert opened.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
-        assert opened.execute("SELECT digest FROM again").fetchall() == [], "read again"
+        again = opened.execute("SELECT old, new FROM again").fetchall()
+        assert all(_knows_more(old, new) for old, new in again), "read again"
         return {key for (key,) in opened.execute("SELECT digest FROM result")}
 
 

@@ -101,6 +101,18 @@ def test_error_is_raised_and_cleared(go: Go) -> None:
     ]
 
 
+def test_no_error_is_raised_from_none(go: Go) -> None:
+    """ERR_RAISE of an error with the number 0 does nothing."""
+    assert "end" == go(program("ERR_RAISE($ERR)\n")).outcome.ending
+
+
+def test_error_of_what_was_never_set(go: Go) -> None:
+    """Behind a read of what was never set $ERR.NUMBER is 1422, as programs expect [TYP-13]."""
+    body = "ON_ERROR_PROCEED\nM=N\nM=$ERR.NUMBER\n"
+    told = go(program(body, "INT N,M\n")).told("assign")
+    assert [1422] == [one.fields["value"] for one in told if one.fields["name"] == "M"]
+
+
 def test_what_is_not_simulated(go: Go) -> None:
     """A routine that acts on something else is a clear fault, never silence [FCT-11]."""
     ran = go(program("I=DIAG_STOP()\n"))
