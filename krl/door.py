@@ -33,6 +33,8 @@ INTERRUPTED: Final = 130
 READER_GONE: Final = 141
 """As a shell reports a program whose reader, such as `head`, went away: no result to trust."""
 
+_LONGEST_LINE = 2_000  # words of input may be of any length; two long paths fit in
+
 
 class Unusable(Exception):
     """Wrong usage or unreadable input; its text is the line that the person reads."""
@@ -89,7 +91,10 @@ def _invoke(app: typer.Typer, arguments: list[str]) -> int:
 
 
 def _refuse(message: str, status: int = UNUSABLE, name: str = "krl: ") -> int:
-    sys.stderr.write(f"{name}{one_line(message)}\n")
+    line = one_line(message)
+    if len(line) > _LONGEST_LINE:
+        line = line[:_LONGEST_LINE] + " …"
+    sys.stderr.write(f"{name}{line}\n")
     return status
 
 

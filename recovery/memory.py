@@ -28,6 +28,9 @@ __all__ = ["Kept", "Memory", "key_of"]
 #: What is kept of a content: its failures with their forms, or why it is no KRL.
 Kept = tuple[tuple[Failed, ...], tuple[Form, ...]] | str
 
+# What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
+_DAMAGE = (sqlite3.Error, UnicodeDecodeError)
+
 
 def key_of(grammar: Grammar) -> str:
     """What results depend on besides the content: the grammar, and the code that reads and judges.
@@ -51,7 +54,7 @@ class Memory:
         folder.mkdir(parents=True, exist_ok=True)
         try:
             self._base = self._opened()
-        except sqlite3.DatabaseError:
+        except _DAMAGE:
             with contextlib.suppress(OSError):
                 self._file.replace(self._file.with_suffix(".damaged"))
             self._base = self._opened()
@@ -65,7 +68,7 @@ class Memory:
                 " (key TEXT, digest TEXT, body BLOB, PRIMARY KEY (key, digest)) WITHOUT ROWID"
             )
             base.execute("SELECT key, digest, body FROM result LIMIT 1").fetchall()
-        except sqlite3.DatabaseError:
+        except _DAMAGE:
             base.close()
             raise
         return base
@@ -114,11 +117,11 @@ class Memory:
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
             ).fetchone()
             return None if row is None else json.loads(zlib.decompress(row[0]))
-        except (sqlite3.Error, zlib.error, ValueError, TypeError, RecursionError):
+        except (*_DAMAGE, zlib.error, ValueError, TypeError, RecursionError):
             return None
 
     def _keep(self, entries: Iterable[tuple[str, object]]) -> None:
-        with contextlib.suppress(sqlite3.DatabaseError), self._base:
+        with contextlib.suppress(*_DAMAGE), self._base:
             self._base.executemany(
                 "INSERT OR REPLACE INTO result VALUES (?, ?, ?)",
                 ((self._key, digest, _packed(data)) for digest, data in entries),

@@ -6,7 +6,7 @@ have at the start [CON-07]. A profile is named by its file, or given as the path
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cache
@@ -22,6 +22,14 @@ __all__ = ["Profile", "ProfileError", "profile_names"]
 
 class ProfileError(RuntimeFailure):
     """There is no such profile, or it does not say what it has to; the text is one line."""
+
+
+#: What the controller asks of every profile.
+_SIZES = "inputs outputs analog_inputs analog_outputs flags cyclic_flags timers".split()
+_MOST = (
+    "cyclic_flags interrupts active_interrupts triggers analog_inputs analog_outputs digital_inputs"
+).split()
+_LARGEST = 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +109,8 @@ def _read(name: str, text: str) -> Profile:
         coincidence == "run",
         reader.count("submit", "every"),
         reader.count("submit", "requests"),
-        reader.counts("sizes"),
-        reader.counts("most"),
+        reader.counts("sizes", _SIZES),
+        reader.counts("most", _MOST),
         {key.upper(): value for key, value in reader.get("", "values", dict).items()},
     )
 
@@ -131,8 +139,11 @@ class _Reader:
         value: int = self.get(table, key, int)
         if value < least:
             raise self.wrong(table, key, f"is below {least}")
+        if value > _LARGEST:
+            raise self.wrong(table, key, f"is above {_LARGEST:,}")
         return value
 
-    def counts(self, table: str) -> Mapping[str, int]:
-        """A table of such entries."""
-        return {key: self.count(table, key, 0) for key in self.get("", table, dict)}
+    def counts(self, table: str, needed: Iterable[str]) -> Mapping[str, int]:
+        """A table of such entries, with those that are needed."""
+        there = dict.fromkeys((*needed, *self.get("", table, dict)))
+        return {key: self.count(table, key, 0) for key in there}

@@ -157,8 +157,9 @@ class World:
         return IDENTITY if self.machine is None else self.machine.robroot
 
     def placement(self) -> Placement:
-        """The frames of the motion in the main run."""
-        return placement_of(self.variables.main, self.robroot())
+        """The frames in the main run: of its motion, or behind the last as the program has them."""
+        values = self.variables.main if self.core.pending() else self.variables.snapshot()
+        return placement_of(values, self.robroot())
 
     def advance_placement(self) -> Placement:
         """The frames as the advance run has them."""

@@ -41,6 +41,7 @@ def test_status_is_what_the_command_returns(result: int | None, status: int) -> 
         (OSError("the disk is gone"), "krl: the disk is gone"),
         (PermissionError(), "krl: PermissionError"),
         (door.Unusable("two\n  lines\x1b[2J"), "krl: two lines\\x1b[2J"),
+        (door.Unusable("x" * 9_000), f"krl: {'x' * 2_000} …"),
     ],
 )
 def test_expected_error_is_one_line(

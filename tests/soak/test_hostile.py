@@ -86,6 +86,7 @@ def runnable(folder: Path, foundry: Any) -> Path:
 GRAMMAR = (REPOSITORY / "grammar" / "KRL.g4").read_text(encoding="utf-8")
 CONSTRUCTS = sorted((REPOSITORY / "grammar" / "constructs").glob("*.toml"))
 CONSTRUCT = CONSTRUCTS[3].read_text(encoding="utf-8")
+LATER = CONSTRUCTS[4].read_text(encoding="utf-8")
 FORM = (
     'by = ""\nwhen = 2026-03-31\nrelease = "KSS 8"\n'
     '[[program]]\nfile = "a.src"\nconstruct = "0001-x"\nsha256 = "00"\nanswer = "accepted"\n'
@@ -157,11 +158,7 @@ def _survey(folder: Path) -> None:
 
 def ledger(folder: Path, foundry: Any) -> Given:
     """A ledger of which a file is damaged, or with a journal that wants what it must not."""
-    home, chance = folder / "grammar", foundry.chance
-    for file in CONSTRUCTS[:4]:
-        put(home, f"constructs/{file.name}", file.read_bytes())
-    for name in ("preliminary.g4", "KRL.g4"):
-        put(home, name, (REPOSITORY / "grammar" / name).read_bytes())
+    home, chance = _home(folder), foundry.chance
     victim = chance.choice([*sorted(home.rglob("*.toml")), *home.glob("*.g4")])
     match chance.randrange(4):
         case 0:
@@ -176,9 +173,27 @@ def ledger(folder: Path, foundry: Any) -> Given:
             put(home, "constructs/.unfinished.json", foundry.record(noted))
         case _:
             victim.write_bytes(foundry.text(victim.read_text(encoding="utf-8")))
-    os.chdir(folder)
     wanted = [("list",), ("show", "1"), ("replay", "--check"), ("replay", "--out", "x.g4")]
     return krl("construct", *chance.choice(wanted))
+
+
+def _home(folder: Path) -> Path:
+    """A grammar with a short ledger in the folder, which becomes the current one."""
+    home = folder / "grammar"
+    for file in CONSTRUCTS[:4]:
+        put(home, f"constructs/{file.name}", file.read_bytes())
+    for name in ("preliminary.g4", "KRL.g4"):
+        put(home, name, (REPOSITORY / "grammar" / name).read_bytes())
+    os.chdir(folder)
+    return home
+
+
+def try_construct(folder: Path, foundry: Any) -> Given:
+    """A proposal that somebody sent."""
+    _home(folder)
+    put(folder / "corpus" / "programs", "a.src", foundry.runnable())
+    given = CONSTRUCT if foundry.chance.random() < 0.5 else LATER
+    return krl("construct", "try", put(folder, "c.toml", foundry.text(given)))
 
 
 def oracle(folder: Path, foundry: Any) -> Given:
@@ -335,10 +350,7 @@ ENTRIES: dict[str, tuple[int, Entry]] = {
     "recover cache": (3, recover_again),
     "growth": (1, lambda d, f: krl("growth", "--out", d / "out", "--", program(d, f))),
     "ledger": (4, ledger),
-    "construct try": (
-        3,
-        lambda d, f: krl("construct", "try", put(d, "c.toml", f.text(CONSTRUCT))),
-    ),
+    "construct try": (3, try_construct),
     "construct oracle": (3, oracle),
     "construct propose": (3, propose),
     "run": (8, run),

@@ -321,7 +321,8 @@ class Statements(Motions):
         self.load(step)
         self.emit(Op.PUSH_INT, 0)
         self.emit(Op.UNLESS_GT_INT, down)
-        self._compare(counter, last, ">", body, end)
+        with suppress(Ended):  # the other direction ends as this one does
+            self._compare(counter, last, ">", body, end)
         self.writer.place(down)
         self._compare(counter, last, "<", body, end)
         self.writer.place(body)

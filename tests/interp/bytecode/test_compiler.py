@@ -285,6 +285,13 @@ def test_what_is_not_there(text: str, reason: str) -> None:
     assert reason == str(error)
 
 
+@pytest.mark.parametrize("step", ["", " STEP 2", " STEP 0", " STEP -1"])
+def test_a_counter_that_is_not_declared_ends_the_loop(step: str) -> None:
+    """No comparison of it can be written, in either direction; the program ends all the same."""
+    tree, machine = _observed(_loaded(f"DEF A()\n FOR I=5 TO 1{step}\n ENDFOR\nEND\n"))
+    assert None is difference(tree, machine)
+
+
 def test_huge_data_lists() -> None:
     """Data lists that no memory holds are refused at once."""
     program = _loaded(

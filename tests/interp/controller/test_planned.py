@@ -121,6 +121,16 @@ def test_positions_of_a_motion() -> None:
     assert pytest.approx(-100, abs=1e-3) == ran.last("Q")
 
 
+def test_actual_position_in_frames_set_behind_the_last_motion() -> None:
+    """Once the arm stands the main run has caught up: PTP $POS_ACT leads nowhere [MOT-18]."""
+    frames = "$TOOL={X 0,Y 0,Z 150,A 0,B 30,C 0}\n$BASE={X 300,Y 20,Z 10,A 45,B 0,C 0}\n"
+    ran = Ran(program(f"LIN {{Y 100,Z 700}}\n{frames}PTP $POS_ACT\n"))
+    before, after = (point.position for point in ran.controller.points[-2:])
+    assert before is not None
+    assert after is not None
+    assert pytest.approx(before.axes, abs=1e-4) == after.axes
+
+
 def test_status_and_turn_of_a_position() -> None:
     """$POS_ACT has the Status and Turn of the axes [POS-03, POS-07]."""
     ran = Ran(program("I=$POS_ACT.S\nR=$POS_ACT.T\n"))

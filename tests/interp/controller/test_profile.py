@@ -46,6 +46,9 @@ def test_file(tmp_path: Path) -> None:
         ("cycle = 12_000", "cycle = 0", "profile x: time.cycle is below 1"),
         ("cycle = 12_000", 'cycle = "a"', "profile x: time.cycle is no int"),
         ("cycle = 12_000", "", "profile x: time.cycle is no int"),
+        ("timers = 64", "tymers = 64", "profile x: sizes.timers is no int"),
+        ("triggers = 40", "", "profile x: most.triggers is no int"),
+        ("inputs = 8192", "inputs = 8_192_000_000", "profile x: sizes.inputs is above 10,000,000"),
         ('"assumed" ', '"never" ', 'profile x: advance.coincidence is neither "assumed" nor "run"'),
     ],
 )

@@ -1,0 +1,183 @@
+"""The pages of a run, of the judge and of a night in a real browser."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+
+from reports import write_conformance_page, write_night_page, write_run_page
+
+pytestmark = pytest.mark.browser
+
+HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>\x1b[31m"
+Json = dict[str, Any]
+
+
+def _events() -> list[Json]:
+    """Two motions that blend, an output between them."""
+    told: list[tuple[int, str, Json]] = [
+        (0, "motion_start", {"motion": 1}),
+        (20_000, "out", {"signal": "$OUT", "number": 2, "value": True}),
+        (400_000, "blend_start", {"motion": 1}),
+        (450_000, "blend_apex", {"motion": 1}),
+        (450_000, "motion_end", {"motion": 1}),
+        (450_000, "motion_start", {"motion": 2}),
+        (500_000, "blend_end", {"motion": 2}),
+        (900_000, "motion_end", {"motion": 2}),
+        (900_000, "message", {"number": 1442, "text": HOSTILE}),
+    ]
+    return [
+        {"t": time, "task": "robot", "kind": kind, "at": f"a.src:{2 + time // 450_000}", **fields}
+        for time, kind, fields in told
+    ]
+
+
+def run_record() -> Json:
+    """A run of a second, as `interp.session_record` tells it."""
+    times = list(range(0, 912_000, 12_000))
+    tool = [[500 + n, 10 * math.sin(n / 9), 600.0] for n in range(len(times))]
+    return {
+        "main": "a.src",
+        "executor": "tree",
+        "robot": "kinematic",
+        "outcome": {"kind": "end", "time": 900_000},
+        "events": _events(),
+        "files": [{"path": "a.src", "text": f"DEF A()\nLIN P1 C_DIS\nLIN P2 ; {HOSTILE}\nEND\n"}],
+        "path": {
+            "t": times,
+            "tool": tool,
+            "speed": [0.2] * len(times),
+            "axis_speeds": [[10.0] * len(times)] * 6,
+        },
+        "limits": {"axis_speeds": [100.0] * 6, "speed": 2.0},
+        "points": [
+            {"motion": 1, "kind": "LIN", "place": tool[30], "blended": True, "at": "a.src:2"}
+        ],
+    }
+
+
+def conform_record() -> Json:
+    """Two cases on two executors, one of which fails."""
+    source = f";@ rule: TRG-04\nDEF A()\nN = 1 ;> value N 2\n; {HOSTILE}\nEND\n"
+
+    def result(executor: str, verdict: str) -> Json:
+        check = {"file": "a.src", "line": 3, "text": "value N 2", "state": "unmet", "actual": "1"}
+        return {
+            "executor": executor,
+            "robot": "none",
+            "verdict": verdict,
+            "ending": "end",
+            "reason": HOSTILE,
+            "checks": [check] if verdict == "fail" else [],
+            "events": _events(),
+            "divergence": {"at": "a.src:3", "left": "1", "right": HOSTILE},
+            "path": {"t": [0, 1], "poses": [[0, 0, 0, 0, 0, 0], [9, 9, 9, 0, 0, 0]]},
+        }
+
+    def case(name: str, verdict: str) -> Json:
+        return {
+            "name": name,
+            "suite": name.partition("/")[0],
+            "title": f"It is so in {name}",
+            "rules": ["TRG-04"],
+            "verdict": verdict,
+            "files": [{"name": "a.src", "text": source}],
+            "results": [result("tree", "pass"), result("vm", verdict)],
+        }
+
+    cells = [{"executor": e, "robot": "none", "verdicts": {"pass": 1}} for e in ("tree", "vm")]
+    return {
+        "cases_total": 2,
+        "case_verdicts": {"pass": 1, "fail": 1},
+        "suites": [{"name": n, "cases": 1, "cells": cells} for n in ("trigger", "io")],
+        "rules": [{"id": "TRG-04", "tier": "T", "may_fail": True, "statement": "So it is."}],
+        "cases": [case("trigger/right", "pass"), case("io/wrong", "fail")],
+        "history": [{"date": f"2031-05-0{n}", "verdicts": {"pass": n, "fail": 1}} for n in (1, 2)],
+    }
+
+
+Opened = Callable[[Path, str], None]
+
+
+@pytest.fixture
+def opened(browser: webdriver.Chrome) -> Opened:
+    """Opens a page anew, without what the browser said of others."""
+
+    def load(page: Path, fragment: str = "") -> None:
+        browser.get("about:blank")
+        browser.get_log("browser")  # type: ignore[no-untyped-call]
+        browser.get(page.as_uri() + fragment)
+
+    return load
+
+
+def _is_sound(browser: webdriver.Chrome) -> bool:
+    """Nothing foreign ran, and the browser had nothing to complain about."""
+    log = browser.get_log("browser")  # type: ignore[no-untyped-call]
+    return browser.execute_script("return window.hacked") is None and not log
+
+
+def test_the_page_of_a_run_follows_the_pointer(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """A click on an event marks its moment in the program; all charts are drawn."""
+    opened(write_run_page(run_record(), tmp_path / "run.html"), "")
+    charts = browser.find_elements(By.CSS_SELECTOR, "#charts .strip h3")
+    titles = " ".join(chart.text for chart in charts)
+    for title in ("Program lines", "Signals", "Speed of the tool", "Speed of the axes"):
+        assert title in titles
+    rows = browser.find_elements(By.CSS_SELECTOR, "#events tbody tr")
+    browser.execute_script("arguments[0].click()", rows[5])
+    assert "0.450 s" == browser.find_element(By.ID, "moment").text
+    assert "3" == browser.find_element(By.CSS_SELECTOR, "#program .main .no").text
+    assert _is_sound(browser)
+
+
+def test_the_judge_shows_what_was_seen_beside_what_was_expected(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """A link leads to the case, opened; the line that failed tells what was seen."""
+    page = write_conformance_page(conform_record(), tmp_path)
+    opened(page, "#case=io%2Fwrong")
+    assert "1 case of 2 failed" == browser.find_element(By.TAG_NAME, "h1").text
+    unmet = browser.find_element(By.CSS_SELECTOR, ".case-source .l.unmet")
+    assert "seen: 1" in unmet.text
+    assert browser.find_elements(By.CSS_SELECTOR, ".sheet .plot svg")
+    assert _is_sound(browser)
+
+
+def test_cases_are_filtered_by_verdict_and_words(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """The fragment of the address filters, and a cell of the matrix does."""
+    page = write_conformance_page(conform_record(), tmp_path)
+    opened(page, "#verdict=fail")
+    assert "1 case" == browser.find_element(By.ID, "status").text
+    opened(page, "#q=right")
+    assert "1 case" == browser.find_element(By.ID, "status").text
+    browser.execute_script("document.querySelector('#matrix td.cell').click()")
+    assert "1 case" == browser.find_element(By.ID, "status").text
+    assert _is_sound(browser)
+
+
+def test_the_page_of_a_night_draws_its_curves(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """Each figure has a curve over the nights; what changed is text and no more."""
+    nights = [
+        {
+            "date": f"2031-05-0{n}",
+            "bench": {"vm.ratio": 2.0 + n},
+            "recover": {"files": 2, "parsed": n},
+        }
+        for n in (1, 2)
+    ]
+    record = {**nights[-1], "changes": [f"new failure: {HOSTILE}"], "history": nights}
+    opened(write_night_page(record, tmp_path), "")
+    titles = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#curves h3")]
+    assert any(title.startswith("vm.ratio") for title in titles)
+    assert _is_sound(browser)
