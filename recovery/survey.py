@@ -23,7 +23,7 @@ from recovery.ingest import Found, Skipped, decode, digest, discover, read
 from recovery.memory import Kept, Memory, key_of
 from recovery.outcome import Failed, failures_of, source_lines
 from recovery.progress import Progress, unheard
-from recovery.workers import in_order
+from recovery.workers import in_order, meet
 
 __all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
 
@@ -96,6 +96,7 @@ def survey(
     began = time.perf_counter()
     candidates = list(discover(roots))
     on_found(len(candidates))
+    meet(scheduler)  # before anything is written
     with _memory(cache, grammar) as memory:
         gathered = _Gathered(memory)
         tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))

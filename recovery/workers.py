@@ -16,7 +16,7 @@ from functools import cache
 from importlib import resources
 from typing import Any, Protocol, TypeVar, TypeVarTuple
 
-__all__ = ["WorkersError", "code_digest", "in_order"]
+__all__ = ["WorkersError", "code_digest", "in_order", "meet"]
 
 _T = TypeVar("_T")
 _Ts = TypeVarTuple("_Ts")
@@ -58,6 +58,13 @@ def in_order(
                 yield _next(function, waiting, crew)
         while waiting:
             yield _next(function, waiting, crew)
+
+
+def meet(scheduler: str | None) -> None:
+    """See whether a scheduler is there and has workers like us; raises `WorkersError`."""
+    if scheduler is not None:
+        with _cluster(scheduler):
+            pass
 
 
 class _Promise(Protocol):

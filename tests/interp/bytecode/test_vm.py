@@ -529,7 +529,7 @@ L5:
   ASK SHOW
 """
     requests = run(HEAD + routine(body, "local X INT"))
-    assert Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1) == requests[0]
+    assert Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1422) == requests[0]
     assert 4 == requests[1].value
     assert "uninitialised" == failed(requests)
     assert 5 == requests[-1].at.line
