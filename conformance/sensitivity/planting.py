@@ -6,12 +6,12 @@ table, is replaced for as long as a case runs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, MutableMapping
+from collections.abc import Callable, Iterable, Iterator, MutableMapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Final, cast
 
-__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "entry", "on", "several"]
+__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "entry", "group_of", "on", "several"]
 
 #: Plants a fault for as long as the context lasts.
 Plant = Callable[[], AbstractContextManager[None]]
@@ -36,6 +36,11 @@ class Fault:
     robot: str = "kinematic"
     executor: str = "tree"
     op: str = ""
+
+
+def group_of(name: str, rows: Iterable[tuple[str, tuple[str, ...], Plant]]) -> tuple[Fault, ...]:
+    """The faults of a group: words, suites, plant of each."""
+    return tuple(Fault(name, words, suites, plant) for words, suites, plant in rows)
 
 
 def on(owner: Any, name: str, make: Make) -> Plant:

@@ -18,7 +18,7 @@ from conformance.comparison import first_divergence
 from conformance.observation import Observation
 from conformance.observing import Setup
 from conformance.runner import run_case
-from conformance.sensitivity import interrupting, machine, path, timing
+from conformance.sensitivity import ahead, interrupting, machine, path, timing
 from conformance.sensitivity.planting import Fault, on, several
 from conformance.verdicts import KnownFailures
 from interp.controller.controller import Controller
@@ -48,7 +48,13 @@ class Verdict:
 @lru_cache(maxsize=1)
 def all_faults() -> tuple[Fault, ...]:
     """Every fault there is, group by group."""
-    return (*timing.faults(), *interrupting.faults(), *path.faults(), *machine.faults())
+    return (
+        *timing.faults(),
+        *ahead.faults(),
+        *interrupting.faults(),
+        *path.faults(),
+        *machine.faults(),
+    )
 
 
 def try_faults(

@@ -3,7 +3,7 @@
 import pytest
 
 from conformance.case import find_cases
-from conformance.sensitivity import bench, interrupting, path, timing
+from conformance.sensitivity import ahead, bench, interrupting, path, timing
 from conformance.sensitivity.planting import Fault, constant, entry, on, several
 from conformance.sensitivity.trial import all_faults, try_faults
 from interp.controller.clock import Clock
@@ -46,7 +46,7 @@ def test_plants_are_put_back_in_any_combination() -> None:
 
 def test_there_are_enough_faults_and_each_has_its_name() -> None:
     """Besides those of the machine there are sixty and more; no two are called the same."""
-    own = [*timing.faults(), *interrupting.faults(), *path.faults()]
+    own = [*timing.faults(), *ahead.faults(), *interrupting.faults(), *path.faults()]
     assert len(own) >= 60
     names = [(one.group, one.words) for one in all_faults()]
     assert len(names) == len(set(names))
