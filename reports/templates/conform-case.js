@@ -48,7 +48,7 @@ function eventList(result) {
 function caseSheet(one) {
   const failing = one.results.find((result) => result.verdict === "fail") ?? one.results[0];
   const full = one.results.find((result) => result.events.length) ?? failing;
-  const drawn = [full ? timing(full.events) : null, overlay(one.results)].filter((found) => found !== null);
+  const drawn = [full ? timing(full.events) : null, overlay(one.results, failing?.checks ?? [])].filter((found) => found !== null);
   const rules = one.rules.map((id) => {
     const rule = page.rules[id];
     return el("p", "rule-text", el("b", "", id), rule ? ` ${rule.statement} ` : " ", rule ? el("span", "dim", `(tier ${rule.tier}${rule.mayFail ? "" : ", may not fail a case"}; ${rule.source})`) : null);

@@ -1,8 +1,22 @@
-// A case's path from above and from the front: set-points, measured, analytic, other executors.
+// A case's path from above and from the front: set-points, measured, analytic, other executors,
+// and the places that the case speaks of.
 
 const views = [["from above", 0, 1, "X", "Y"], ["from the front", 0, 2, "X", "Z"]];
 
-function overlay(results) {
+const places = /^(?:pose|passes|misses|leaves|joins) (\S+) (\S+) (\S+)/;
+const isRow = (row) => row.every(Number.isFinite);
+
+/** Where a check wants the tool, and, for a pose that is missed, where it was instead. */
+function placesOf(checks) {
+  return checks.flatMap(({ text, state, actual }) => {
+    const wanted = (places.exec(text) ?? []).slice(1).map(Number);
+    if (wanted.length !== 3 || !isRow(wanted)) return [];
+    const seen = state === "unmet" && text.startsWith("pose") ? actual.split(/\s+/).slice(0, 3).map(Number) : [];
+    return [[`place ${state === "unmet" ? "bad" : "good"}`, text, wanted], ...(seen.length === 3 && isRow(seen) ? [["place seen", `seen: ${actual}`, seen]] : [])];
+  });
+}
+
+function overlay(results, checks) {
   const layers = [];
   results.forEach((result) => {
     const { poses, poses_meas: measured, analytic } = result.path;
@@ -12,6 +26,7 @@ function overlay(results) {
     if (measured?.length) layers.push(["meas", `measured, ${who}`, measured]);
   });
   if (!layers.length) return null;
+  const marks = placesOf(checks);
   const holder = el("div", "plot");
   const draw = () => {
     const width = holder.clientWidth || 560;
@@ -20,7 +35,7 @@ function overlay(results) {
     const root = svg("svg", { width, height: height + 18, viewBox: `0 0 ${width} ${height + 18}`, role: "img" });
     root.append(svg("title", {}, `The path of the tool, ${counted(layers.length, "layer")}`));
     views.forEach(([title, i, j, across, up], n) => {
-      const all = layers.flatMap(([, , rows]) => rows);
+      const all = [...layers.flatMap(([, , rows]) => rows), ...marks.map(([, , row]) => row)];
       const ends = [i, j].map((k) => [Math.min(...all.map((row) => row[k])), Math.max(...all.map((row) => row[k]))]);
       const reach = Math.max(1, ...ends.map(([low, high]) => high - low)) * 1.1;
       const scale = Math.min(each, height) / reach;
@@ -34,9 +49,21 @@ function overlay(results) {
         line.append(svg("title", {}, name));
         root.append(line);
       }
+      for (const [kind, name, row] of marks) {
+        const [cx, cy] = [x(row), y(row)];
+        const cross = svg("path", { class: kind, d: `M${cx - 5},${cy}H${cx + 5}M${cx},${cy - 5}V${cy + 5}` });
+        cross.append(svg("title", {}, name));
+        root.append(cross);
+      }
     });
     holder.replaceChildren(root);
   };
-  const keys = el("p", "keys", layers.map(([, name]) => name).join(" · "));
+  const key = ([kind, name]) => {
+    const sample = svg("svg", { width: 22, height: 10, "aria-hidden": "true" });
+    sample.append(svg("path", { class: kind, d: kind.startsWith("place") ? "M6,5H16M11,0V10" : "M0,5H22" }));
+    return el("span", "key", sample, name);
+  };
+  const kinds = [...layers, ...new Map(marks.map((mark) => [mark[0], mark])).values()];
+  const keys = el("p", "keys", ...kinds.map(key));
   return [part("Path", holder, keys), () => whenResized(holder, draw)];
 }

@@ -1,4 +1,4 @@
-// A case's timing diagram: motions, inputs, outputs and marks over one time axis.
+// A case's timing diagram: motions with their blends, inputs, outputs and marks over one time axis.
 
 const signalName = ({ signal, name, number: index, kind }) => (signal && index !== undefined ? `${signal}[${index}]` : String(signal ?? name ?? kind));
 const switching = new Set(["in", "out", "anout"]);
@@ -10,6 +10,7 @@ function timing(events) {
   const end = Math.max(...timed.map((event) => event.t), 0);
   const signals = new Map();
   const motions = new Map();
+  const blends = [];
   const marks = timed.filter((event) => marking.has(event.kind));
   for (const event of timed) {
     if (switching.has(event.kind)) {
@@ -18,6 +19,8 @@ function timing(events) {
       signals.get(name).push(event);
     }
     if (event.kind === "motion_start") motions.set(event.motion, [event.t, end, event]);
+    if (event.kind === "blend_start") blends.push([event.t, end]);
+    if (event.kind === "blend_end" && blends.length) blends.at(-1)[1] = event.t;
     if (event.kind === "motion_end" && motions.has(event.motion)) motions.get(event.motion)[1] = event.t;
   }
   if (!end || (!signals.size && !motions.size && !marks.length)) return null;
@@ -42,6 +45,11 @@ function timing(events) {
       for (const [n, [from, to, event]] of motions) {
         const bar = svg("rect", { class: "motion", x: x(from), y: top + 2, width: Math.max(1, x(to) - x(from)), height: 14 });
         bar.append(svg("title", {}, `motion ${n}, ${event.at ?? ""}: ${(from / 1e6).toFixed(6)} to ${(to / 1e6).toFixed(6)} s`));
+        root.append(bar);
+      }
+      for (const [from, to] of blends) {
+        const bar = svg("rect", { class: "blend", x: x(from), y: top + 12, width: Math.max(1, x(to) - x(from)), height: 4 });
+        bar.append(svg("title", {}, `blend: ${(from / 1e6).toFixed(6)} to ${(to / 1e6).toFixed(6)} s`));
         root.append(bar);
       }
       top += 20;
