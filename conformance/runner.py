@@ -1,4 +1,4 @@
-"""Runs cases: every executor with every robot, in parallel, the same results in any order.
+"""Runs cases: every executor with every robot, in parallel, the same results whoever runs them.
 
 Cases of phases parse and check have one front end and run once. Each result of phase run is judged
 by the case's expectations, and compared with that of the first executor on the same robot, and of
@@ -7,13 +7,11 @@ the first robot: whatever the rule, executors that differ have failed.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from platform import node
 from typing import Final
 
 from conformance.case import Case
@@ -22,6 +20,7 @@ from conformance.judging import Check, judge
 from conformance.observation import Observation
 from conformance.observing import FRONT, Setup, missing, observe
 from conformance.verdicts import KnownFailures, Verdict, verdict_of
+from recovery.workers import WorkersError, in_order
 
 __all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
 
@@ -132,68 +131,51 @@ def run_cases(
     known: KnownFailures | None = None,
     jobs: int | None = None,
     on_done: Callable[[int], None] = lambda _count: None,
+    scheduler: str | None = None,
 ) -> list[CaseResult]:
     """Run cases in so many processes (default: one a core); the results are in their order.
 
-    ``on_done`` is told how many cases were finished. A case that takes its process with it has
-    failed, and no other with it.
+    ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is told how
+    many cases were finished. A case that takes its process with it has failed, and no other with
+    it. Raises `recovery.workers.WorkersError`, also where a worker lacks what there is here.
     """
     listed = known if known is not None else KnownFailures.load()
     setups = tuple(Setup(executor, robot) for robot in robots for executor in executors)
-    shares = [list(range(at, min(at + _SHARE, len(cases)))) for at in range(0, len(cases), _SHARE)]
-    wanted = min(jobs or os.cpu_count() or 1, len(shares))
-    done: dict[int, CaseResult] = {}
-    if wanted <= 1:
-        for number, case in enumerate(cases):
-            done[number] = run_case(case, setups, listed)
-            on_done(1)
-        return [done[number] for number in range(len(cases))]
-    broken: list[int] = []
-    for share, results in _shared(cases, shares, setups, listed, wanted):
-        if results is None:
-            broken += share
-            continue
-        done |= dict(zip(share, results, strict=True))
-        on_done(len(share))
-    for number in broken:
-        done[number] = _alone(cases[number], setups, listed)
-        on_done(1)
-    return [done[number] for number in range(len(cases))]
+    lacking = {setup: missing(setup) for setup in setups}
+    shares = [cases[at : at + _SHARE] for at in range(0, len(cases), _SHARE)]
+    wanted = max(1, min(jobs or os.cpu_count() or 1, len(shares)))
+    if wanted == 1:
+        shares = [[case] for case in cases]  # nothing is sent anywhere, and progress is seen
 
+    def lost(
+        share: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
+    ) -> list[CaseResult]:
+        """Each case by itself, where one of them killed whoever ran it."""
+        singles = (([case], lacking, known) for case in share)
+        found = in_order(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
+        return [result for results in found for result in results]
 
-def _shared(
-    cases: Sequence[Case],
-    shares: Sequence[list[int]],
-    setups: tuple[Setup, ...],
-    known: KnownFailures,
-    jobs: int,
-) -> Iterator[tuple[list[int], list[CaseResult] | None]]:
-    """The shares with their results as they come; ``None`` where the process died."""
-    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
-        waiting: dict[Future[list[CaseResult]], list[int]] = {
-            pool.submit(_run_share, [cases[one] for one in share], setups, known): share
-            for share in shares
-        }
-        for future in as_completed(waiting):
-            try:
-                yield waiting[future], future.result()
-            except BrokenProcessPool:
-                yield waiting[future], None
+    done: list[CaseResult] = []
+    tasks = ((share, lacking, listed) for share in shares)
+    for results in in_order(_run_share, tasks, jobs=wanted, scheduler=scheduler, lost=lost):
+        done += results
+        on_done(len(results))
+    return done
 
 
 def _run_share(
-    cases: Sequence[Case], setups: tuple[Setup, ...], known: KnownFailures
+    cases: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
 ) -> list[CaseResult]:
-    return [run_case(case, setups, known) for case in cases]
+    """Run cases with setups; ``lacking`` says why there is none of some where this was asked."""
+    for setup, why in lacking.items():
+        if not why and missing(setup):
+            raise WorkersError(f"a worker on {node()} lacks what is here: {missing(setup)}")
+    return [run_case(case, tuple(lacking), known, absent=lacking.__getitem__) for case in cases]
 
 
-def _alone(case: Case, setups: tuple[Setup, ...], known: KnownFailures) -> CaseResult:
-    """A case in a process of its own, where one of its like died."""
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        try:
-            return pool.submit(run_case, case, setups, known).result()
-        except BrokenProcessPool:
-            told = "the process died"
-    return CaseResult(
-        case, tuple(Result(one.executor, one.robot, "fail", told, (), 0.0) for one in setups)
-    )
+def _dead(
+    cases: Sequence[Case], lacking: Mapping[Setup, str], _known: KnownFailures
+) -> list[CaseResult]:
+    told = "the process died"
+    failed = tuple(Result(one.executor, one.robot, "fail", told, (), 0.0) for one in lacking)
+    return [CaseResult(case, failed) for case in cases]

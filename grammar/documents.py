@@ -18,6 +18,8 @@ from typing import Any, Final
 
 __all__ = [
     "MOST_BYTES",
+    "MOST_DOTS",
+    "MOST_TOML",
     "DocumentError",
     "json_of",
     "open_file",
@@ -29,8 +31,8 @@ __all__ = [
 #: No document that a person writes is nearly as large; recordings may have some MB.
 MOST_BYTES: Final = 64 << 20
 # `tomllib` needs seconds for a dotted key of thousands of parts, and minutes for tens of thousands.
-_MOST_DOTS = 100
-_LONGEST_TOML = 1_000_000
+MOST_DOTS: Final = 100
+MOST_TOML: Final = 1_000_000
 
 
 class DocumentError(ValueError):
@@ -66,12 +68,12 @@ def read_text(file: Path, encoding: str = "utf-8") -> str:
 
 def toml_of(text: str) -> dict[str, Any]:
     """The tables of a TOML text; raises `DocumentError`."""
-    if len(text) > _LONGEST_TOML:
-        raise DocumentError(f"not TOML that is read: longer than {_LONGEST_TOML:,} characters")
+    if len(text) > MOST_TOML:
+        raise DocumentError(f"not TOML that is read: longer than {MOST_TOML:,} characters")
     for number, line in enumerate(text.splitlines(), 1):
-        if line.count(".") > _MOST_DOTS:
+        if line.count(".") > MOST_DOTS:
             raise DocumentError(
-                f"not TOML that is read: more than {_MOST_DOTS} dots, line {number}"
+                f"not TOML that is read: more than {MOST_DOTS} dots, line {number}"
             )
     try:
         return tomllib.loads(text)

@@ -46,6 +46,7 @@ __all__ = [
     "Reply",
     "Surroundings",
     "call",
+    "reads_text",
 ]
 
 
@@ -298,6 +299,16 @@ def call(name: str, arguments: Sequence[Value | None], surroundings: Surrounding
     result, changes = builtin.function(*given)
     after = (changes.get(place, argument) for place, argument in enumerate(arguments))
     return Reply(result, tuple(after))
+
+
+def reads_text(type_: Type) -> bool:
+    """Whether a function reads a text by a parameter :IN of this type [FCT-04].
+
+    There an array of CHAR that the caller of a routine has left out is the empty text, as one is
+    that never had a value (unconfirmed: the message routines in backups of three independent
+    controllers ask for STRLEN of a parameter that is left out, and go on only if it is not 0).
+    """
+    return isinstance(type_, Array) and type_.element == CHAR and len(type_.sizes) == 1
 
 
 def _passed(type_: Type, argument: Value | None) -> Value:

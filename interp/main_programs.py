@@ -3,8 +3,9 @@
 A main program is the first routine of a file below R1, outside the folders of the controller and of
 its packages, that takes no arguments, moves the arm, and is called by no other program but the one
 that only chooses between programs, CELL. It is run with the machine data, tools, bases and points
-of its own backup, with its submit program where there is one, and with somebody at the panel who
-goes on after a HALT, acknowledges messages and gives each dialogue its first answer.
+of its own backup, with its submit program where there is one, with somebody at the panel who goes
+on after a HALT, acknowledges messages and gives each dialogue its first answer, and with a cell
+that obliges: the inputs that a WAIT FOR waits for come after a second.
 """
 
 from __future__ import annotations
@@ -37,10 +38,13 @@ __all__ = [
     "survey_profile",
 ]
 
-#: What the person at the panel does, as lines of a script.
-OPERATOR: Final = (
-    "on HALT after 1 press START\non message after 1 press CONFIRM\non dialogue after 1 answer 1\n"
-)
+#: What the person at the panel and the cell do, as lines of a script.
+OPERATOR: Final = """\
+on HALT after 1 press START
+on message after 1 press CONFIRM
+on dialogue after 1 answer 1
+fulfil waits after 1
+"""
 #: Folders of a backup that hold what the controller and its packages bring along.
 _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
 #: Requests of the submit program in a cycle: it goes round many times a second all the same.
@@ -78,7 +82,8 @@ class Ran:
     """What came of a main program: virtual seconds, motions made, and where and why it ended.
 
     ``at`` is where it was when its time was over. ``furthest_mm`` is how far a measured tool was
-    from its set-point at most, where the robot measures.
+    from its set-point at most, where the robot measures. ``inputs``: how many changes of inputs it
+    took to fulfil its waits.
     """
 
     result: Result
@@ -88,6 +93,7 @@ class Ran:
     reason: str = ""
     machine: str = ""
     furthest_mm: float | None = None
+    inputs: int = 0
 
 
 def main_programs(sources: Iterable[Source]) -> tuple[list[MainProgram], list[tuple[str, str]]]:
@@ -179,7 +185,7 @@ def survey_profile() -> Profile:
 
 
 def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
-    """Run a main program; ``script`` adds to what the person at the panel does.
+    """Run a main program; ``script`` adds to what the person at the panel and the cell do.
 
     Raises `interp.controller.script.ScriptError` for a script that names what does not exist.
     """
@@ -208,7 +214,16 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
     number = getattr(outcome.error, "number", None)
     if number is not None:
         reason += f" (message {number})"
-    return Ran(result, outcome.time / 1e6, seen.motions, place, reason, run.machine.name, furthest)
+    return Ran(
+        result,
+        outcome.time / 1e6,
+        seen.motions,
+        place,
+        reason,
+        run.machine.name,
+        furthest,
+        run.controller.fulfilling.count,
+    )
 
 
 @dataclass(slots=True)

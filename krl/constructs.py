@@ -21,13 +21,21 @@ __all__ = [
     "print_evaluation",
     "print_refusals",
     "print_table",
+    "there",
 ]
 
-# In the working folder: the ledger is data of a checkout and does not travel with the package.
+# In the working folder: only a checkout's grammar grows.
 GRAMMAR = Path("grammar", "KRL.g4")
 PRELIMINARY = Path("grammar", "preliminary.g4")
 GENERATED = Path("grammar", "_generated")
 LEDGER = Path("grammar", "constructs")
+
+
+def there(path: Path) -> Path:
+    """One of these to be read: of the checkout we are in, else what came with the package."""
+    from grammar.generate import GRAMMAR as OURS
+
+    return path if path.parent.is_dir() else OURS.parent / path.relative_to("grammar")
 
 
 @contextmanager

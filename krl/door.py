@@ -23,6 +23,7 @@ __all__ = [
     "Unusable",
     "one_line",
     "run",
+    "shown",
 ]
 
 FINE: Final = 0
@@ -42,8 +43,12 @@ class Unusable(Exception):
 
 def one_line(text: str) -> str:
     """`text` on one line: blanks folded, anything that could steer a terminal spelt out."""
-    folded = " ".join(text.split())
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in folded)
+    return shown(" ".join(text.split()))
+
+
+def shown(text: str) -> str:
+    """`text`, which is a line, with anything that could steer a terminal spelt out."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:

@@ -76,10 +76,15 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
 
 
 def _shown(found: "Found", root: Path) -> str:
-    """The path of a file below the root of its project: the same wherever the project lies."""
+    """The path of a file below the root of its project: the same wherever the project lies.
+
+    As people are shown it: a name may hold what no terminal, image or trace can.
+    """
+    from recovery.ingest import printable
+
     if found.member is not None:
-        return found.member
-    return found.file.relative_to(root).as_posix()
+        return found.path.removeprefix(f"{printable(root.as_posix())}/")
+    return printable(found.file.relative_to(root).as_posix())
 
 
 def _in_archive(file: Path) -> tuple[Path | None, str]:

@@ -22,6 +22,7 @@ def write_json(record: Mapping[str, Any], target: Path) -> None:
     """Write ``record`` whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
     scratch = target.with_name(target.name + ".part")
-    with scratch.open("w", encoding="utf-8", newline="\n") as stream:
+    # half of a character, which names of files may hold, is an escape of JSON then
+    with scratch.open("w", encoding="utf-8", newline="\n", errors="backslashreplace") as stream:
         stream.write(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
     scratch.replace(target)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from recovery.habits import last_two
 from recovery.phrases import Phraser, Word
 
 __all__ = ["common_phrases"]
@@ -58,11 +59,14 @@ def common_phrases(
         return
     seen = set()
     for level in range(3):
-        written = [_written(phraser, column, level, near) for column in columns]
-        symbols = tuple(_grouped(columns, written, len(rows)))
-        if all(written) and symbols not in seen:
-            seen.add(symbols)
-            yield symbols
+        narrow = [_written(phraser, column, level, near) for column in columns]
+        if not all(narrow):
+            continue
+        for written in (_as_usual(phraser, columns, narrow, len(rows)), narrow):
+            symbols = tuple(_grouped(columns, written, len(rows)))
+            if symbols not in seen:
+                seen.add(symbols)
+                yield symbols
 
 
 def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
@@ -152,7 +156,7 @@ def _written(
     """A column as symbols: a sign, a rule that reads every cell, or a choice of few; or nothing."""
     if column.key:
         return (column.key,)
-    spans = sorted({span for part in column.cells.values() for span in part.spans}, key=str)
+    spans = _spans(column)
     chosen = phraser.rules_for_all(spans, near)
     if chosen:
         symbol = chosen[min(level, len(chosen) - 1)]
@@ -161,9 +165,34 @@ def _written(
         if several is None:
             return ()
         symbol = f"({' | '.join(several)})" if len(several) > 1 else several[0]
-    if any(len(part.spans) > 1 for part in column.cells.values()):
-        return (symbol, f"(',' {symbol})*")
-    return (symbol,)
+    return _listed(symbol, listed=any(len(part.spans) > 1 for part in column.cells.values()))
+
+
+def _as_usual(
+    phraser: Phraser,
+    columns: Sequence[_Column],
+    written: Sequence[tuple[str, ...]],
+    rows: int,
+) -> list[tuple[str, ...]]:
+    """The columns with the rules that the grammar usually has in such places, where they fit."""
+    out: list[tuple[str, ...]] = []
+    always: list[str] = []  # what is written so far, but for what may be left out
+    for column, symbols in zip(columns, written, strict=True):
+        before = last_two(always)
+        usual = None if column.key else phraser.usual_for(_spans(column), before)
+        listed = any(len(part.spans) > 1 for part in column.cells.values())
+        out.append(_listed(usual, listed=listed) if usual else symbols)
+        if len(column.cells) == rows:
+            always += out[-1]
+    return out
+
+
+def _spans(column: _Column) -> list[_Span]:
+    return sorted({span for part in column.cells.values() for span in part.spans}, key=str)
+
+
+def _listed(symbol: str, *, listed: bool) -> tuple[str, ...]:
+    return (symbol, f"(',' {symbol})*") if listed else (symbol,)
 
 
 def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:

@@ -14,7 +14,6 @@ from typing import Any
 from grammar.edits import (
     AddAlternative,
     Address,
-    AddToken,
     Edit,
     Insert,
     MakeOptional,
@@ -28,6 +27,7 @@ from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
 from recovery.causes import Judge
 from recovery.cluster import Clusters, cluster
+from recovery.joined import together
 from recovery.judge import judge_of
 from recovery.mutation import Mutant
 from recovery.negatives import Negative, NegativeSet
@@ -40,6 +40,10 @@ from recovery.trial import edited
 __all__ = ["Material", "Verdict", "assess", "covering", "examine", "figures"]
 
 _CLUSTERS_LOOKED_AT = 5
+_PROPOSALS_LOOKED_AT = 5
+# Failing texts by which the proposals of a cluster are compared: those that are left out are read
+# in the end.
+_TEXTS_COMPARED = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +89,12 @@ def assess(
       (`recovery.swallowed`) where it is read as a name.
     - rule_rank, item_rank: the first of the proposals of all clusters, taken in the order of the
       page, whose edit is in the right rule, or at the right place.
-    - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again;
-      where several parts are missing, 1 if the best proposals of all clusters together do that.
+    - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again.
+      Where several parts are missing no one proposal does that: it is 1 if the best proposals of
+      all clusters do so together; else the clusters are gone through in the order of the page, of
+      each the proposal is taken (the first of equals among five) after which most of the failing
+      texts can be read, of a cluster none whose lines can be read already, and the rank is that
+      of the deepest proposal taken: so far down a person has to look in each cluster.
     - false_accepts: negatives the best proposal lets in that ``whole`` rejects.
     - seconds: of processor time, for the survey and the search.
     """
@@ -190,24 +198,54 @@ def _adjacent(here: Address, there: Address) -> bool:
 
 
 def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str]) -> int | None:
-    """1 where the best proposals, one after the other as far as they fit, repair everything."""
+    """How far down a person has to look in each cluster; see `assess`."""
+    best = [entry.proposals[0].edits for entry in clusters.ranked if entry.proposals]
+    if _reads_all(_with_all(base, best), texts):
+        return 1
+    chosen: list[tuple[Edit, ...]] = []
+    deepest = 0
     wider = base
+    failing = _telling([text for text in texts if not base.accepts(text)])
     for entry in clusters.ranked:
-        if entry.proposals:
-            known = wider.grammar.by_name
-            edits = [
-                edit
-                for edit in entry.proposals[0].edits
-                if not (isinstance(edit, AddToken) and edit.name in known)
-            ]
-            wider = edited(wider, edits) or wider
-    return 1 if all(map(wider.accepts, texts)) else None
+        failing = [text for text in failing if not wider.accepts(text)]
+        if not failing:
+            break
+        options = []
+        for depth, proposal in enumerate(entry.proposals[:_PROPOSALS_LOOKED_AT]):
+            made = _with_all(base, [*chosen, proposal.edits])
+            options.append((sum(map(made.accepts, failing)), -depth, made))
+        if not options or not (most := max(options, key=lambda option: option[:2]))[0]:
+            continue  # nothing that is still to be read is read by any of them
+        wider = most[2]
+        chosen.append(entry.proposals[-most[1]].edits)
+        deepest = max(deepest, 1 - most[1])
+    return deepest if deepest and _reads_all(wider, texts) else None
+
+
+def _telling(texts: Sequence[str]) -> list[str]:
+    """Texts to tell edits apart by: the short ones, which have few causes each to fail."""
+    return sorted(set(texts), key=lambda text: (len(text), text))[:_TEXTS_COMPARED]
+
+
+def _with_all(base: Recognizer, several: Sequence[Sequence[Edit]]) -> Recognizer:
+    """A recogniser with the edits of all, but for those that do not fit the ones before."""
+    found, edits = base, tuple[Edit, ...]()
+    for some in several:
+        more = together(edits, some)
+        wider = edited(base, more)
+        if wider is not None:
+            found, edits = wider, more
+    return found
+
+
+def _reads_all(recognizer: Recognizer, texts: Sequence[str]) -> bool:
+    return all(map(recognizer.accepts, texts))
 
 
 def _repairs(base: Recognizer, edits: Sequence[Edit], texts: Sequence[str]) -> bool:
     """Whether every program can be read again."""
     wider = edited(base, edits)
-    return wider is not None and all(map(wider.accepts, texts))
+    return wider is not None and _reads_all(wider, texts)
 
 
 def covering(grammar: Grammar) -> list[str]:

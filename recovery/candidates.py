@@ -224,6 +224,10 @@ class CandidateFinder:
             rank += self.likeness.unlike(rule, symbols)
             if self.likeness.repeats_sibling(rule, symbols):
                 rank += 2 * UNLIKELY
+            if self.likeness.extends(rule, symbols):
+                rank += UNLIKELY
+            if len(symbols) == 1 and self.phraser.would_be_read_twice(rule, text):
+                rank += 2 * UNLIKELY
             yield rank, (*tokens, AddAlternative(rule, text))
 
 

@@ -16,9 +16,10 @@ from typing import TypeVar
 from grammar.edits import AddAlternative, AddToken, Edit
 from grammar.recognizer import Recognizer
 from recovery.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
-from recovery.joined import one_choice, reach_the_same, together
+from recovery.joined import one_choice, one_form, reach_the_same, together
 from recovery.phrases import Word
 from recovery.progress import Progress, unheard
+from recovery.readable import Readable, nothing_readable
 from recovery.trial import Outcome, Trial, changed_rules
 from recovery.uncollected import uncollected
 from recovery.whole import WholeFiles
@@ -60,6 +61,8 @@ _OTHERS_COUNT = 0.3
 _ALL_ALIKE = 1.25
 # What an edit loses that reads a word as a name which all lines have as a keyword.
 _LEFT_A_NAME = 0.6
+# What an edit loses that reserves a word which is a name in files that can be read.
+_LOSES_FILES = 0.5
 # What an edit loses that gives some of its lines two readings.
 _TWO_READINGS = 0.97
 
@@ -104,20 +107,23 @@ def find_causes(
     judge: Judge,
     on_done: Progress = unheard,
     whole: WholeFiles | None = None,
+    readable: Readable = nothing_readable,
 ) -> list[Cause]:
     """Group ``lines`` by cause.
 
     ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
     heaviest first. ``on_done`` is told of each group dealt with. ``whole`` has the files in which
-    the lines fail.
+    the lines fail, ``readable`` those that can be read.
     """
-    search = Search(recognizer, lines, weights, judge, whole)
+    search = Search(recognizer, lines, weights, judge, whole, readable)
     causes: list[Cause] = []
     for place, group in enumerate(groups):
         search.thorough = place < _HEAVY_GROUPS
         with uncollected(_GARBAGE):
             causes += _of_group(search, group)
         on_done(1)
+    with uncollected(_GARBAGE):
+        causes = search.sought_together(causes)
     return search.joined(causes)
 
 
@@ -148,11 +154,13 @@ class Search:
         weights: Sequence[int],
         judge: Judge,
         whole: WholeFiles | None = None,
+        readable: Readable = nothing_readable,
     ) -> None:
         self.lines = lines
         self.weights = weights
         self.judge = judge
         self.whole = whole or WholeFiles(recognizer)
+        self.readable = readable
         self.finder = CandidateFinder(recognizer)
         self.trial = Trial(recognizer, lines)
         self.thorough = True
@@ -210,8 +218,27 @@ class Search:
             outcome = self.trial.outcome(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth
             proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
-        useful = {proposal.edits: proposal for proposal in proposals if self._gain(proposal)}
+        kept = [self._names_kept(proposal) for proposal in proposals]
+        useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
         return self._ranked(list(useful.values()), heavy)[:_SHOWN]
+
+    def _names_kept(self, proposal: Proposal) -> Proposal:
+        """The proposal; where files have a word as a name that it reserves, with that left one."""
+        if not self._loses(proposal.edits):
+            return proposal
+        layout = self.finder.layout
+        edits = layout.still_names(proposal.edits)
+        if layout.names is None or edits is None or self._loses(edits):
+            return proposal
+        outcome = self.trial.outcome(edits, self.open)
+        breadth = proposal.breadth + layout.width(layout.names) // 2
+        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+
+    def _loses(self, edits: tuple[Edit, ...]) -> bool:
+        """Whether files that can be read cannot be any more."""
+        words = [edit.name for edit in edits if isinstance(edit, AddToken)]
+        wider = self.trial.wider(edits) if words else None
+        return wider is not None and self.readable.is_lost(wider, words)
 
     def _tried(
         self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
@@ -264,6 +291,47 @@ class Search:
         outcome = self.trial.outcome(edits)
         return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
 
+    def sought_together(self, causes: Sequence[Cause]) -> list[Cause]:
+        """Causes whose lines are led by the same word made one where one edit mends them.
+
+        Each was sought for its own lines alone: what reads all of them may never have been tried.
+        """
+        led: dict[str, list[Cause]] = defaultdict(list)
+        for cause in causes[:_MOST_JOINED]:
+            leads = {self._lead(self.lines[n]) for n in cause.lines} if cause.proposals else set()
+            if len(leads) == 1:
+                led[leads.pop()].append(cause)
+        out = list(causes)
+        for word, several in sorted(led.items()):
+            if word and len(several) > 1:
+                one, parts = self._found_for_all(several)
+                if one is not None:
+                    place = out.index(parts[0])
+                    out = [cause for cause in out if cause not in parts]
+                    out.insert(place, one)
+        return out
+
+    def _found_for_all(self, causes: Sequence[Cause]) -> tuple[Cause | None, list[Cause]]:
+        """A cause in place of several of the causes, and which; nothing where there is none."""
+        lines = sorted(n for cause in causes for n in cause.lines)
+        self.thorough = True
+        self.open = set(lines)
+        found = self.best_for(lines)
+        if found is None:
+            return None, []
+        best = found.proposals[0]
+        parts = [
+            cause
+            for cause in causes
+            if best.mended.issuperset(cause.proposals[0].mended.intersection(cause.lines))
+        ]
+        negatives = sum(cause.proposals[0].accepts_negatives for cause in parts)
+        if len(parts) < 2 or best.accepts_negatives > negatives:
+            return None, []
+        best = self.proposal(best.edits, best.breadth)
+        members = tuple(sorted(n for cause in parts for n in cause.lines))
+        return Cause(members, (best, *found.proposals[1:])), parts
+
     def joined(self, causes: Sequence[Cause]) -> list[Cause]:
         """Causes of which one is missing in several places made one."""
         out: list[Cause] = []
@@ -297,6 +365,9 @@ class Search:
         pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
         for choice in one_choice(pair, self._may_be_chosen):
             yield choice.edits, choice.breadth
+        form = one_form(layout, one.edits, other.edits)
+        if form is not None:
+            yield form, max(one.breadth, other.breadth) + 1
         if reach_the_same(layout, one.edits, other.edits):
             yield together(one.edits, other.edits), max(one.breadth, other.breadth) + 1
 
@@ -381,6 +452,8 @@ class Search:
             worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
             if p.mended.issuperset(alike):
                 worth[p.edits] *= _ALL_ALIKE
+            if self._loses(p.edits):
+                worth[p.edits] *= _LOSES_FILES
             if self.trial.is_ambiguous(p.edits, p.mended):
                 worth[p.edits] *= _TWO_READINGS
         return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))

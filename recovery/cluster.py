@@ -13,6 +13,7 @@ from grammar.recognizer import Recognizer
 from recovery.candidates import Line
 from recovery.causes import Cause, Judge, Proposal, find_causes, no_judge
 from recovery.progress import Progress, unheard
+from recovery.readable import Readable
 from recovery.shapes import Shape, Shaper
 from recovery.survey import Failed, Survey, SurveyedFile
 from recovery.whole import FailingFile, WholeFiles
@@ -99,6 +100,10 @@ def cluster(
             judge,
             on_done,
             WholeFiles(groups.recognizer, groups.failing(found, text_of)),
+            Readable(
+                ((f.size, partial(text_of, f)) for f in found.files if not f.failures),
+                {word for line in groups.lines for _, word in line.keywords},
+            ),
         )
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)

@@ -11,12 +11,13 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from recovery.candidates import Candidate
 from recovery.layout import Layout
 
-__all__ = ["one_choice", "reach_the_same", "together"]
+__all__ = ["one_choice", "one_form", "reach_the_same", "together"]
 
 _MOST_TOGETHER = 3
 # Words of a text, a choice of words taken for one.
@@ -57,6 +58,28 @@ def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
         # what gathered several rules is gone, or what had several forms without a word of its own
         return all(unused) or bool(layout.operands(one.text) & layout.operands(other.text))
     return bool(unused[0] & unused[1])
+
+
+def one_form(
+    layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
+) -> tuple[Edit, ...] | None:
+    """The edits of both with one text, where both let in a form of what one new word begins.
+
+    No rule has had a use for the word, and two rules are to have one now: they share the longer
+    form. ``None`` where that is not so.
+    """
+    one, other = first[-1], second[-1]
+    if not isinstance(one, AddAlternative) or not isinstance(other, AddAlternative):
+        return None
+    words = {edit.text.split(" ")[0] for edit in (one, other)}
+    if len(words) > 1 or one.rule == other.rule or len(_main(layout, first)) > 1:
+        return None
+    word = words.pop()
+    if not word.isidentifier() or not word[0].isupper() or layout.is_written(word):
+        return None
+    text = max(one.text, other.text, key=lambda t: (len(t), t))
+    both = (replace(one, text=text), replace(other, text=text))
+    return together((*first[:-1], both[0]), (*second[:-1], both[1]))
 
 
 def one_choice(

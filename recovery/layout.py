@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 from grammar.edits import (
@@ -146,6 +146,25 @@ class Layout:
             for a in self.grammar.by_name[rule].alternatives
         )
 
+    def words_of(self, rule: str) -> frozenset[str]:
+        """The tokens of a rule whose alternatives are one token, or one such rule, each.
+
+        None where an alternative is anything else.
+        """
+        found: set[str] = set()
+        todo, seen = [rule], {rule}
+        while todo:
+            for alternative in self.grammar.by_name[todo.pop()].alternatives:
+                element = alternative.elements[0] if len(alternative.elements) == 1 else None
+                if isinstance(element, Reference) and not element.is_token:
+                    todo += {element.name} - seen
+                    seen.add(element.name)
+                elif isinstance(element, Reference | Literal):
+                    found.add(self.grammar.token_of(element))
+                else:
+                    return frozenset()
+        return frozenset(found)
+
     def only_passes_on(self, rule: str) -> bool:
         """Whether a rule is nothing but another rule: it waits for something."""
         alternatives = self.grammar.by_name[rule].alternatives
@@ -272,7 +291,10 @@ class Layout:
     # ------------------------------------------------------------------------------- elements
 
     def first(self, sequence: Alternative, number: int) -> frozenset[int]:
-        """The tokens with which the element at a place itself begins, rules left aside."""
+        """The tokens with which the element at a place itself begins.
+
+        Rules are left aside, but for those that are nothing but a choice of reserved words.
+        """
         if number > len(sequence.elements):
             return frozenset()
         return frozenset(self._tokens(sequence.elements[number - 1]))
@@ -286,6 +308,10 @@ class Layout:
                     yield from self._tokens(alternative.elements[0])
         elif isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
             yield self.recognizer.lexer.kind_of[self.grammar.token_of(element)]
+        elif isinstance(element, Reference):
+            kinds = {self.recognizer.lexer.kind_of[t] for t in self.words_of(element.name)}
+            if all(map(self.recognizer.lexer.is_keyword, kinds)):
+                yield from kinds
 
     def is_keyword(self, element: Element) -> bool:
         """Whether an element is a reserved word, or a choice of such words."""
@@ -316,6 +342,21 @@ class Layout:
             and 4 * len(rule.alternatives) > all_words
         )
 
+    def is_written(self, word: str) -> bool:
+        """Whether some rule has a use for a word; to be listed among all is none."""
+        return word in self._written
+
+    @cached_property
+    def _written(self) -> frozenset[str]:
+        return frozenset(
+            e.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer and rule.name not in self.word_lists
+            for a in rule.alternatives
+            for e in walk(a)
+            if isinstance(e, Reference) and e.is_token
+        )
+
     def reserve(self, keywords: Iterable[str]) -> tuple[Edit, ...]:
         """The edits that reserve words, and enter them where all reserved words are listed."""
         edits: list[Edit] = []
@@ -323,6 +364,34 @@ class Layout:
             edits.append(AddToken(word))
             edits += [AddAlternative(rule, word) for rule in self.word_lists]
         return tuple(edits)
+
+    @cached_property
+    def names(self) -> str | None:
+        """The rule of what is a name: a token, and keywords that are names in most places."""
+        lexer = self.recognizer.lexer
+        for rule in self.grammar.rules:
+            if not rule.is_lexer and self.words_of(rule.name):
+                single = [a.elements[0] for a in rule.alternatives]
+                words = sum(map(self.is_keyword, single))
+                token = sum(isinstance(e, Reference) and e.is_token for e in single) - words
+                if token == 1 and words:
+                    kinds = [lexer.kind_of[t] for t in self.words_of(rule.name)]
+                    if sum(map(lexer.is_keyword, kinds)) == len(kinds) - 1:
+                        return rule.name
+        return None
+
+    def still_names(self, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+        """The edits with the words they reserve left names; ``None`` where there is no such rule.
+
+        Such words are in the list of names then, and not in that of all other reserved words.
+        """
+        if self.names is None:
+            return None
+        words = [edit.name for edit in edits if isinstance(edit, AddToken)]
+        listed = set(self.reserve(words))
+        tokens = tuple(edit for edit in edits if isinstance(edit, AddToken))
+        entered = (AddAlternative(self.names, word) for word in words)
+        return (*tokens, *entered, *(edit for edit in edits if edit not in listed))
 
     # ------------------------------------------------------------------------- left recursion
 

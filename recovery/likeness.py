@@ -54,6 +54,8 @@ class Likeness:
             return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
         if self.gathers(rule):
             if not self._is_single(symbols):
+                if self.layout.words_of(rule):
+                    return 3 * _LIKE  # each is a word, and this is none
                 return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
             if not self.layout.is_free(symbols[0]):
                 return -_LIKE  # it has its place already
@@ -80,6 +82,22 @@ class Likeness:
         return len(symbols) > 1 and bool(
             self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
         )
+
+    def extends(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether the symbols are an alternative that the rule has, with more before or behind it.
+
+        That may as well be left out, so it is better said there.
+        """
+        found = self.layout.grammar.by_name[rule]
+        for alternative in found.alternatives:
+            known = [found.source_of(e) for e in alternative.elements]
+            count = len(known)
+            if 0 < count < len(symbols) and known in (
+                list(symbols[:count]),
+                list(symbols[-count:]),
+            ):
+                return True
+        return False
 
     def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
         """Whether a rule is one kind of statement, known by its words, and the symbols another."""

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar.edits import Insert
+from grammar.edits import AddAlternative, Insert
 from grammar.failures import Form
 from grammar.paths import Paths
-from grammar.recognizer import State
+from grammar.recognizer import Configuration, State
 from recovery.layout import Layout
+from recovery.likeness import Likeness
 from recovery.opening import UNLIKELY, Opening, Ranked, places_of, sites_of
 from recovery.phrases import Phraser, Word
 
@@ -22,10 +23,11 @@ __all__ = ["LineOpenings"]
 class LineOpenings:
     """Finds openings for whole lines under one grammar."""
 
-    def __init__(self, layout: Layout, phraser: Phraser) -> None:
+    def __init__(self, layout: Layout, likeness: Likeness, phraser: Phraser) -> None:
         self.recognizer = layout.recognizer
         self.grammar = layout.grammar
         self.layout = layout
+        self.likeness = likeness
         self.phraser = phraser
         self._paths = Paths(layout.recognizer.network)
 
@@ -40,11 +42,14 @@ class LineOpenings:
         readers = () if known or blank else self._readers(kinds)
         if not blank:
             yield from self._as_alternatives(before, words)
+        yield from self._known_elsewhere(before, readers)
         for site in sites_of(self.recognizer, before):
             rule = recognizer.network.rule[site[0]]
             if rule in layout.line_ends:
                 continue
             rank = layout.width(rule) + 8
+            if self._is_beside_lines(site):
+                rank += 2 * UNLIKELY  # it would put lines in an order that no text asks for
             for place in places_of(self.recognizer, site):
                 if rule != self.grammar.start and layout.is_at_start(rule, place):
                     continue  # what comes before a rule belongs to the rule that calls it
@@ -58,6 +63,29 @@ class LineOpenings:
                 if not readers:
                     phrase = tuple(words[:-1])
                     yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY)
+
+    def _known_elsewhere(self, before: State, readers: tuple[str, ...]) -> Iterator[Ranked]:
+        """What reads whole lines elsewhere, as one more kind of the lines that come here."""
+        recognizer, layout = self.recognizer, self.layout
+        network = recognizer.network
+        called = {
+            network.rule[entry]
+            for site in sites_of(recognizer, before)
+            for entry, _ in network.calls[site[0]]
+        }
+        for rule in sorted(called & layout.loops & layout.of_lines):
+            for reader in readers:
+                if reader not in layout.of_lines or reader == rule:
+                    continue
+                rank = layout.width(rule) + 8 + self.phraser.breadth([reader])
+                rank += self.likeness.unlike(rule, (reader,))
+                yield rank, (AddAlternative(rule, reader),)
+
+    def _is_beside_lines(self, site: Configuration) -> bool:
+        """Whether lines of some kind come any number of times where the recogniser stands."""
+        network = self.recognizer.network
+        called = {network.rule[entry] for entry, _ in network.calls[site[0]]}
+        return bool(called & self.layout.loops & self.layout.of_lines)
 
     def after_line_end(self, form: Form, words: list[Word]) -> Iterator[Ranked]:
         """What would let the line be read had the line end before it been taken otherwise."""

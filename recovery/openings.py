@@ -39,7 +39,7 @@ class OpeningFinder:
         self.layout = layout
         self.likeness = likeness
         self.phraser = phraser
-        self._lines = LineOpenings(layout, phraser)
+        self._lines = LineOpenings(layout, likeness, phraser)
 
     def find(self, line: Line) -> Iterator[Opening | Ranked]:
         """Openings of a line, and edits that need no phrase; some more than once."""
@@ -134,16 +134,20 @@ class OpeningFinder:
                     rank = self.layout.width(called) + 8
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
-                ends = self._reading_on(recognizer.at(site, state), words, start, form.index)
+                # what was let in may end where another reading went on, and failed later
+                ends = self._reading_on(recognizer.at(site, state), words, start, start + 1)
                 for end, place in product(ends, places_of(self.recognizer, site)):
                     sequence = self.layout.sequence(rule, place[:-1])
-                    if not is_first or words[end][0] in self.layout.first(sequence, place[-1]):
+                    comes_next = words[end][0] in self.layout.first(sequence, place[-1])
+                    if self._is_behind_line_end(rule, place):
+                        continue
+                    if comes_next or (not is_first and end >= form.index):
                         yield self._insertion(rule, place, words[start:end])
 
-    def _reading_on(self, state: State, words: list[Word], start: int, failed: int) -> list[int]:
-        """Where from the failure on the whole rest of the line can be read from ``state``."""
+    def _reading_on(self, state: State, words: list[Word], start: int, first: int) -> list[int]:
+        """Where from ``first`` on the whole rest of the line can be read from ``state``."""
         kinds = [kind for kind, _ in words]
-        ends = range(max(start + 1, failed), min(len(kinds), start + _MOST_SKIPPED + 1))
+        ends = range(max(start + 1, first), min(len(kinds), start + _MOST_SKIPPED + 1))
         return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
 
     # --------------------------------------------------------------------------- at one site
@@ -172,7 +176,10 @@ class OpeningFinder:
                 # behind all that may be left out, but for what the line has behind it; before the
                 # first element of a rule only where that element itself comes next
                 is_prefix = position != base or (not gathers and end - start <= _LONGEST_PREFIX)
-                if (comes_next and is_prefix) or (is_last and position != base and not begins_loop):
+                is_suffix = is_last and position != base and not begins_loop
+                if (comes_next and is_prefix) or (
+                    is_suffix and not self._is_behind_line_end(rule, place)
+                ):
                     yield self._insertion(rule, place, words[start:end])
                 yield from self._repetitions(rule, place, words[start:end])
             yield from self._blocks(rule, place, words[start:])
@@ -207,12 +214,21 @@ class OpeningFinder:
     def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> Opening:
         width = self._room(rule)
         elements = self.layout.sequence(rule, place[:-1]).elements
+        if len(place) > 2 and place[-1] > len(elements):
+            width += 1  # behind one of a choice rather than behind the choice
         before = elements[place[-1] - 2] if place[-1] > 1 else elements[0]
         if isinstance(before, Reference) and not before.is_token:
             alone = self.layout.is_hub(rule) and len(elements) == 1
             if alone or (place[-1] > 1 and self.layout.is_hub(before.name)):
                 width += UNLIKELY  # behind one of many statements rather than in it
         return Opening("insert", rule, place, tuple(words), width + 8)
+
+    def _is_behind_line_end(self, rule: str, place: Address) -> bool:
+        """Whether a place is behind the end of a line that a rule is: that is the next line."""
+        elements = self.layout.sequence(rule, place[:-1]).elements
+        return self.layout.closing(rule) is not None and (
+            len(place) == 2 and place[-1] > len(elements)
+        )
 
     def _room(self, rule: str) -> int:
         """How wide an insertion into a rule is; one that has nothing of its own waits for it."""

@@ -15,6 +15,8 @@ from itertools import islice, product
 
 from grammar.lexer import ERROR
 from grammar.recognizer import Recognizer, State
+from recovery.habits import Before, Habits, symbols_in
+from recovery.layout import HUB
 
 __all__ = ["Phraser", "Word"]
 
@@ -22,6 +24,7 @@ __all__ = ["Phraser", "Word"]
 Word = tuple[int, str | None]
 
 _LONGEST_PHRASE = 24
+_LONGEST_CUT = 120  # words; the cost grows with the cube, and no statement has so many parts
 _MOST_SYMBOLS = 8
 _MOST_SPELLINGS = 12
 _MOST_REMEMBERED = 200_000
@@ -29,6 +32,9 @@ _NAMES = re.compile(r"\w+")
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 # What a rule that reads several operands in a row costs for each seam: more than writing them out.
 _LOOSE = 30
+# What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
+_USUAL = 2
+_UNUSUAL = 5
 
 
 class Phraser:
@@ -36,6 +42,7 @@ class Phraser:
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
+        self.habits = Habits(recognizer)
         self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
         self._begun: dict[tuple[int, ...], Mapping[str, State]] = {}
         self._spans: dict[tuple[int, ...], frozenset[str]] = {}
@@ -62,9 +69,14 @@ class Phraser:
         return {name: frozenset(found - {name}) for name, found in callers.items()}
 
     def _is_one_level(self, rule: str) -> bool:
-        """Whether a rule is only a step within another that stands for it alone."""
+        """Whether a rule is only a step within another that stands for it alone.
+
+        One of many kinds that a rule gathers is no step.
+        """
+        known = self.recognizer.grammar.by_name
         return len(self._callers[rule]) == 1 and all(
-            rule in self._wider[caller] for caller in self._callers[rule]
+            rule in self._wider[caller] and len(known[caller].alternatives) < HUB
+            for caller in self._callers[rule]
         )
 
     @cached_property
@@ -97,6 +109,15 @@ class Phraser:
         for rule in direct:
             closed(rule)
         return out
+
+    def would_be_read_twice(self, rule: str, symbol: str) -> bool:
+        """Whether what stands for a rule alone reads a keyword that the rule would read too.
+
+        That a list of almost all keywords has it says nothing.
+        """
+        kind = self.recognizer.lexer.kind_of.get(symbol)
+        readers = self.rules_for((kind,)) - self._careless if kind is not None else frozenset()
+        return any(rule in self._wider[reader] for reader in readers)
 
     def is_unused(self, rule: str) -> bool:
         """Whether nothing calls a rule."""
@@ -137,9 +158,25 @@ class Phraser:
         return states
 
     def breadth(self, symbols: Sequence[str]) -> int:
-        """How much a phrase lets in: nothing for tokens, more for rules that stand for more."""
-        names = (name for symbol in symbols for name in _NAMES.findall(symbol))
-        return sum(1 + len(self._wider[name]) for name in names if name in self._wider)
+        """How much a phrase lets in: nothing for tokens, more for rules that stand for more.
+
+        What the grammar usually writes in such a place (`recovery.habits`) counts little; what is
+        narrower than that counts as unlikely to be all that is meant.
+        """
+        return sum(self._cost(before, symbol) for before, symbol in symbols_in(symbols))
+
+    def _cost(self, before: Before, symbol: str) -> int:
+        rule = self.habits.written_by.get(symbol, symbol)
+        if rule not in self._wider:
+            return 0
+        cost = 1 + len(self._wider[rule]) + (rule != symbol)
+        usual = self.habits.usual(before)
+        if 2 * usual.get(symbol, 0) > sum(usual.values()):
+            return min(cost, _USUAL)
+        is_narrower = symbol not in usual and any(
+            rule == u or rule in self._wider.get(u, ()) for u in usual
+        )
+        return cost + (_UNUSUAL if is_narrower else 0)
 
     def sign(self, span: Sequence[Word]) -> str | None:
         """The text of a keyword or sign; ``None`` for what carries a value."""
@@ -210,13 +247,40 @@ class Phraser:
             return
         plain = [self._token(word) for word in words]
         if all(plain):
-            yield tuple(token for token in plain if token)
+            tokens = tuple(token for token in plain if token)
+            yield tokens
+            yield tuple(self.habits.written_by.get(token, token) for token in tokens)
         choices = [self._levels(part, near) for part in parts]
         if all(choices):
+            for level in (0, -1):
+                yield self._as_usual(parts, [levels[level] for levels in choices])
             yield from islice(product(*choices), _MOST_SPELLINGS)
 
+    def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
+        """The symbols, with what the grammar usually writes where that reads the parts."""
+        before = ("", "")
+        for place, part in enumerate(parts):
+            symbols[place] = self.usual_for([part], before) or symbols[place]
+            before = (before[1], symbols[place])
+        return tuple(symbols)
+
+    def usual_for(self, spans: Sequence[tuple[Word, ...]], before: Before) -> str | None:
+        """The rule that usually stands in such a place, where it reads all the spans."""
+        if any(keyword is not None for span in spans for _, keyword in span):
+            return None
+        kinds = {tuple(kind for kind, _ in span) for span in spans}
+        usual = self.habits.usual(before)
+        fitting = [
+            rule
+            for rule in usual
+            if rule in self._wider and all(rule in self.rules_for(k) for k in kinds)
+        ]
+        return min(fitting, key=lambda r: (-usual[r], len(self._wider[r]), r), default=None)
+
     def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
-        """The words cut into the fewest operands and single tokens."""
+        """The words cut into the fewest operands and single tokens, unless they are too many."""
+        if len(words) > _LONGEST_CUT:
+            return None
         key = tuple(words)
         if key not in self._cuts:
             if len(self._cuts) >= _MOST_REMEMBERED:
@@ -242,10 +306,13 @@ class Phraser:
         """Where a part could fall into operands: at commas outside of brackets, between values."""
         depth = seams = 0
         was_value = False
-        if self.recognizer.lexer.is_keyword(part[0][0]):  # what follows a word belongs to it
+        first = part[0][0]
+        if self.recognizer.lexer.is_keyword(first):  # what follows a word belongs to it
             kinds = tuple(kind for kind, _ in part)
             is_operand = not self._of_values.isdisjoint(self.rules_for(kinds))
-            return int(not is_operand and not self._means_more(kinds))
+            is_a_name = not self._of_values.isdisjoint(self.rules_for((first,)))
+            if not (is_operand and is_a_name):
+                return int(not is_operand and not self._means_more(kinds))
         for kind, _ in part:
             text = self.recognizer.lexer.display[kind]
             depth += (text in _OPENING) - (text in _CLOSING)

@@ -8,14 +8,15 @@ where its SHA-256 is the listed one, so that everybody measures the same corpus.
 
 import csv
 import hashlib
+import io
 import re
 import tempfile
-import tomllib
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from grammar.documents import read_bytes, read_text, toml_of
 from recovery.ingest import SUFFIXES
 from recovery.repository import (
     BlobReader,
@@ -42,6 +43,7 @@ _COLUMNS = ["repository", "path", "bytes", "sha256", "kind", "quality"]
 _REPOSITORY = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]*/[A-Za-z0-9_][A-Za-z0-9._-]*")
 _COMMIT = re.compile(r"[0-9a-f]{40}")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
+_SIZE = re.compile(r"[0-9]{1,12}")
 _RESERVED_CHARACTERS = frozenset('<>:"|?*\\')
 _RESERVED_NAMES = frozenset(
     ["con", "prn", "aux", "nul"]
@@ -105,7 +107,7 @@ def read_sources(corpus: Path) -> tuple[PublicSource, ...]:
     """
     listed = corpus / "sources.toml"
     try:
-        entries = tomllib.loads(listed.read_text(encoding="utf-8")).get("source")
+        entries = toml_of(read_text(listed)).get("source")
     except ValueError as error:  # not TOML, or not UTF-8
         raise SourceListError(f"{listed}: {error}") from error
     if not isinstance(entries, list) or not entries:
@@ -260,7 +262,7 @@ def _read_checksums(table: Path) -> dict[str, tuple[KrlFile, ...]]:
     files: dict[str, list[KrlFile]] = defaultdict(list)
     seen: set[str] = set()
     try:
-        with table.open(encoding="utf-8", newline="") as lines:
+        with io.StringIO(read_bytes(table).decode("utf-8"), newline="") as lines:
             rows = csv.reader(lines, delimiter="\t", quoting=csv.QUOTE_NONE)
             if next(rows, None) != _COLUMNS:
                 raise SourceListError(f"{table}: the columns are {' '.join(_COLUMNS)}")
@@ -271,7 +273,7 @@ def _read_checksums(table: Path) -> dict[str, tuple[KrlFile, ...]]:
                 repository, path, size, sha256, kind, quality = row
                 if why := _unsafe(path):
                     raise SourceListError(f"{where}: {path!r} {why}")
-                if not size.isdecimal() or not _SHA256.fullmatch(sha256):
+                if not _SIZE.fullmatch(size) or not _SHA256.fullmatch(sha256):
                     raise SourceListError(f"{where}: not a size and a SHA-256")
                 if (place := f"{repository}/{path}".casefold()) in seen:
                     raise SourceListError(f"{where}: {path!r} is listed twice")

@@ -1,27 +1,30 @@
-"""Many programs on several executors: in shards, the same however many processes there are."""
+"""Many programs on several executors: in shards, the same whoever runs them."""
 
 from __future__ import annotations
 
 import gc
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
+from itertools import count
+from platform import node
 from typing import Any, Final
 
 from conformance.differential.coverage import Counts, counted, language, missing
 from conformance.differential.divergence import Difference, Files, difference, prepared
 from conformance.differential.programs import seeded
 from conformance.differential.reduction import reduce_program
-from conformance.differential.runs import EXECUTORS, Prepared, trace_of
+from conformance.differential.runs import EXECUTORS, Prepared, available, trace_of
+from grammar.build import builder
 from interp.faults import LinkError
+from recovery.workers import WorkersError, in_order
 
 __all__ = ["Finding", "Findings", "fuzz", "record_of"]
 
 _SHARD: Final = 50
-#: After so many shards each, processes make way for new ones: what the front end remembers of
-#: programs would fill the memory.
+#: After so many shards the front end of a process begins anew: what it remembers of programs, some
+#: 100 kB each, would fill the memory.
 _LIFE: Final = 20
 #: When a world interferes, a smaller program may need another seed for it to do so again.
 _SEEDS: Final = 4
@@ -81,11 +84,15 @@ def fuzz(
     executors: Sequence[str],
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
+    scheduler: str | None = None,
 ) -> Findings:
     """Run so many programs on executors, of which the first is the reference.
 
-    ``on_done`` is told how many programs were done since it was told last. The result depends on
-    ``programs``, ``seed`` and ``executors`` alone.
+    ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
+    address; reducing what was found is left to the process that asks. ``on_done`` is told how many
+    programs were done since it was told last. The result depends on ``programs``, ``seed`` and
+    ``executors`` alone. Raises `recovery.workers.WorkersError`, also where a worker has not these
+    executors.
     """
     names = tuple(executors)
     shards = [
@@ -96,7 +103,10 @@ def fuzz(
     counts: Counts = Counter()
     ends: Counter[str] = Counter()
     facts = 0
-    for shard, outcome in zip(shards, _outcomes(shards, jobs), strict=True):
+    done = in_order(
+        _run, ((shard,) for shard in shards), jobs=min(jobs, len(shards)), scheduler=scheduler
+    )
+    for shard, outcome in zip(shards, done, strict=True):
         findings += outcome.findings
         counts.update(outcome.counts)
         ends.update(outcome.ends)
@@ -109,29 +119,38 @@ def fuzz(
     return Findings(programs, seed, names, tuple(reduced), counts, ends, facts)
 
 
-def _outcomes(shards: Sequence[_Shard], jobs: int) -> Iterator[_Outcome]:
-    if len(shards) <= (1 if jobs > 1 else _LIFE):
-        yield from map(_run, shards)
-        return
-    context = get_context("spawn")
-    # `max_tasks_per_child` would be shorter, but can hang (CPython issue 115634).
-    for first in range(0, len(shards), jobs * _LIFE):
-        with ProcessPoolExecutor(jobs, mp_context=context, initializer=_begin) as pool:
-            yield from pool.map(_run, shards[first : first + jobs * _LIFE])
+#: Counts the shards that this process has run.
+_shards_run = count(1)
 
 
-def _begin() -> None:
-    """A process begins: what it loads once is none of the garbage that is looked for.
+@contextmanager
+def _unlittered() -> Iterator[None]:
+    """Garbage is looked for seldom while a shard runs, and not in what was there before.
 
-    Syntax trees are many small objects, so looking as seldom as this saves a third of the time.
+    Syntax trees are many small objects, so this saves a third of the time.
     """
-    prepared(seeded(0, 0).files)
+    before = gc.get_threshold()
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 100)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+        gc.unfreeze()
 
 
 def _run(shard: _Shard) -> _Outcome:
+    absent = set(shard.executors) - set(available())
+    if absent:
+        raise WorkersError(f"a worker on {node()} has no executor {min(absent)}")
+    if next(_shards_run) % _LIFE == 0:
+        builder.cache_clear()
+    with _unlittered():
+        return _run_all(shard)
+
+
+def _run_all(shard: _Shard) -> _Outcome:
     found = _Outcome([], Counter(), Counter(), 0)
     facts = 0
     for number in range(shard.first, shard.end):

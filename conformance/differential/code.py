@@ -78,8 +78,6 @@ class Code(ABC):
         self.level = 1
         self.loops = 0
         self.labels = 0
-        #: Whether an array that is a parameter was passed on.
-        self.passes_arrays = False
 
     # ----------------------------------------------------------------------- writing
 

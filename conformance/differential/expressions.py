@@ -112,12 +112,11 @@ class Expressions(Functions):
     def argument(self, type_: Type, *, is_out: bool) -> str:
         """An argument; for a parameter :OUT a variable nearly always."""
         choices = self.choices
-        if choices.chance(1) and not isinstance(type_, Array):
+        if choices.chance(1):
             return ""  # left out [SCO-13]
         if isinstance(type_, Array):
-            found = self.array(type_)
-            self.passes_arrays |= found.startswith("P")
-            return found
+            is_text = not is_out and type_ == Array(CHAR, (None,))
+            return self.text() if is_text else self.array(type_)
         if is_out and choices.chance(95):
             place = self.target(type_)
             if place is not None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from multiprocessing import get_context
 from typing import Any, Final
 
 from conformance.differential.campaign import world_seed
@@ -19,6 +17,7 @@ from interp.bytecode.program import Instruction
 from interp.bytecode.vm import Machine
 from interp.events import Sink
 from interp.program import Limits
+from recovery.workers import in_order
 
 __all__ = ["Pool", "Verdict", "hunt", "mutated", "record_of"]
 
@@ -102,19 +101,19 @@ def hunt(
     ``on_done`` is told how many mutants were judged since it was told last.
     """
     count = len(mutants())
-    shares = [tuple(range(first, count, max(jobs, 1))) for first in range(max(jobs, 1))]
-    found: dict[int, Verdict] = {}
     if jobs <= 1:
         pool = Pool(seed, programs)
-        for number, mutant in enumerate(mutants()):
-            found[number] = pool.judge(mutant)
+        alone: list[Verdict] = []
+        for mutant in mutants():
+            alone.append(pool.judge(mutant))
             on_done(1)
-        return [found[number] for number in range(count)]
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as workers:
-        tasks = [workers.submit(_judged, share, seed, programs) for share in shares]
-        for share, task in zip(shares, tasks, strict=True):
-            found.update(zip(share, task.result(), strict=True))
-            on_done(len(share))
+        return alone
+    shares = [tuple(range(first, count, jobs)) for first in range(jobs)]
+    found: dict[int, Verdict] = {}
+    tasks = ((share, seed, programs) for share in shares)
+    for share, verdicts in zip(shares, in_order(_judged, tasks, jobs=jobs), strict=True):
+        found.update(zip(share, verdicts, strict=True))
+        on_done(len(share))
     return [found[number] for number in range(count)]
 
 

@@ -268,9 +268,7 @@ class _Programs:
             code.returned()
         cost = code.spent + 2
         text = _written(name, parameters, result, [*head, *code.lines], is_global=is_global)
-        given = tuple(parameters)
-        needs = code.passes_arrays
-        return text, Routine(name, given, result, cost, is_for_interrupts, needs_arrays=needs)
+        return text, Routine(name, tuple(parameters), result, cost, is_for_interrupts)
 
     def _recursive(self, name: str, scope: Scope, *, is_library: bool) -> tuple[str, Routine]:
         """A routine that calls itself as often as its first parameter tells."""
@@ -279,6 +277,8 @@ class _Programs:
         parameters = [Parameter("N", INT, is_out=False)]
         if choices.chance(50):
             parameters.append(Parameter("P1", choices.pick((INT, REAL)), is_out=True))
+        if choices.chance(40):
+            parameters.append(Parameter("P2", _TEXT, is_out=choices.chance(30)))
         code = self._code(scope, 25, Part(result=result))
         head = self._declare(code, parameters)
         self._begin(code, are_few=True)
@@ -286,7 +286,12 @@ class _Programs:
         code.write("IF N<=0 THEN")
         code.write("  RETURN 1" if result is not None else "  RETURN")
         code.write("ENDIF")
-        more = ", P1" if len(parameters) > 1 else ""
+        for one in parameters[1:]:
+            if one.type == _TEXT and choices.chance(50):
+                code.spend()
+                code.write(f"P2[{choices.between(1, 2)}]={constant(choices, CHAR)}")
+        passed = (f", {one.name}{'[]' * (one.type == _TEXT)}" for one in parameters[1:])
+        more = "".join(passed)
         if result is None:
             code.write(f"{name}(N-1{more})")
             code.statements(1)
@@ -302,7 +307,9 @@ class _Programs:
         found = []
         for number in range(choices.below(2 if is_short else 4)):
             if not is_short and choices.chance(40):
-                found.append(Parameter(f"P{number}", choices.pick(_OPEN), is_out=True))
+                array = choices.pick(_OPEN)
+                is_in = array == _TEXT and choices.chance(50)  # no other array is [SCO-07]
+                found.append(Parameter(f"P{number}", array, is_out=not is_in))
             else:
                 type_ = choices.pick((*_PLAIN, POINT, POSES[0], POSES[3], AXIS_TYPES[2]))
                 is_out = choices.chance(50)
@@ -360,12 +367,13 @@ class _Programs:
                 code.write(f"{target}={value}")
 
 
+_TEXT: Final = Array(CHAR, (None,))
 _OPEN: Final[tuple[Type, ...]] = (
     Array(INT, (None,)),
-    Array(CHAR, (None,)),
+    _TEXT,
     Array(INT, (None, None)),
     Array(REAL, (None,)),
-    Array(CHAR, (None,)),
+    _TEXT,
     Array(CHAR, (None, None)),
     Array(POINT, (None,)),
     Array(INT, (None, None, None)),

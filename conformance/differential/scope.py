@@ -51,7 +51,6 @@ class Routine:
     """A routine that can be called; ``cost`` is how many statements it executes at most.
 
     ``deepest`` is, where it calls itself, how often it may; the first parameter tells it how often.
-    ``needs_arrays`` tells that it passes its arrays on, so that none of them can be left out.
     """
 
     name: str
@@ -60,7 +59,6 @@ class Routine:
     cost: int
     is_for_interrupts: bool = False
     deepest: int = 0
-    needs_arrays: bool = False
 
 
 @dataclass(slots=True, eq=False)
@@ -121,13 +119,7 @@ class Scope:
             one
             for one in self.routines
             if one.cost <= most and not one.is_for_interrupts and _is(one.result, result)
-            if not one.needs_arrays or self._has_arrays(one)
         ]
-
-    def _has_arrays(self, routine: Routine) -> bool:
-        """Whether there is an array for each parameter that is one."""
-        arrays = (one.type for one in routine.parameters if isinstance(one.type, Array))
-        return all(self.arrays(one.element, len(one.sizes), is_written=True) for one in arrays)
 
 
 def _is(one: Type | None, other: Type | None) -> bool:

@@ -390,6 +390,10 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
     "ELEMENT_DATA": [*_clamped(Op.ELEMENT_DATA)],
     "VIEW": [("the last size is one more", behind(change_top, Op.VIEW))],
     "LOAD_VIEW": [("the last size is one more", behind(change_top, Op.LOAD_VIEW))],
+    "PASS_VIEW": [
+        ("the last size is one more", behind(change_top, Op.PASS_VIEW)),
+        ("what was left out cannot be passed on", doing(Op.LOAD_VIEW)),
+    ],
     "ROW": [
         ("the last size is one more", behind(change_top, Op.ROW)),
         ("counts from 0", before(change_top, Op.ROW)),
@@ -409,6 +413,10 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
         ("the other way", before(exchange, Op.FILL_POSE)),
     ],
     "FILL_ARRAY": [("the first cell gets no value", _blocks(Op.FILL_ARRAY, 4)[1][1])],
+    "COPY_VIEW": [
+        ("copies nothing", instead(_guard)),
+        ("the last size is one more", behind(change_top, Op.COPY_VIEW)),
+    ],
     "SET_TEXT": [
         ("writes nothing", taking(2, goes=False)),
         (

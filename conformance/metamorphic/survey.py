@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context
+from platform import node
 from random import Random
 from typing import Any, Final
 
@@ -17,6 +16,7 @@ from conformance.metamorphic.law import Attempt, Law, run_law
 from conformance.metamorphic.moving import moving_program
 from conformance.metamorphic.program import Program
 from interp.executors import available
+from recovery.workers import WorkersError, in_order
 
 __all__ = ["Standing", "laws", "record_of", "try_laws"]
 
@@ -54,39 +54,39 @@ def try_laws(
     seed: int = 1,
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
+    scheduler: str | None = None,
 ) -> list[Standing]:
     """Try each law on so many cases, generated programs and such that move, where it applies.
 
-    Which these are follows from the seed. ``on_done`` is told how many laws were tried.
+    Which these are follows from the seed. ``jobs`` processes try them, or the Dask cluster of
+    ``scheduler`` (`recovery.workers`). ``on_done`` is told how many laws were tried.
     """
     running = [case for case in cases if case.phase == "run"]
-    numbers = range(len(laws()))
-    if jobs <= 1:
-        found = []
-        for number in numbers:
-            found.append(_standing(number, running, programs, seed))
-            on_done(1)
-        return [_whole(one) for one in found]
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        tasks = [pool.submit(_standing, number, running, programs, seed) for number in numbers]
-        found = []
-        for task in tasks:
-            found.append(task.result())
-            on_done(1)
-    return [_whole(one) for one in found]
+    tasks = ((law.name, running, programs, seed) for law in laws())
+    found = []
+    for counted in in_order(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
+        found.append(_whole(counted))
+        on_done(1)
+    return found
 
 
-#: Number of the law, applied, inapplicable, broken: what goes from process to process.
-_Counted = tuple[int, int, int, tuple[Attempt, ...]]
+#: Name of the law, applied, inapplicable, broken: what goes from process to process.
+_Counted = tuple[str, int, int, tuple[Attempt, ...]]
+
+
+def _law(name: str) -> Law:
+    return next(law for law in laws() if law.name == name)
 
 
 def _whole(counted: _Counted) -> Standing:
-    number, applied, inapplicable, broken = counted
-    return Standing(laws()[number], applied, inapplicable, broken)
+    name, applied, inapplicable, broken = counted
+    return Standing(_law(name), applied, inapplicable, broken)
 
 
-def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
-    law = laws()[number]
+def _standing(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
+    if all(law.name != name for law in laws()):
+        raise WorkersError(f"a worker on {node()} lacks the executor for the law '{name}'")
+    law = _law(name)
     drawn = list(cases)
     Random(f"{seed}/{law.name}").shuffle(drawn)
     applied, inapplicable = 0, 0
@@ -105,7 +105,7 @@ def _standing(number: int, cases: Sequence[Case], programs: int, seed: int) -> _
             applied += 1
             if attempt.difference:
                 broken.append(attempt)
-    return number, applied, inapplicable, tuple(broken)
+    return name, applied, inapplicable, tuple(broken)
 
 
 def _of_cases(cases: Sequence[Case]) -> Iterator[Program]:

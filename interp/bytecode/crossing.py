@@ -8,7 +8,7 @@ fields.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 from grammar.assignability import assignable
 from grammar.types import BOOL, CHAR, INT, REAL, UNKNOWN, Array, Enumeration, Text, Type, is_same
 from interp import requests
-from interp.builtins import BUILTINS
+from interp.builtins import BUILTINS, reads_text
 from interp.bytecode.cells import value_of
 from interp.bytecode.program import (
     Argument,
@@ -35,7 +35,7 @@ from interp.bytecode.program import (
 )
 from interp.requests import At, Code, Value
 
-__all__ = ["ASKED", "Makers", "Part", "misfit", "unlike"]
+__all__ = ["ASKED", "Makers", "Part", "may_be_missing", "misfit", "unlike"]
 
 #: The fields of what can be asked, without ``at``, in the order of `interp.requests`. A word with a
 #: question mark may be left out.
@@ -189,6 +189,22 @@ def unlike(program: Program, builtin: Builtin) -> str | None:
         if not fits or not _is_written(program, part):
             return f"argument {place + 1} is no {wanted}"
     return None
+
+
+def may_be_missing(builtin: Builtin) -> Iterator[bool]:
+    """For each input of a predefined function, whether it may be a text that was left out.
+
+    See `interp.builtins.reads_text`.
+    """
+    parameters = BUILTINS[builtin.name.upper()].parameters
+    for place, part in enumerate(builtin.parts):
+        is_text = (
+            place < len(parameters)
+            and not parameters[place].is_out
+            and reads_text(parameters[place].type)
+        )
+        for given in inputs_of((part,)):
+            yield is_text and part is given and given.mode is Mode.VIEW
 
 
 def _is_written(program: Program, part: Argument) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import NoReturn
 
 from grammar.types import BOOL, REAL, Array, Enumeration, Type, is_cartesian
@@ -21,6 +22,7 @@ from interp.bytecode.cells import (
     path_to,
     shared_cells,
 )
+from interp.bytecode.crossing import may_be_missing
 from interp.bytecode.isa import shape
 from interp.bytecode.program import (
     Argument,
@@ -108,6 +110,7 @@ class Flow:
             Op.REF_DATA: self._ref_data,
             Op.LOAD_REF: lambda place: self._stack.append(self._handed(place, Mode.REF)),
             Op.LOAD_VIEW: lambda place: self._stack.append(self._handed(place, Mode.VIEW)),
+            Op.PASS_VIEW: self._pass_view,
             Op.LOAD: self._load,
             Op.STORE: self._store,
             Op.MEMBER: self._member,
@@ -124,6 +127,7 @@ class Flow:
             Op.CLEAR: lambda type_: self._take(_ref(type_)),
             Op.FILL_POSE: self._fill_pose,
             Op.FILL_ARRAY: self._fill_array,
+            Op.COPY_VIEW: self._copy_view,
             Op.SET_TEXT: lambda _text: self._take(_view(_CHAR.type, 1)),
             Op.EQ_ENUM: self._equal,
             Op.NE_ENUM: self._equal,
@@ -348,14 +352,17 @@ class Flow:
         self._cross(ask)
 
     def _builtin(self, number: int) -> None:
-        self._cross(self._program.builtins[number])
+        builtin = self._program.builtins[number]
+        self._cross(builtin, list(may_be_missing(builtin)))
 
-    def _cross(self, entry: Ask | Builtin) -> None:
+    def _cross(self, entry: Ask | Builtin, missing: Sequence[bool] = ()) -> None:
         is_large = entry.result is not None and not isinstance(self._type(entry.result), Plain)
         if entry.result is not None and is_large:
             self._take(_ref(entry.result))
-        for given in reversed(list(inputs_of(entry.parts))):
-            if self._pop() != _handed_over(given):
+        inputs = list(inputs_of(entry.parts))
+        for given, is_text in zip_longest(reversed(inputs), reversed(missing)):
+            held = self._pop()
+            if (replace(held, is_missing=False) if is_text else held) != _handed_over(given):
                 self._refuse("an input is of another kind")
         if entry.result is not None and not is_large:
             self._stack.append(Held(Mode.IN, entry.result))
@@ -450,6 +457,9 @@ class Flow:
         self._take(_ref(number))
         self._stack.append(_view(self._element(array), len(array.sizes)))
 
+    def _pass_view(self, place: int) -> None:
+        self._stack.append(replace(self._handed(place, Mode.VIEW), is_missing=True))
+
     def _row(self, number: int, count: int) -> None:
         array = self._array(number)
         self._take_numbers(self._given_indices(count, len(array.sizes)))
@@ -474,6 +484,13 @@ class Flow:
     def _fill_array(self, number: int, dimensions: int) -> None:
         self._rank(dimensions)
         self._take(_view(number, dimensions), _view(number, dimensions))
+
+    def _copy_view(self, place: int, number: int) -> None:
+        self._part(place, number)
+        array = self._array(number)
+        view = _view(self._element(array), len(array.sizes))
+        self._take(view)
+        self._stack.append(view)
 
     def _compose(self, left: int, right: int) -> None:
         if not (is_cartesian(self._type(left)) and is_cartesian(self._type(right))):

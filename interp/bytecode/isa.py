@@ -48,7 +48,7 @@ __all__ = [
 #: How an image begins, and the version of the format and the instruction set: a change of either
 #: makes it another one.
 MAGIC: Final = b"KRLI"
-FORMAT: Final = 1
+FORMAT: Final = 2
 #: The data lists and all frames together have at most so many cells.
 MAX_CELLS: Final = MOST_CELLS
 

@@ -56,12 +56,14 @@ class Moving:
             Op.ELEMENT_DATA: self._element_data,
             Op.VIEW: self._view,
             Op.LOAD_VIEW: self._load_view,
+            Op.PASS_VIEW: self._pass_view,
             Op.ROW: self._row,
             Op.ROW_VIEW: self._row_view,
             Op.COPY: self._copy,
             Op.CLEAR: self._clear,
             Op.FILL_POSE: self._fill_pose,
             Op.FILL_ARRAY: self._fill_array,
+            Op.COPY_VIEW: self._copy_view,
             Op.SET_TEXT: self._set_text,
         }
 
@@ -76,7 +78,7 @@ class Moving:
 
     def _push_no_view(self, here: Here, _type: int, dimensions: int) -> Operation:
         stack, after = self._stack, here.after
-        nothing = [None] * (1 + dimensions)
+        nothing = [None, *[0] * dimensions]
 
         def operation() -> Operation:
             stack.extend(nothing)
@@ -304,6 +306,20 @@ class Moving:
 
         return operation
 
+    def _pass_view(self, here: Here, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        dimensions, _ = self._view_at(here, place)
+
+        def operation() -> Operation:
+            first = state.fp + place
+            view = cells[first : first + 1 + dimensions]
+            if view[1] is None:  # what was left out has sizes
+                raise fault("uninitialised")
+            stack.extend(view)
+            return after
+
+        return operation
+
     def _row(self, here: Here, number: int, count: int) -> Operation:
         sizes, width = self._array(number)
         stack, after = self._stack, here.after
@@ -402,6 +418,26 @@ class Moving:
             state.last = target
             found = cells[source : source + (length if dimensions > 1 else length - max(rest, 0))]
             cells[target : target + length] = found + [None] * (length - len(found))
+            return after
+
+        return operation
+
+    def _copy_view(self, here: Here, place: int, number: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        type_ = self._types[number]
+        assert isinstance(type_, Array), "verified"
+        width, room = size(type_.element), size(type_)
+        dimensions = len(type_.sizes)
+
+        def operation() -> Operation:
+            source, *sizes = stack[-1 - dimensions :]
+            length = width
+            for one in sizes:
+                length *= one
+            if length > room:
+                raise fault("stack")
+            target = stack[-1 - dimensions] = state.fp + place
+            cells[target : target + length] = cells[source : source + length]
             return after
 
         return operation

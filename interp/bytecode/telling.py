@@ -91,7 +91,7 @@ class Names:
         start = state.cells[first]
         if variable.mode is Mode.VIEW:
             sizes: list[Any] = state.cells[first + 1 : first + slot.cells]
-            type_ = Array(type_, tuple(sizes))
+            type_ = Array(type_, tuple(sizes) if start is not None else (None,) * len(sizes))
         return type_, None if start is None else int(start)
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:

@@ -107,6 +107,8 @@ class Entry:
 
     def _value(self, given: Input, block: Block, place: int) -> Value | None:
         raw = block[place]
+        if raw is None:  # a text that was left out, see `interp.builtins.reads_text`
+            return ""
         if given.mode is not Mode.IN:
             return value_at(self._state.cells, raw, self._referred(given, block, place))
         type_ = self._types[given.type]

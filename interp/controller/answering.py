@@ -102,6 +102,8 @@ class Answering(Entering):
 
     def _read(self, task: Task, request: Read) -> Any:
         path = request.path
+        if self.fulfilling.is_on and task.name == "robot":
+            self.fulfilling.looked(path)
         if self.variables.stops(str(path[0]), is_write=False):
             return self.when_reached(task, request, lambda: self.variables.read(path))
         return self.variables.read(path)
@@ -176,12 +178,17 @@ class Answering(Entering):
         return self.when_reached(task, request, begin)
 
     def _poll(self, task: Task, request: Poll) -> Any:
+        is_robot = task.name == "robot"
         if request.is_first:
             task.polling = None
+            if is_robot:
+                self.fulfilling.begins()
             return self.when_reached(task, request, lambda: None)
         if task.polling != request.at:
             task.polling = request.at
             self.trace.tell(task.name, "wait", request.at)
+        if is_robot:
+            self.fulfilling.waits(request.at, self.clock.now)
         return self.wait_until(request, self.next_slice(task), lambda: None)
 
     def _slice(self, task: Task, request: Slice) -> Any:
@@ -249,6 +256,7 @@ class Answering(Entering):
     def _coincide(self, task: Task, request: Move | MoveSpline) -> Blocked:
         """The block coincidence run: the program waits until it is reached [ADV-14]."""
         self.is_coinciding = True
+        self.say_number(request.at, 309, "state")
         self.core.release(self.clock.now)
 
         def reached() -> None:

@@ -2,19 +2,21 @@
 
 $POS_ACT and $AXIS_ACT are set-points, $POS_ACT_MES and $AXIS_ACT_MEAS are measured where the robot
 measures. $POS_INT is where the event of an interrupt came, $POS_RET where BRAKE stopped the arm,
-$POS_BACK where the running motion began, $POS_FOR where it goes.
+$POS_BACK where the running motion began, $POS_FOR where it goes. $IN_HOME is TRUE where every axis
+is within $H_POS_TOL of $H_POS; $IN_HOME1 to 5 likewise, with $AXIS_HOME and $H_AXIS_TOL.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from grammar.predefined import System
 from grammar.types import Structure
 from interp.controller.variables import Computed, Variables
 from interp.faults import fault
+from interp.requests import Path, Value
 from interp.robot.frames import Pose
 from interp.robot.kinematics import Arm as Kinematics
 from interp.robot.machine import ROBOT_AXES, Machine
@@ -26,6 +28,9 @@ __all__ = ["Positions", "Where", "axes_value", "pose_of", "pose_value"]
 
 #: The axes in degrees, and the flange in front of the robot's foot.
 Where = tuple[tuple[float, ...], Pose]
+
+#: Degrees or mm by which an axis may miss a home position beside its tolerance.
+_HOME: Final = 1e-3
 
 
 def _structure(name: str) -> StructureValue:
@@ -87,6 +92,12 @@ class Positions:
             },
         }
         self._actual = actual
+        self._variables = variables
+        homes: dict[str, tuple[Path, Path]] = {"$IN_HOME": (("$H_POS",), ("$H_POS_TOL",))}
+        for place in range(1, 6):
+            homes[f"$IN_HOME{place}"] = ("$AXIS_HOME", place), ("$H_AXIS_TOL", place)
+        for name, (home, tolerance) in homes.items():
+            variables.connect([name], Computed(partial(self._is_home, home, tolerance)))
         for axes, pose, where in looks.values():
             variables.connect([axes], Computed(partial(_axes_at, where)))
             variables.connect([pose], Computed(partial(self._shown_at, where)))
@@ -112,6 +123,17 @@ class Positions:
         """The flange in front of the robot's foot for axes in degrees."""
         assert self._kinematics is not None, "only where there is machine data"
         return Pose.from_matrix(self._kinematics.forward(axes[:ROBOT_AXES]).tolist())
+
+    def _is_home(self, home: Path, tolerance: Path) -> Value:
+        """Whether all axes that a home position names are there."""
+        wanted: Any = self._variables.read(home)
+        allowed: Any = self._variables.read(tolerance)
+        names = [member.name for member in wanted.type.members]
+        for name, axis in zip(names, self._actual()[0], strict=False):
+            value = wanted.get(name)
+            if value is not None and abs(axis - value) > abs(allowed.get(name) or 0.0) + _HOME:
+                return False
+        return True
 
     def _shown_at(self, where: Callable[[], Where]) -> StructureValue:
         return self.shown(where())

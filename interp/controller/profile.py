@@ -6,6 +6,7 @@ have at the start [CON-07]. A profile is named by its file, or given as the path
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -30,6 +31,8 @@ _MOST = (
     "cyclic_flags interrupts active_interrupts triggers analog_inputs analog_outputs digital_inputs"
 ).split()
 _LARGEST = 10_000_000
+_LAST_YEAR = 9_000
+_ARM = re.compile(r"[A-Za-z0-9_]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +103,11 @@ def _read(name: str, text: str) -> Profile:
     return Profile(
         name,
         reader.get("", "release", str),
-        reader.get("", "machine", str),
+        reader.machine(),
         reader.count("time", "cycle"),
         reader.count("time", "statements"),
         reader.count("time", "requests"),
-        reader.get("time", "start", datetime),
+        reader.start(),
         reader.count("advance", "default", 0),
         coincidence == "run",
         reader.count("submit", "every"),
@@ -133,6 +136,20 @@ class _Reader:
         if not isinstance(value, type_) or (isinstance(value, bool) and type_ is int):
             raise self.wrong(table, key, f"is no {type_.__name__}")
         return value
+
+    def machine(self) -> str:
+        """The name of an arm that comes along: no path, wherever the profile is from."""
+        name: str = self.get("", "machine", str)
+        if not _ARM.fullmatch(name):
+            raise self.wrong("", "machine", "is no name of letters, digits and _")
+        return name
+
+    def start(self) -> datetime:
+        """The date at which the clock begins, with room for a run behind it."""
+        start: datetime = self.get("time", "start", datetime)
+        if start.year > _LAST_YEAR:
+            raise self.wrong("time", "start", f"is after {_LAST_YEAR}")
+        return start
 
     def count(self, table: str, key: str, least: int = 1) -> int:
         """An entry that counts something."""

@@ -221,13 +221,22 @@ class Routines:
     # ------------------------------------------------------------------------------ the robot
 
     def _stop_robot(self, task: Task, request: Invoke) -> Any:
-        self._controller.core.override(self._controller.clock.now, 0.0)
-        self._controller.trace.tell(task.name, "brake", request.at, mode="ROB_STOP")
+        """ROB_STOP: the arm stands until ROB_STOP_RELEASE, whatever $OV_PRO is meanwhile.
+
+        A submit program tells 81 for a stop on a ramp, 82 for one that keeps to the path [SUB-06]
+        (which number is which is unconfirmed); the arm keeps to its path either way.
+        """
+        controller = self._controller
+        controller.trace.tell(task.name, "brake", request.at, mode="ROB_STOP")
+        kind = request.arguments[0]
+        if task.name == "submit":
+            is_ramp = isinstance(kind, EnumValue) and kind.name.upper() == "RAMP_DOWN"
+            controller.say_number(request.at, 81 if is_ramp else 82, "state", task.name)
+        controller.hold_robot()
         return True, request.arguments
 
     def _release_robot(self, _task: Task, request: Invoke) -> Any:
-        percent: Any = self._controller.variables.read(("$OV_PRO",))
-        self._controller.core.override(self._controller.clock.now, float(percent))
+        self._controller.release_robot()
         return None, request.arguments
 
     def _forward(self, _task: Task, request: Invoke) -> Any:

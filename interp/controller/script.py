@@ -6,6 +6,7 @@
     on OUT[3]=TRUE after 0.2 IN[7]=TRUE
     on HALT after 1 press START
     on channel SER_1 gets "ping" channel SER_1 sends "pong"
+    fulfil waits after 1
     stop at 10
 
 `Script.read` makes a `Script` of such a text; `interp.controller.playing` plays it. The same
@@ -151,16 +152,22 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The steps in their order, and the time in µs at which the run stops, if it says one."""
+    """The steps in their order, and the time in µs at which the run stops, if it says one.
+
+    ``fulfils``: after so many µs of a WAIT FOR its inputs change until it goes on, if at all
+    (`interp.controller.fulfilling`).
+    """
 
     steps: tuple[Step, ...] = ()
     stop: int | None = None
+    fulfils: int | None = None
 
     @staticmethod
     def read(text: str, name: str = "script") -> Script:
         """Read a script; raises `ScriptError`, which calls it by ``name``."""
         steps: list[Step] = []
         stop: int | None = None
+        fulfils: int | None = None
         for number, line in enumerate(text.splitlines(), start=1):
             reader = _Line(f"{name}:{number}", line)
             if reader.is_done:
@@ -169,9 +176,13 @@ class Script:
                 reader.need("AT")
                 stop = reader.time()
                 reader.finish()
+            elif reader.take("FULFIL"):
+                reader.need("WAITS")
+                fulfils = reader.time() if reader.take("AFTER") else 0
+                reader.finish()
             else:
                 steps.append(reader.step())
-        return Script(tuple(steps), stop)
+        return Script(tuple(steps), stop, fulfils)
 
 
 _TOKEN: Final = re.compile(
@@ -273,7 +284,7 @@ class _Line:
             self.need("=")
             return At(self.time())
         if not self.take("ON"):
-            self.fail("a line begins with t=SECONDS, with on, or with stop at")
+            self.fail("a line begins with t=SECONDS, with on, with fulfil waits, or with stop at")
         if self.take("HALT"):
             return Halted()
         if self.take("DIALOGUE"):

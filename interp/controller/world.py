@@ -13,6 +13,7 @@ from grammar.predefined import System
 from grammar.types import Enumeration, Structure
 from interp.controller.channels import COMMANDS, Channels
 from interp.controller.clock import Agenda, Appointment, Clock
+from interp.controller.fulfilling import Fulfilling
 from interp.controller.messages import Board
 from interp.controller.motions import placement_of
 from interp.controller.playing import Player
@@ -75,12 +76,15 @@ class World:
         self.state = "P_RESET"
         self.submit_state = "P_FREE"
         self.is_coinciding = False
+        #: Whether ROB_STOP holds the arm.
+        self.is_held = False
         self._connect()
         self.positions = Positions(
             self.variables, setup.machine, self.where, self._where_measured, self.placement
         )
         self.channels = Channels(self.clock, self._sent)
         self.player = Player(setup.script, self.variables, self.clock, self.agenda, self)
+        self.fulfilling = Fulfilling(setup.script, self)
 
     # ------------------------------------------------------------------- computed variables
 
@@ -189,10 +193,20 @@ class World:
         self.acting = before
 
     def _was_put(self, path: Path, value: Value) -> None:
-        if path[0] == "$OV_PRO" and isinstance(value, int | float):
+        if path[0] == "$OV_PRO" and isinstance(value, int | float) and not self.is_held:
             self.core.override(self.clock.now, float(value))
         if path[0] not in _SIGNAL_KINDS:
             self.player.changed(str(path[0]))
+
+    def hold_robot(self) -> None:
+        """ROB_STOP: the arm brakes on its path and stands until it is released [FCT-11]."""
+        self.is_held = True
+        self.core.override(self.clock.now, 0.0)
+
+    def release_robot(self) -> None:
+        """ROB_STOP_RELEASE: the arm goes on with $OV_PRO."""
+        self.is_held = False
+        self._was_put(("$OV_PRO",), self.variables.read(("$OV_PRO",)))
 
     def later(self, time: int, action: Callable[[], None]) -> Appointment:
         """Have something done at a time, on behalf of the line that acts now."""
@@ -224,10 +238,12 @@ class World:
             self.board.waiting.append(number)
         self.player.shown(number)
 
-    def say_number(self, at: At | None, number: int, kind: str = "notification") -> None:
+    def say_number(
+        self, at: At | None, number: int, kind: str = "notification", task: TaskName = "robot"
+    ) -> None:
         """Show a message of the catalogue."""
         found = System.load().message(number)
-        self.say("robot", at, number, "" if found is None else found.text, kind)
+        self.say(task, at, number, "" if found is None else found.text, kind)
 
     def choose(self, button: int) -> None:
         """The operator answers the oldest dialogue."""

@@ -3,7 +3,7 @@
 #define KRL_ISA_GEN_H
 
 #define KRL_IMAGE_MAGIC "KRLI"
-#define KRL_IMAGE_FORMAT 1
+#define KRL_IMAGE_FORMAT 2
 #define KRL_MAX_CELLS 1048576
 
 /* Kinds of operands, as bits of a byte each: the first operand lowest. */
@@ -67,12 +67,14 @@ enum krl_operand {
     X(ELEMENT_DATA, 2, 0x00000a09) \
     X(VIEW, 1, 0x0000000a) \
     X(LOAD_VIEW, 1, 0x00000008) \
+    X(PASS_VIEW, 1, 0x00000008) \
     X(ROW, 2, 0x0000050a) \
     X(ROW_VIEW, 2, 0x00000508) \
     X(COPY, 1, 0x0000000a) \
     X(CLEAR, 1, 0x0000000a) \
     X(FILL_POSE, 2, 0x00000a0a) \
     X(FILL_ARRAY, 2, 0x0000050a) \
+    X(COPY_VIEW, 2, 0x00000a08) \
     X(SET_TEXT, 1, 0x0000000b) \
     X(ADD_INT, 0, 0x00000000) \
     X(SUB_INT, 0, 0x00000000) \
@@ -173,71 +175,73 @@ enum krl_opcode {
     KRL_ELEMENT_DATA = 37, /* INT… -- t */
     KRL_VIEW = 38, /* @A -- [E] */
     KRL_LOAD_VIEW = 39, /* -- [E] */
-    KRL_ROW = 40, /* @A INT… -- [E] */
-    KRL_ROW_VIEW = 41, /* INT… -- [E] */
-    KRL_COPY = 42, /* @T @T -- */
-    KRL_CLEAR = 43, /* @T -- */
-    KRL_FILL_POSE = 44, /* @T @S -- */
-    KRL_FILL_ARRAY = 45, /* [E] [E] -- */
-    KRL_SET_TEXT = 46, /* [CHAR] -- */
-    KRL_ADD_INT = 47, /* INT INT -- INT */
-    KRL_SUB_INT = 48, /* INT INT -- INT */
-    KRL_MUL_INT = 49, /* INT INT -- INT */
-    KRL_DIV_INT = 50, /* INT INT -- INT */
-    KRL_NEG_INT = 51, /* INT -- INT */
-    KRL_ADD_REAL = 52, /* REAL REAL -- REAL */
-    KRL_SUB_REAL = 53, /* REAL REAL -- REAL */
-    KRL_MUL_REAL = 54, /* REAL REAL -- REAL */
-    KRL_DIV_REAL = 55, /* REAL REAL -- REAL */
-    KRL_NEG_REAL = 56, /* REAL -- REAL */
-    KRL_EQ_INT = 57, /* INT INT -- BOOL */
-    KRL_NE_INT = 58, /* INT INT -- BOOL */
-    KRL_LT_INT = 59, /* INT INT -- BOOL */
-    KRL_GT_INT = 60, /* INT INT -- BOOL */
-    KRL_LE_INT = 61, /* INT INT -- BOOL */
-    KRL_GE_INT = 62, /* INT INT -- BOOL */
-    KRL_EQ_REAL = 63, /* REAL REAL -- BOOL */
-    KRL_NE_REAL = 64, /* REAL REAL -- BOOL */
-    KRL_LT_REAL = 65, /* REAL REAL -- BOOL */
-    KRL_GT_REAL = 66, /* REAL REAL -- BOOL */
-    KRL_LE_REAL = 67, /* REAL REAL -- BOOL */
-    KRL_GE_REAL = 68, /* REAL REAL -- BOOL */
-    KRL_EQ_BOOL = 69, /* BOOL BOOL -- BOOL */
-    KRL_NE_BOOL = 70, /* BOOL BOOL -- BOOL */
-    KRL_EQ_ENUM = 71, /* ENUM ENUM -- BOOL */
-    KRL_NE_ENUM = 72, /* ENUM ENUM -- BOOL */
-    KRL_NOT_BOOL = 73, /* BOOL -- BOOL */
-    KRL_AND_BOOL = 74, /* BOOL BOOL -- BOOL */
-    KRL_OR_BOOL = 75, /* BOOL BOOL -- BOOL */
-    KRL_EXOR_BOOL = 76, /* BOOL BOOL -- BOOL */
-    KRL_NOT_BITS = 77, /* INT -- INT */
-    KRL_AND_BITS = 78, /* INT INT -- INT */
-    KRL_OR_BITS = 79, /* INT INT -- INT */
-    KRL_EXOR_BITS = 80, /* INT INT -- INT */
-    KRL_COMPOSE = 81, /* @R @L @R -- */
-    KRL_INT_TO_REAL = 82, /* INT -- REAL */
-    KRL_REAL_TO_INT = 83, /* REAL -- INT */
-    KRL_CHAR_TO_INT = 84, /* CHAR -- INT */
-    KRL_INT_TO_CHAR = 85, /* INT -- CHAR */
-    KRL_ADD_CONSTANT = 86, /* INT -- INT */
-    KRL_UNLESS_EQ_INT = 87, /* INT INT -- */
-    KRL_UNLESS_NE_INT = 88, /* INT INT -- */
-    KRL_UNLESS_LT_INT = 89, /* INT INT -- */
-    KRL_UNLESS_GT_INT = 90, /* INT INT -- */
-    KRL_UNLESS_LE_INT = 91, /* INT INT -- */
-    KRL_UNLESS_GE_INT = 92, /* INT INT -- */
-    KRL_UNLESS_LT_REAL = 93, /* REAL REAL -- */
-    KRL_UNLESS_GT_REAL = 94, /* REAL REAL -- */
-    KRL_UNLESS_LE_REAL = 95, /* REAL REAL -- */
-    KRL_UNLESS_GE_REAL = 96, /* REAL REAL -- */
-    KRL_FOR_LOCAL = 97, /* -- */
-    KRL_FOR_DATA = 98, /* -- */
-    KRL_TELL_LOCAL = 99, /* -- */
-    KRL_TELL_DATA = 100, /* -- */
-    KRL_TELL_REF = 101, /* -- */
-    KRL_TELL = 102, /* -- */
-    KRL_TELL_BRANCH = 103, /* -- */
-    KRL_OPCODE_COUNT = 104
+    KRL_PASS_VIEW = 40, /* -- [E] */
+    KRL_ROW = 41, /* @A INT… -- [E] */
+    KRL_ROW_VIEW = 42, /* INT… -- [E] */
+    KRL_COPY = 43, /* @T @T -- */
+    KRL_CLEAR = 44, /* @T -- */
+    KRL_FILL_POSE = 45, /* @T @S -- */
+    KRL_FILL_ARRAY = 46, /* [E] [E] -- */
+    KRL_COPY_VIEW = 47, /* [E] -- [E] */
+    KRL_SET_TEXT = 48, /* [CHAR] -- */
+    KRL_ADD_INT = 49, /* INT INT -- INT */
+    KRL_SUB_INT = 50, /* INT INT -- INT */
+    KRL_MUL_INT = 51, /* INT INT -- INT */
+    KRL_DIV_INT = 52, /* INT INT -- INT */
+    KRL_NEG_INT = 53, /* INT -- INT */
+    KRL_ADD_REAL = 54, /* REAL REAL -- REAL */
+    KRL_SUB_REAL = 55, /* REAL REAL -- REAL */
+    KRL_MUL_REAL = 56, /* REAL REAL -- REAL */
+    KRL_DIV_REAL = 57, /* REAL REAL -- REAL */
+    KRL_NEG_REAL = 58, /* REAL -- REAL */
+    KRL_EQ_INT = 59, /* INT INT -- BOOL */
+    KRL_NE_INT = 60, /* INT INT -- BOOL */
+    KRL_LT_INT = 61, /* INT INT -- BOOL */
+    KRL_GT_INT = 62, /* INT INT -- BOOL */
+    KRL_LE_INT = 63, /* INT INT -- BOOL */
+    KRL_GE_INT = 64, /* INT INT -- BOOL */
+    KRL_EQ_REAL = 65, /* REAL REAL -- BOOL */
+    KRL_NE_REAL = 66, /* REAL REAL -- BOOL */
+    KRL_LT_REAL = 67, /* REAL REAL -- BOOL */
+    KRL_GT_REAL = 68, /* REAL REAL -- BOOL */
+    KRL_LE_REAL = 69, /* REAL REAL -- BOOL */
+    KRL_GE_REAL = 70, /* REAL REAL -- BOOL */
+    KRL_EQ_BOOL = 71, /* BOOL BOOL -- BOOL */
+    KRL_NE_BOOL = 72, /* BOOL BOOL -- BOOL */
+    KRL_EQ_ENUM = 73, /* ENUM ENUM -- BOOL */
+    KRL_NE_ENUM = 74, /* ENUM ENUM -- BOOL */
+    KRL_NOT_BOOL = 75, /* BOOL -- BOOL */
+    KRL_AND_BOOL = 76, /* BOOL BOOL -- BOOL */
+    KRL_OR_BOOL = 77, /* BOOL BOOL -- BOOL */
+    KRL_EXOR_BOOL = 78, /* BOOL BOOL -- BOOL */
+    KRL_NOT_BITS = 79, /* INT -- INT */
+    KRL_AND_BITS = 80, /* INT INT -- INT */
+    KRL_OR_BITS = 81, /* INT INT -- INT */
+    KRL_EXOR_BITS = 82, /* INT INT -- INT */
+    KRL_COMPOSE = 83, /* @R @L @R -- */
+    KRL_INT_TO_REAL = 84, /* INT -- REAL */
+    KRL_REAL_TO_INT = 85, /* REAL -- INT */
+    KRL_CHAR_TO_INT = 86, /* CHAR -- INT */
+    KRL_INT_TO_CHAR = 87, /* INT -- CHAR */
+    KRL_ADD_CONSTANT = 88, /* INT -- INT */
+    KRL_UNLESS_EQ_INT = 89, /* INT INT -- */
+    KRL_UNLESS_NE_INT = 90, /* INT INT -- */
+    KRL_UNLESS_LT_INT = 91, /* INT INT -- */
+    KRL_UNLESS_GT_INT = 92, /* INT INT -- */
+    KRL_UNLESS_LE_INT = 93, /* INT INT -- */
+    KRL_UNLESS_GE_INT = 94, /* INT INT -- */
+    KRL_UNLESS_LT_REAL = 95, /* REAL REAL -- */
+    KRL_UNLESS_GT_REAL = 96, /* REAL REAL -- */
+    KRL_UNLESS_LE_REAL = 97, /* REAL REAL -- */
+    KRL_UNLESS_GE_REAL = 98, /* REAL REAL -- */
+    KRL_FOR_LOCAL = 99, /* -- */
+    KRL_FOR_DATA = 100, /* -- */
+    KRL_TELL_LOCAL = 101, /* -- */
+    KRL_TELL_DATA = 102, /* -- */
+    KRL_TELL_REF = 103, /* -- */
+    KRL_TELL = 104, /* -- */
+    KRL_TELL_BRANCH = 105, /* -- */
+    KRL_OPCODE_COUNT = 106
 };
 
 /* The catalogue of faults. */

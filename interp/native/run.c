@@ -430,6 +430,11 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
         A = b;
         NEXT();
     }
+    STEP(PASS)
+    {
+        A = B;
+        NEXT();
+    }
     STEP(SET_K)
     {
         A = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
@@ -594,6 +599,16 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
         if (UNLIKELY(fault != KRL_FINE))
             goto failed;
         machine->last = krl_int_in(A);
+        NEXT();
+    }
+    STEP(COPY_VIEW)
+    {
+        int32_t length = pc->d;
+        for (int32_t i = 1; i <= pc->tag; i++)
+            length *= krl_int_in((&A)[i]);
+        FAULT_IF(length > pc->c, stack);
+        copy(&B, cells + krl_int_in(A), length);
+        A = krl_of_int((int32_t)(&B - cells));
         NEXT();
     }
     STEP(SET_TEXT)

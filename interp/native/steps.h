@@ -33,6 +33,7 @@
     KRL_RELATIONS(X)                                                                               \
     X(NOP)                                                                                         \
     X(MOVE) X(SET_K)                     /* a from b; from the bits b */                           \
+    X(PASS)                              /* a from b, which may have no value */                   \
     X(GET_DATA) X(PUT_DATA) X(PUT_DATA_K) /* a from cell b; cell a from b, from the bits b */      \
     X(REFER)                             /* a the address of b */                                  \
     X(OFFSET)                            /* a the address b and c more */                          \
@@ -55,6 +56,7 @@
     X(COPY) X(CLEAR)  /* to a from b, c cells; from a on, c cells */                               \
     X(FILL_POSE)      /* to a from b, c cells, d of them in common */                              \
     X(FILL_ARRAY)     /* view a from view b, c cells each, d dimensions */                         \
+    X(COPY_VIEW)      /* view a into b on, where c cells are; d cells each, tag dimensions */      \
     X(SET_TEXT)       /* view a, text b */                                                         \
     X(COMPOSE)        /* where a leads from b and c, d cells */                                    \
     X(INVERT)         /* where b leads from a, c cells */                                          \

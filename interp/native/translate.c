@@ -332,8 +332,9 @@ static void instruction(struct translator *at, int32_t place)
     case KRL_PUSH_ENUM: krl_push_constant(at, KRL_TAG_INT, operands[1]); break;
     case KRL_PUSH_NOTHING: krl_push_constant(at, KRL_TAG_NONE, 0); break;
     case KRL_PUSH_NO_VIEW:
-        for (int32_t i = 0; i <= operands[1]; i++)
-            krl_push_constant(at, KRL_TAG_NONE, 0);
+        krl_push_constant(at, KRL_TAG_NONE, 0);
+        for (int32_t i = 0; i < operands[1]; i++)
+            krl_push_constant(at, KRL_TAG_INT, 0);
         break;
     case KRL_DROP: /* a variable without a value faults all the same */
         krl_secure(at, at->height);
@@ -344,6 +345,12 @@ static void instruction(struct translator *at, int32_t place)
         break;
     case KRL_LOAD_VIEW:
         for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
+            krl_push(at, (struct held){VARIABLE, operands[0] + i, 0, 0, 0, 0});
+        break;
+    case KRL_PASS_VIEW: /* what was left out has sizes */
+        krl_emit(at, KRL_STEP_PASS)->b = operands[0];
+        krl_push_result(at);
+        for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
             krl_push(at, (struct held){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
     case KRL_LOAD_DATA:
@@ -392,6 +399,16 @@ static void instruction(struct translator *at, int32_t place)
         step->c = types[operands[0]].size;
         step->d = operands[1];
         break;
+    case KRL_COPY_VIEW: {
+        const struct krl_type *room = &types[operands[1]];
+        step = krl_consume(at, KRL_STEP_COPY_VIEW, 1 + room->count);
+        step->b = operands[0];
+        step->c = room->size;
+        step->d = types[room->element].size;
+        step->tag = (uint16_t)room->count;
+        krl_push_places(at, 1 + room->count);
+        break;
+    }
     case KRL_SET_TEXT: krl_consume(at, KRL_STEP_SET_TEXT, 2)->b = operands[0]; break;
     case KRL_COMPOSE:
         step = krl_consume(at, KRL_STEP_COMPOSE, 3);

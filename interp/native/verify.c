@@ -10,8 +10,8 @@
 
 #include <stdlib.h>
 
-/* What lies on the stack. Of a missing view, and of a value that was left out (type -1), nothing is
- * ever used. */
+/* What lies on the stack. Of a view that may be missing, and of a value that was left out (type -1),
+ * nothing is ever used but the sizes, which are 0. */
 struct held {
     int32_t type;
     uint8_t mode;
@@ -264,13 +264,33 @@ static void call(struct flow *flow, int32_t number)
         push(flow, value(callee->result));
 }
 
-static void cross(struct flow *flow, const struct krl_entry *entry)
+/* Whether an input of a predefined function, whose first cell has this place, is a text that it
+ * reads: it may have been left out. */
+static int is_text_read(const struct krl_entry *entry, const struct krl_handed *input, int32_t place)
+{
+    if (input->mode != KRL_BY_VIEW || input->dimensions != 1 || input->type != KRL_TYPE_CHAR)
+        return 0;
+    for (int32_t i = 0; i < entry->part_count; i++)
+        if (entry->parts[i].kind == KRL_PART_INPUT && entry->parts[i].place == place)
+            return 1;
+    return 0;
+}
+
+static void cross(struct flow *flow, const struct krl_entry *entry, int is_builtin)
 {
     int is_large = entry->result >= 0 && !krl_is_plain(flow->program, entry->result);
     if (is_large)
         take(flow, reference(entry->result));
-    for (int32_t i = entry->input_count - 1; i >= 0 && !flow->is_wrong; i--)
-        take(flow, handed(&entry->inputs[i]));
+    int32_t place = entry->input_cells;
+    for (int32_t i = entry->input_count - 1; i >= 0 && !flow->is_wrong; i--) {
+        const struct krl_handed *input = &entry->inputs[i];
+        struct held held = pop(flow);
+        place -= krl_stack_cells(input);
+        if (is_builtin && is_text_read(entry, input, place))
+            held.is_missing = 0;
+        if (!is_equal(held, handed(input)))
+            refuse(flow, "an input is of another kind");
+    }
     if (entry->result >= 0 && !is_large)
         push(flow, value(entry->result));
 }
@@ -334,8 +354,8 @@ static void apply(struct flow *flow, const struct krl_instruction *instruction)
     case KRL_CALL: call(flow, operands[0]); break;
     case KRL_RETURN: ends(flow, 0); break;
     case KRL_RETURN_VALUE: ends(flow, 1); break;
-    case KRL_ASK: cross(flow, &program->asks[operands[0]]); break;
-    case KRL_BUILTIN: cross(flow, &program->builtins[operands[0]]); break;
+    case KRL_ASK: cross(flow, &program->asks[operands[0]], 0); break;
+    case KRL_BUILTIN: cross(flow, &program->builtins[operands[0]], 1); break;
     case KRL_PUSH_INT: push(flow, value(INT)); break;
     case KRL_PUSH_REAL: push(flow, value(REAL)); break;
     case KRL_PUSH_BOOL: push(flow, value(BOOL)); break;
@@ -364,6 +384,11 @@ static void apply(struct flow *flow, const struct krl_instruction *instruction)
         break;
     case KRL_LOAD_REF: push(flow, parameter(flow, operands[0], KRL_BY_REFERENCE)); break;
     case KRL_LOAD_VIEW: push(flow, parameter(flow, operands[0], KRL_BY_VIEW)); break;
+    case KRL_PASS_VIEW:
+        held = parameter(flow, operands[0], KRL_BY_VIEW);
+        held.is_missing = 1;
+        push(flow, held);
+        break;
     case KRL_LOAD: push(flow, value(referred(flow))); break;
     case KRL_STORE:
         held = take_value(flow);
@@ -441,6 +466,13 @@ static void apply(struct flow *flow, const struct krl_instruction *instruction)
         if (is_rank(flow, operands[1])) {
             take(flow, view(operands[0], operands[1]));
             take(flow, view(operands[0], operands[1]));
+        }
+        break;
+    case KRL_COPY_VIEW:
+        local_part(flow, operands[0], operands[1]);
+        if ((type = array(flow, operands[1])) != NULL) {
+            take(flow, view(type->element, type->count));
+            push(flow, view(type->element, type->count));
         }
         break;
     case KRL_SET_TEXT: take(flow, view(CHAR, 1)); break;

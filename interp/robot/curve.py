@@ -21,7 +21,7 @@ from interp.robot.kinematics import Arm, Array, matrix_of
 from interp.robot.machine import ROBOT_AXES
 from interp.robot.placement import IpoMode, Placement
 from interp.robot.table import Table
-from interp.robot.targets import check_limits, follow
+from interp.robot.targets import check_path, follow
 
 __all__ = [
     "BlendedAxes",
@@ -265,8 +265,8 @@ class CourseCurve:
     """The axes along a course, unbroken from ``start`` on; Turn results from the path [POS-02].
 
     ``start`` are the six axes of the robot; ``others`` what the external ones do. Raises `Fault`:
-    1366 or 1447 where the course cannot be followed, 1102 where it leads through a singularity that
-    would make an axis jump.
+    1366, 1447 or 1211 where the course cannot be followed, 1102 where it leads through a
+    singularity that would make an axis jump.
     """
 
     is_straight = False
@@ -333,8 +333,7 @@ class CourseCurve:
             count = 2 * count - 1
         if np.abs(axes[0] - start).max() > _ROUGH:
             raise _singular()
-        for values in (axes.min(axis=0), axes.max(axis=0)):
-            check_limits(self.arm.machine.axes, values.tolist())
+        check_path(self.arm.machine.axes, axes)
         return grid, axes
 
 

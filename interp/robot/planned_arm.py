@@ -23,7 +23,7 @@ from interp.robot.frames import Pose
 from interp.robot.journey import Journey
 from interp.robot.kinematics import Array
 from interp.robot.machine import ROBOT_AXES, Machine
-from interp.robot.programmed import Programmed, check_start
+from interp.robot.programmed import Programmed, check_numbers, check_start
 from interp.robot.targets import check_limits
 from interp.robot.timeline import (
     MICROSECOND,
@@ -104,6 +104,7 @@ class PlannedArm:
         self._observe(now)
         if not self._has_begun:
             check_start(motion)
+        check_numbers(motion)
         plan = self._standing_plan() if self._is_braked else self._plan
         if motion.kind in {"SPLINE", "PTP_SPLINE"}:
             track, programmed = block(self._tracks, motion, plan.programmed)

@@ -7,6 +7,7 @@ motions add to it, and components left out keep its values [MOT-14, MOT-16].
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from interp.robot.machine import ROBOT_AXES
 from interp.robot.placement import Placement
 from interp.robot.targets import Singularity, TargetStatus, check_limits, ptp_target
 
-__all__ = ["Goal", "Programmed", "check_start"]
+__all__ = ["Goal", "Programmed", "check_numbers", "check_start"]
 
 _COMPONENTS = ("X", "Y", "Z", "A", "B", "C")
 _AXES = tuple(f"A{i}" for i in range(1, ROBOT_AXES + 1))
@@ -158,6 +159,27 @@ def check_finite(target: Target) -> None:
         if not math.isfinite(value):
             text = f"component {name} of the target is not a finite number"
             raise Fault("invalid_target", text, number=1422, rules=("MSG-11",))
+
+
+def check_numbers(motion: Motion) -> None:
+    """Raise `Fault` 1422 where a motion parameter, a place or a range is no finite number.
+
+    Components of targets are looked at where they are read; what has to be more than a number is
+    too.
+    """
+    settings, apo = motion.settings, motion.settings.approximation
+    percent = (*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk)
+    places = [*motion.places, *motion.stop_places]
+    for part in motion.parts:
+        places += (*part.places, *part.stop_places)
+    numbers: Mapping[str, Iterable[float]] = {
+        "the speed, acceleration or jerk of an axis": percent,
+        "a part of $APO": (apo.cdis, apo.cptp, apo.cvel, apo.cori),
+        "a place on the path": (place.position for place in places),
+    }
+    for name, values in numbers.items():
+        if not math.isfinite(sum(values)):
+            raise Fault("invalid", f"{name} is not a finite number", number=1422, rules=("MSG-11",))
 
 
 def _bits(target: Target, name: str) -> int | None:

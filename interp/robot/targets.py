@@ -25,6 +25,7 @@ __all__ = [
     "Solution",
     "TargetStatus",
     "check_limits",
+    "check_path",
     "follow",
     "ptp_target",
     "singularities",
@@ -93,6 +94,25 @@ def check_limits(axes: Sequence[Axis], values: Sequence[float]) -> None:
             raise _beyond(axis, value)
 
 
+def check_path(axes: Sequence[Axis], path: Array) -> None:
+    """Raise `Fault` where a path ``(n, axes)`` leads beyond a software limit switch [MOT-15].
+
+    1447 where it ends there, as no point behind a limit can be reached; 1211 where the limit lies
+    on the way to a point that could.
+    """
+    lower = np.array([axis.lower for axis in axes]) - _LIMIT
+    upper = np.array([axis.upper for axis in axes]) + _LIMIT
+    beyond = ((path < lower) | (path > upper)).any(axis=1)
+    if not beyond.any():
+        return
+    check_limits(axes, path[-1].tolist())
+    first = path[int(np.argmax(beyond))]
+    for axis, value in zip(axes, first.tolist(), strict=True):
+        if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
+            text = f"the path leads onto a software limit switch: {_outside(axis, value)}"
+            raise Fault("software_limit", text, number=1211, rules=("MOT-15",))
+
+
 def solve(
     arm: Arm,
     flange: Pose,
@@ -157,7 +177,8 @@ def follow(arm: Arm, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
     """Axes ``(n, 6)`` along a path of flange poses ``(n, 4, 4)``, unbroken from ``start`` on.
 
     Status and Turn result from the path [POS-01, POS-02]: each sample takes the way nearest to the
-    one before it. Raises `Fault` as `solve` does, for the first sample that cannot be reached.
+    one before it. Raises `Fault` as `solve` does, for the first sample that cannot be reached, and
+    as `check_path`.
     """
     ways = arm.inverse(flanges)
     if not len(ways):
@@ -165,12 +186,7 @@ def follow(arm: Arm, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
     path = _one_way(ways, np.asarray(start, dtype=np.float64))
     if path is None:
         path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
-    machine_axes = arm.machine.axes
-    lower = np.array([axis.lower for axis in machine_axes]) - _LIMIT
-    upper = np.array([axis.upper for axis in machine_axes]) + _LIMIT
-    beyond = ((path < lower) | (path > upper)).any(axis=1)
-    if beyond.any():
-        check_limits(machine_axes, path[int(np.argmax(beyond))].tolist())
+    check_path(arm.machine.axes, path)
     return path
 
 
@@ -299,6 +315,9 @@ def _near(ways: Array, origin: Array) -> Array:
 
 
 def _beyond(axis: Axis, value: float) -> Fault:
-    place = f"{axis.name} at {round(value, 4) + 0.0:g}, not within {axis.lower:g} to {axis.upper:g}"
-    text = f"the point lies behind a software limit switch: {place}"
+    text = f"the point lies behind a software limit switch: {_outside(axis, value)}"
     return Fault("software_limit", text, number=1447, rules=("MOT-15",))
+
+
+def _outside(axis: Axis, value: float) -> str:
+    return f"{axis.name} at {round(value, 4) + 0.0:g}, not within {axis.lower:g} to {axis.upper:g}"

@@ -25,7 +25,7 @@ from interp.robot.wrist import WristCurve
 __all__ = ["Piece", "Track", "Tracks"]
 
 _STILL = 1e-6  # mm or degrees: less is no motion
-_ZERO_LENGTH, _SINGULAR = 3171, 2868
+_ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
 _METRE = 1000.0
 _SPLINE_JERKS = (500e3, 50e3)
 """mm/s³ and deg/s³: as delivered [MOT-05]."""
@@ -66,7 +66,20 @@ class Track:
     @property
     def notices(self) -> tuple[int, ...]:
         """Numbers of messages that stop nothing."""
-        return (_ZERO_LENGTH,) * self.is_still + (_SINGULAR,) * self.is_singular
+        return (
+            (_ZERO_LENGTH,) * self.is_still
+            + (_SINGULAR,) * self.is_singular
+            + (_TURNED_VARIABLY,) * self._is_turned_variably
+        )
+
+    @property
+    def _is_turned_variably(self) -> bool:
+        """Whether #JOINT is taken as #VAR: in spline blocks, with a fixed tool [ORI-03]."""
+        motion = self.motion
+        every = [part.settings or motion.settings for part in motion.parts] or [motion.settings]
+        is_fixed = motion.settings.placement.mode is IpoMode.TCP
+        wants = any(settings.orientation == "#JOINT" for settings in every)
+        return self.is_cp and wants and (bool(motion.parts) or is_fixed)
 
     @property
     def is_cp(self) -> bool:

@@ -24,14 +24,24 @@ from grammar.types import (
     Structure,
     Type,
 )
-from interp.builtins import BUILTINS, WORLD, Surroundings, call
+from interp.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
 from interp.faults import LinkError, fault
 from interp.inspection import Seen
 from interp.operators import apply, apply_unary
 from interp.phrases import is_variable
 from interp.requests import At, Invoke, Read, StopAdvance, Write
 from interp.tree.names import find_text
-from interp.tree.places import Local, Place, Remote, element, fresh, member, of_type, sized
+from interp.tree.places import (
+    Local,
+    Place,
+    Remote,
+    element,
+    fresh,
+    is_left_out,
+    member,
+    of_type,
+    sized,
+)
 from interp.tree.run import Call, Frame, Run, Steps
 from interp.values import (
     EnumValue,
@@ -324,6 +334,10 @@ class Expressions:
             if argument is not None and is_out and is_variable(self.frame.unit, argument):
                 place = yield from self.place(argument)
                 value = yield from self.read(place)
+                if value is None and is_left_out(place):
+                    raise fault("uninitialised")
+            elif argument is not None and name in BUILTINS and reads_text(type_):
+                value = yield from self._text(argument, type_)
             elif argument is not None:
                 value = yield from self.value(argument, type_)
             places.append(place)
@@ -341,6 +355,15 @@ class Expressions:
             if place is not None and value is not None and value is not before:
                 yield from self.store(place, value)
         return result
+
+    def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:
+        """A text passed :IN to a predefined function; see `interp.builtins.reads_text`."""
+        if not is_variable(self.frame.unit, node):
+            return (yield from self.value(node, wanted))
+        place = yield from self.place(node)
+        value = yield from self.read(place)
+        is_empty = value is None and is_left_out(place) and reads_text(place.type)
+        return "" if is_empty else known(value)
 
     def look(self, text: str) -> Seen | None:
         """A variable of the program or a part of one, as `interp.inspection` has it."""

@@ -31,6 +31,7 @@ __all__ = [
     "Remote",
     "element",
     "fresh",
+    "is_left_out",
     "member",
     "of_type",
     "sized",
@@ -92,6 +93,16 @@ def fresh(type_: Type, name: str) -> Local:
     """A variable without a value."""
     is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
     return Local([None if is_open else empty(type_)], 0, type_, (name,))
+
+
+def is_left_out(place: Place) -> bool:
+    """Whether it is an array parameter ``X[]`` that the caller left out, so that it has no size."""
+    return (
+        isinstance(place, Local)
+        and isinstance(place.type, Array)
+        and None in place.type.sizes
+        and place.get() is None
+    )
 
 
 def sized(type_: Type, value: Value) -> Type:

@@ -18,7 +18,7 @@ from interp.faults import Fault, LinkError, fault
 from interp.operators import apply
 from interp.requests import Poll, Wait, Write
 from interp.tree.motions import Motions
-from interp.tree.places import Remote, fresh, of_type
+from interp.tree.places import Remote, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values import Value, known
 from interp.variables import is_complete
@@ -259,6 +259,8 @@ class Statements(Motions):
 
     def _assignment(self, node: ast.Assignment) -> Steps[None]:
         place = yield from self.place(node.target)
+        if is_left_out(place):
+            raise fault("uninitialised")
         if isinstance(place, Remote) and place.path[0] == "$CYCFLAG" and len(place.path) == 2:
             condition = self.run.hand(node.value, self.frame)
             yield requests.SetCyclicFlag(self.at(), int(place.path[1]), condition)

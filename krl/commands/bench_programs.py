@@ -69,7 +69,8 @@ def programs(
     """Run the main programs of backups with their own machine, tools, bases and points.
 
     Their submit program runs beside them; somebody goes on after a HALT and acknowledges messages.
-    A program waits when its arm has stood for 20 s. Exit status 1 after a defect of ours.
+    The inputs that a WAIT FOR waits for come after 1 s, but for those that a script sets itself. A
+    program waits when its arm has stood for 20 s. Exit status 1 after a defect of ours.
     """
     from interp.controller.script import ScriptError
     from interp.executors import available
@@ -160,6 +161,7 @@ def _print(record: Mapping[str, Any]) -> None:
         table.add_column("ran")
         table.add_column("virtual s", justify="right")
         table.add_column("motions", justify="right")
+        table.add_column("inputs", justify="right")
         table.add_column("where and why", overflow="fold")
         for row in (row for row in rows if row["origin"] == origin):
             where = "" if row["result"] == "end" else f"{row['at'].rpartition('/')[2]} "
@@ -168,6 +170,7 @@ def _print(record: Mapping[str, Any]) -> None:
                 _RESULTS[row["result"]],
                 f"{row['seconds']:,.1f}",
                 f"{row['motions']:,}",
+                f"{row['inputs']:,}",
                 one_line(where + row["reason"]),
             )
         console.print(table)

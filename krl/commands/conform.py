@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.door import FINDINGS, FINE, Unusable, one_line, shown
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
@@ -64,6 +64,10 @@ def conform(
     jobs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the cases."),
+    ] = None,
 ) -> int:
     """Run conformance cases, compare each with what it expects and executors with one another.
 
@@ -79,21 +83,27 @@ def conform(
             "--junit needs junitparser, which is not installed: "
             "pip install 'krl-workbench[records]'"
         )
-    with _installed():
+    with _expected_errors():
         if lint:
             return _lint(words)
         if metamorphic is not None:
             from krl.commands.conform_laws import check_laws
 
-            return check_laws(_cases(words), metamorphic, json_file, jobs)
-        return _conform(words, executor, robot, json_file, junit, html, jobs, list_=list_)
+            return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
+        return _conform(
+            words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
+        )
 
 
 @contextmanager
-def _installed() -> Iterator[None]:
-    """Cases that run need what arms need."""
+def _expected_errors() -> Iterator[None]:
+    """What is not installed, here or on workers, and workers that cannot do the work."""
+    from recovery.workers import WorkersError
+
     try:
         yield
+    except WorkersError as error:
+        raise Unusable(str(error)) from error
     except ModuleNotFoundError as error:
         name = (error.name or "").partition(".")[0]
         if name not in _NEEDED:
@@ -111,6 +121,7 @@ def _conform(
     junit: Path | None,
     html: Path | None,
     jobs: int | None,
+    scheduler: str | None,
     *,
     list_: bool,
 ) -> int:
@@ -122,7 +133,7 @@ def _conform(
     executors = _chosen(executor, "executor")
     robots = _chosen(robot, "robot")
     begun = time.perf_counter()
-    results = _run(cases, executors, robots, jobs)
+    results = _run(cases, executors, robots, jobs, scheduler)
     seconds = time.perf_counter() - begun
     _write(results, executors, robots, seconds, json_file, junit, html)
     _tell(results, seconds)
@@ -135,7 +146,7 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
     from krl.writing import write_json
 
     for case in cases:
-        typer.echo(f"{case.name:42} {','.join(case.rules):22} {case.title}")
+        typer.echo(shown(f"{case.name:42} {','.join(case.rules):22} {case.title}"))
     if json_file is not None:
         told = [
             {
@@ -188,7 +199,11 @@ def _chosen(wanted: list[str] | None, what: str) -> list[str]:
 
 
 def _run(
-    cases: "Sequence[Case]", executors: Sequence[str], robots: Sequence[str], jobs: int | None
+    cases: "Sequence[Case]",
+    executors: Sequence[str],
+    robots: Sequence[str],
+    jobs: int | None,
+    scheduler: str | None,
 ) -> "list[CaseResult]":
     from conformance.runner import run_cases
     from conformance.verdicts import KnownFailures
@@ -198,7 +213,7 @@ def _run(
     except (OSError, ValueError) as error:
         raise Unusable(f"the list of known failures cannot be read: {error}") from error
     with progress_bar("running cases", len(cases)) as bar:
-        return run_cases(cases, executors, robots, known, jobs, bar)
+        return run_cases(cases, executors, robots, known, jobs, bar, scheduler)
 
 
 def _write(
@@ -224,7 +239,7 @@ def _write(
             write_page = getattr(reports, "write_conformance_page", None)
             if write_page is None:
                 raise Unusable("the page of the judge is not built yet; use --json")
-            typer.echo(f"page: {write_page(record, html)}")
+            typer.echo(one_line(f"page: {write_page(record, html)}"))
     if junit is not None:
         from conformance.junit import write_junit
 
@@ -252,14 +267,15 @@ def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
 
 
 def _tell_failure(one: "CaseResult") -> None:
-    typer.echo(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]")
+    typer.echo(shown(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]"))
     for result in one.results:
         if result.verdict != "fail":
             continue
         typer.echo(one_line(f"  {result.executor}/{result.robot}: {result.reason}"))
         if result.divergence is not None:
             found = result.divergence
-            typer.echo(f"    {found.file}:{found.line}: {one.case.line(found.file, found.line)}")
+            line = one.case.line(found.file, found.line)
+            typer.echo(shown(f"    {found.file}:{found.line}: {line}"))
             for side in (found.left, found.right):
                 values = ", ".join(f"{name}={value}" for name, value in side.variables.items())
                 typer.echo(one_line(f"    {side.name}: {values or 'no variables yet'}"))
@@ -275,7 +291,7 @@ def _lint(words: Iterable[str]) -> int:
             raise Unusable(f"{folder}: no such folder of cases")
     found = [fault for folder in folders for fault in lint(folder)]
     for fault in found:
-        typer.echo(fault)
+        typer.echo(one_line(str(fault)))
     typer.echo(f"{len(found)} faults" if found else "the cases are well formed", err=True)
     return FINDINGS if found else FINE
 

@@ -19,7 +19,11 @@ _SHOWN = 5
 
 
 def check_laws(
-    cases: "Sequence[Case]", programs: int, json_file: Path | None, jobs: int | None
+    cases: "Sequence[Case]",
+    programs: int,
+    json_file: Path | None,
+    jobs: int | None,
+    scheduler: str | None,
 ) -> int:
     """Try every law, tell how each stands, and write the record; 1 where one was broken."""
     from conformance.metamorphic import laws, record_of, try_laws
@@ -27,7 +31,7 @@ def check_laws(
 
     seed = 1
     with progress_bar("trying laws", len(laws())) as bar:
-        found = try_laws(cases, programs, seed, jobs or os.cpu_count() or 1, bar)
+        found = try_laws(cases, programs, seed, jobs or os.cpu_count() or 1, bar, scheduler)
     if json_file is not None:
         write_json({"metamorphic": record_of(found, programs, seed)}, json_file)
     for one in found:

@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from krl.commands import construct_accept, construct_oracle
-from krl.constructs import LEDGER, PRELIMINARY, expected_errors, print_table
-from krl.door import FINE, Unusable
+from krl.constructs import LEDGER, PRELIMINARY, expected_errors, print_table, there
+from krl.door import FINE, Unusable, one_line
 from krl.writing import write_json
 
 __all__ = ["app"]
@@ -36,7 +36,7 @@ def show_all(
     if json_file is not None and json_file.is_dir():
         raise Unusable(f"{json_file}: a folder, not a file")
     with expected_errors():
-        ledger = Ledger.read(LEDGER)
+        ledger = Ledger.read(there(LEDGER))
     rows = [
         (
             f"{c.number:04}",
@@ -68,9 +68,9 @@ def show(
     from recovery.overview import difference, page_of
 
     with expected_errors():
-        ledger = Ledger.read(LEDGER)
+        ledger = Ledger.read(there(LEDGER))
         construct = ledger.find(wanted)
-        change = list(difference(construct, preliminary_of(PRELIMINARY), ledger))
+        change = list(difference(construct, preliminary_of(there(PRELIMINARY)), ledger))
     for line in (*page_of(construct), *change):
         typer.echo(printable(line.expandtabs(4)))
     return FINE
@@ -94,7 +94,7 @@ def propose(
 
     try:
         record = json_of(read_bytes(survey).decode("utf-8"))
-        typer.echo(f"wrote {write(record, cluster, number, out).as_posix()}")
+        typer.echo(one_line(f"wrote {write(record, cluster, number, out).as_posix()}"))
     except FileNotFoundError as error:
         raise Unusable(f"{survey}: no such survey; run krl recover first") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:

@@ -14,6 +14,7 @@ from krl.constructs import (
     expected_errors,
     print_evaluation,
     print_refusals,
+    there,
 )
 from krl.door import FINDINGS, FINE, Unusable, one_line
 from krl.progress import progress_bar
@@ -65,7 +66,7 @@ def weigh(
     from recovery.together import write_together
 
     with expected_errors():
-        found = _weighed(Ledger.read(LEDGER), files, corpus, jobs)
+        found = _weighed(Ledger.read(there(LEDGER)), files, corpus, jobs)
         for evaluation in found.evaluations:
             print_evaluation(evaluation)
         print_refusals(found.other_refusals)
@@ -147,7 +148,7 @@ def replay(
         typer.echo(text, nl=False)
     else:
         out.write_bytes(text.encode())
-        typer.echo(f"wrote {out.as_posix()}: the replay of {_count(len(chosen))}")
+        typer.echo(one_line(f"wrote {out.as_posix()}: the replay of {_count(len(chosen))}"))
     return FINE
 
 
@@ -168,7 +169,7 @@ def _weighed(
     from recovery.ledger import preliminary_of
 
     given = list({c.file: c for c in map(ledger.take, files)}.values())
-    preliminary, corpora = preliminary_of(PRELIMINARY), _corpora(corpus, jobs)
+    preliminary, corpora = preliminary_of(there(PRELIMINARY)), _corpora(corpus, jobs)
     with progress_bar("weighing", len(given)) as bar:
         return enter(given, preliminary, ledger, corpora, current, bar)
 

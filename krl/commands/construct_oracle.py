@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.constructs import LEDGER, expected_errors, print_table
+from krl.constructs import LEDGER, expected_errors, print_table, there
 from krl.door import FINDINGS, FINE, Unusable, one_line
 from krl.progress import progress_bar
 
@@ -58,7 +58,7 @@ def oracle(
     if sum(option is not None for option in (bundle, record, command)) > 1:
         raise Unusable("only one of --bundle, --record and --command")
     with expected_errors():
-        ledger = Ledger.read(LEDGER)
+        ledger = Ledger.read(there(LEDGER))
         waiting = [c for c in ledger.constructs if reason_to_ask(c)]
         chosen = [ledger.find(one) for one in wanted] if wanted else waiting
         try:
@@ -75,7 +75,9 @@ def oracle(
                 if not programs:
                     raise Unusable("nothing waits for a verdict: name constructs")
                 write_bundle(programs, bundle)
-                typer.echo(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
+                typer.echo(
+                    one_line(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
+                )
                 return FINE
         except OracleError as error:
             raise Unusable(str(error)) from error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable
+from krl.door import FINDINGS, FINE, Unusable, one_line, shown
 
 if TYPE_CHECKING:
     from recovery.sources import PublicSource
@@ -86,10 +86,10 @@ def fetch(
     _print_table(rows)
     problems = [problem for result in results for problem in result.problems]
     for problem in problems:
-        typer.echo(f"missing: {problem}", err=True)
+        typer.echo(one_line(f"missing: {problem}"), err=True)
     written = sum(result.written for result in results)
     had = written + sum(result.kept for result in results)
-    typer.echo(f"{had} of {wanted} files in {out}, {written} of them new")
+    typer.echo(one_line(f"{had} of {wanted} files in {out}, {written} of them new"))
     return FINDINGS if problems else FINE
 
 
@@ -119,10 +119,12 @@ def synth(
     with progress_bar("writing", wanted) as advance:
         written = write_cells(folder, wanted, seed, advance)
     cells = "1 cell" if written.cells == 1 else f"{written.cells} cells"
-    typer.echo(f"{written.bytes:,} bytes in {_files(written.files)} of {cells} in {folder}")
+    typer.echo(
+        one_line(f"{written.bytes:,} bytes in {_files(written.files)} of {cells} in {folder}")
+    )
     others = sum(path.is_file() for path in folder.rglob("*")) - written.files
     if others:
-        typer.echo(f"{folder} has {_files(others)} beside them, from before", err=True)
+        typer.echo(one_line(f"{folder} has {_files(others)} beside them, from before"), err=True)
     return FINE
 
 
@@ -171,6 +173,6 @@ def _print_table(rows: Sequence[tuple[str, ...]]) -> None:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        typer.echo(f"  {'  '.join(cells)}".rstrip())
+        typer.echo(shown(f"  {'  '.join(cells)}".rstrip()))
     if not rows:
         typer.echo("  none")

@@ -56,6 +56,8 @@ def format_programs(
         for found in discover(paths):
             counts[_format(found, check)] += 1
     except IngestError as error:
+        if counts[_Outcome.SKIPPED]:  # that was told where it was met
+            return UNUSABLE
         raise Unusable(str(error)) from error
     typer.echo(
         ", ".join(f"{counts[outcome]:,} {outcome.value}" for outcome in _Outcome if counts[outcome])

@@ -38,6 +38,10 @@ def fuzz(
     jobs: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the programs."),
+    ] = None,
 ) -> int:
     """Make programs at random, run each on all executors, compare every request and event.
 
@@ -47,13 +51,17 @@ def fuzz(
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of
+    from recovery.workers import WorkersError
 
     if json_file is not None and json_file.is_dir():
         raise Unusable(f"{json_file}: a folder, not a file")
     names = _chosen(executor or [])
     begun = time.perf_counter()
-    with progress_bar("running programs", programs) as bar:
-        found = run(programs, seed, names, jobs or os.cpu_count() or 1, bar)
+    try:
+        with progress_bar("running programs", programs) as bar:
+            found = run(programs, seed, names, jobs or os.cpu_count() or 1, bar, scheduler)
+    except WorkersError as error:
+        raise Unusable(str(error)) from error
     record = record_of(found, time.perf_counter() - begun)
     if json_file is not None:
         json_file.parent.mkdir(parents=True, exist_ok=True)

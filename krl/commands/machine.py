@@ -56,7 +56,7 @@ def compile_file(
         typer.echo(f"and {len(told) - _MOST_TOLD} more", err=True)
     codes = compiled.program.codes
     count = sum(len(code.instructions) for code in codes)
-    typer.echo(f"{target}: {len(codes):,} code objects, {count:,} instructions")
+    typer.echo(one_line(f"{target}: {len(codes):,} code objects, {count:,} instructions"))
     return FINDINGS if compiled.refusals else FINE
 
 
@@ -113,10 +113,8 @@ def write_image_of(program: "Program", source: Path, target: Path) -> None:
 
 
 def _read(file: Path) -> bytes:
+    from grammar.documents import read_bytes
+
     if file.is_dir():
         raise Unusable(f"{file}: a folder, not a file")
-    with file.open("rb") as stream:
-        data = stream.read(_LARGEST + 1)
-    if len(data) > _LARGEST:
-        raise Unusable(f"{file}: larger than {_LARGEST >> 20} MB")
-    return data
+    return read_bytes(file, _LARGEST)

@@ -89,7 +89,7 @@ def nightly(
     page = write_night_page({**night, "changes": told, "history": [*nights, night]}, folder)
     for line in told or ["nothing changed since the last night"]:
         typer.echo(one_line(line))
-    typer.echo(f"page: {page}")
+    typer.echo(one_line(f"page: {page}"))
     failed = any(one["status"] not in ("ok", "findings") for one in went.values())
     verdicts = night["conform"]["verdicts"]
     return FINDINGS if failed or verdicts.get("fail") or night["fuzz"]["divergences"] else FINE
@@ -136,7 +136,8 @@ def _performed(
         began = time.monotonic()
         target = folder / f"{step.name}.json"
         if target.is_file():
-            yield step, "ok", 0.0
+            is_whole = _record(folder, step.name) is not None
+            yield step, "ok" if is_whole else f"failed: {target.name} there is damaged", 0.0
             continue
         typer.echo(f"{(began - begun) / 60:5.1f} min  {step.name}", err=True)
         left = 60 * minutes - (began - begun)

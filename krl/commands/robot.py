@@ -199,8 +199,8 @@ def _is_finite(value: object) -> bool:
 
 def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
     number = _number(where, members, key)
-    if number < 0 or not number.is_integer():
-        raise Unusable(f"{where}: {key} is not a whole number from 0")
+    if not 0 <= number <= _LARGEST_INT or not number.is_integer():
+        raise Unusable(f"{where}: {key} is not a whole number from 0 to {_LARGEST_INT}")
     return int(number)
 
 

@@ -149,7 +149,7 @@ def run(
         _write(done, program, setup, path, html, video)
     typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
     if html is not None:
-        typer.echo(f"page: {html}")
+        typer.echo(one_line(f"page: {html}"))
     return FINE if done.outcome.ending in ("end", "halt") else FINDINGS
 
 

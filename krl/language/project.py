@@ -16,6 +16,7 @@ from grammar.build import SyntaxFailure, read_module
 from grammar.check.framework import Checked, check_module, check_project
 from grammar.check.silencing import silenced, silencers
 from grammar.diagnostics import Diagnostic
+from grammar.documents import read_bytes
 from grammar.link import File, Project, link
 from grammar.mistakes import syntax_findings
 from grammar.scopes import Module
@@ -82,7 +83,7 @@ class OpenProject:
     def reload(self, path: str) -> None:
         """Take a file as it is on the disk; forget it where it is gone or no KRL."""
         try:
-            decoded = decode(Path(path).read_bytes())
+            decoded = decode(read_bytes(Path(path)))
         except OSError:
             decoded = ""
         if isinstance(decoded, str):

@@ -103,3 +103,15 @@ def test_without_a_survey_it_says_what_to_run(
     (tmp_path / "survey.json").write_text("[]", encoding="utf-8")
     assert propose(tmp_path, tmp_path) == 2
     assert "not a survey" in capsys.readouterr().err
+
+
+def test_outside_a_checkout_the_ledger_is_that_of_the_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In a folder without a grammar, constructs can be listed and shown, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    assert 0 == main(["construct", "list"])
+    assert "GLOBAL DEF" in capsys.readouterr().out
+    assert 0 == main(["construct", "show", "3"])
+    assert "GLOBAL" in capsys.readouterr().out
+    assert [] == list(tmp_path.iterdir())

@@ -52,6 +52,11 @@ def test_expected_error_is_one_line(
     assert ("", f"{line}\n") == capsys.readouterr()
 
 
+def test_lines_are_shown_without_what_steers() -> None:
+    """Blanks stay, so that columns do; all else that is not printed is spelt out."""
+    assert "a  b\\x1b[2J\\u202e\\x9b\\udcff" == door.shown("a  b\x1b[2J\u202e\x9b\udcff")
+
+
 @pytest.mark.parametrize("error", [ValueError("odd"), RecursionError("deep"), MemoryError()])
 def test_defect_is_one_line(
     error: Exception, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -1,6 +1,7 @@
 """`krl run` from the outside: what it prints and writes, exit status, one line for bad input."""
 
 import json
+import sys
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -154,12 +155,28 @@ def test_submit(run: Run, tmp_path: Path) -> None:
     assert 1 == run("WAIT FOR $FLAG[3]\n", "--max-time", "1")[0]
 
 
-def test_batches_cost_time(run: Run) -> None:
-    """--motion batch makes the arm wait where look-ahead does not [the paper's strategy]."""
-    body = f"{INI}$ADVANCE=3\nPTP {{A1 20}}\nWAIT SEC 0\nPTP {{A1 40}}\n"
-    ahead, batch = (run(body, "--motion", one) for one in ("lookahead", "batch"))
-    assert (0, 0) == (ahead[0], batch[0])
-    assert float(ahead[1].split()[3]) <= float(batch[1].split()[3])
+def test_batches_cost_time(run: Run, tmp_path: Path) -> None:
+    """--motion batch begins to move only when the program has come to the end of the batch.
+
+    The program computes for 8 cycles between two motions that blend. Looking ahead it does so while
+    the first of them is on its way; in a batch the arm waits as long, and so the run takes longer.
+    """
+    body = (
+        f"INT I\n{INI}WAIT SEC 0.012\nPTP {{A1 60}} C_PTP\nFOR I=1 TO 8000\nENDFOR\nPTP {{A1 90}}\n"
+    )
+    trace = tmp_path / "trace.jsonl"
+    seconds, starts, blends = [], [], []
+    for one in ("lookahead", "batch"):
+        status, out, _ = run(body, "--motion", one, "--trace", str(trace))
+        assert 0 == status
+        seconds.append(float(out.split()[3]))
+        told = events(trace)
+        starts.append([event["t"] for event in told if event["kind"] == "motion_start"][1])
+        blends.append(sum(event["kind"] == "blend_start" for event in told))
+    cost = 8 * 12_000
+    assert starts[0] + cost == starts[1]
+    assert seconds[0] + cost / 1e6 == pytest.approx(seconds[1], abs=1e-5)
+    assert [1, 1] == blends
 
 
 @pytest.mark.parametrize("folder", ["KRC/R1/Program", "R1", "steu/Mada"])
@@ -195,7 +212,32 @@ def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
         archive.writestr("KRC/R1/System/help.src", "DEF help ( )\nHALT\nEND\n")
     status, out, _ = run(None, str(tmp_path / "backup.zip" / "KRC/R1/Program/go.src"))
     assert 0 == status
-    assert "halt after 0 s" in out
+    assert "KRC/R1/System/help.src" in out
+
+
+def test_data_in_an_archive(run: Run, tmp_path: Path) -> None:
+    """Files of an archive go by their names: a data list belongs to its program."""
+    with ZipFile(tmp_path / "backup.zip", "w") as archive:
+        archive.writestr("KRC/R1/go.src", "DEF go ( )\nWAIT SEC span\nEND\n")
+        archive.writestr("KRC/R1/go.dat", "DEFDAT go\nREAL span=0.5\nENDDAT\n")
+    said = run(None, str(tmp_path / "backup.zip" / "KRC/R1/go.src"))
+    assert (0, "KRC/R1/go.src: end after 0.504 s at KRC/R1/go.src:2\n", "") == said
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names are Unicode there")
+@pytest.mark.parametrize("executor", ["tree", "vm", "native"])
+def test_names_that_are_no_text(run: Run, tmp_path: Path, executor: str) -> None:
+    """A file whose name is no UTF-8 runs like any other; its name is told with escapes."""
+    file = tmp_path / "a\udcff\x1b.src"
+    file.write_text("DEF a ( )\nHALT\nEND\n", encoding="utf-8")
+    page = tmp_path / "\x1b[31m.html"
+    status, out, _ = run(None, str(file), "--executor", executor, "--html", str(page))
+    assert (0, f"a\\xff\\x1b.src: halt after 0 s at a\\xff\\x1b.src:2\n") == (
+        status,
+        out[: out.index("page")],
+    )
+    assert "\x1b" not in out
+    assert page.is_file()
 
 
 # -- what it writes --------------------------------------------------------------------------------

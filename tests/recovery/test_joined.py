@@ -1,11 +1,11 @@
 """Edits that let in one thing in several places belong together."""
 
-from grammar.edits import AddAlternative, AddToken, Insert, Widen
+from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from recovery.candidates import Candidate
-from recovery.joined import one_choice, reach_the_same, together
+from recovery.joined import one_choice, one_form, reach_the_same, together
 from recovery.layout import Layout
 
 LAYOUT = Layout(Recognizer(read_file(GRAMMAR.with_name("preliminary.g4"))))
@@ -29,6 +29,22 @@ def test_the_same_word_or_phrase_is_one_thing() -> None:
         [new, Widen("motion", (2, 3), "C_VEL")],
     )
     assert not reach_the_same(LAYOUT, brake[:1], [AddAlternative("simpleStatement", "HALT")])
+
+
+def test_two_rules_share_the_longer_form_of_a_new_word() -> None:
+    """What one word begins in two rules is one construct, unless the grammar has it already."""
+    short: list[Edit] = [AddToken("HOLD"), AddAlternative("interruptAction", "HOLD")]
+    long: list[Edit] = [AddToken("HOLD"), AddAlternative("simpleStatement", "HOLD (F | FF)?")]
+    found = one_form(LAYOUT, short, long)
+    assert found is not None
+    assert {
+        AddToken("HOLD"),
+        AddAlternative("interruptAction", "HOLD (F | FF)?"),
+        AddAlternative("simpleStatement", "HOLD (F | FF)?"),
+    } == set(found)
+    known = [AddAlternative(rule, "WAIT name") for rule in ("interruptAction", "simpleStatement")]
+    assert one_form(LAYOUT, known[:1], known[1:]) is None
+    assert one_form(LAYOUT, long, long) is None
 
 
 def test_no_edit_moves_the_place_of_another() -> None:

@@ -1,12 +1,19 @@
 """Mutants of a grammar, and how the tool does on them."""
 
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from grammar import g4
+from grammar.edits import AddAlternative
 from grammar.recognizer import Recognizer
-from recovery.assessment import Material, Verdict, covering, examine, figures
+from recovery import assessment
+from recovery.assessment import Material, Verdict, assess, covering, examine, figures
+from recovery.causes import Proposal, no_judge
+from recovery.cluster import Clusters, cluster
 from recovery.mutation import Mutant, combined, mutants
 from recovery.specimens import choose
 
@@ -85,6 +92,40 @@ def test_the_tool_finds_its_way_back(every: list[Mutant]) -> None:
         **examine(material, wanted),
         "seconds_per_mutant": record["seconds_per_mutant"],
     } | {"by_kind": record["by_kind"]}
+
+
+def test_several_parts_are_ranked_by_how_deep_a_person_looks(
+    every: list[Mutant], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The best of all clusters together are 1; else the deepest proposal that is needed counts.
+
+    Without any that mends one of the clusters not everything can be read, and there is no rank.
+    """
+    shown = [(f"{n}", text) for n, text in enumerate([*PROGRAMS[::2], *covering(SMALL)])]
+    chosen = [
+        m
+        for title in ("wait: without the alternative WAIT SEC", "assignment: without ('['")
+        for m in every
+        if title in m.title(SMALL)
+    ]
+    [mutant] = combined(chosen, SMALL, 1, seed=1)
+    assert 2 == mutant.parts
+    useless = Proposal((AddAlternative("halt", "HALT HALT"),), frozenset(), frozenset(), 0, 0)
+
+    def rank_with(proposals: Callable[[tuple[Proposal, ...]], tuple[Proposal, ...]]) -> int | None:
+        def changed(*args: Any, **named: Any) -> Clusters:
+            found = cluster(*args, **named)
+            last = found.ranked[-1]
+            last = replace(last, proposals=proposals(last.proposals))
+            return replace(found, ranked=(*found.ranked[:-1], last))
+
+        monkeypatch.setattr(assessment, "cluster", changed)
+        verdict = assess(mutant, SMALL, shown, PROGRAMS[1::2], lambda _: no_judge, lambda _: 0)
+        return verdict.repair_rank
+
+    assert 1 == rank_with(lambda found: found)
+    assert 3 == rank_with(lambda found: (useless, useless, found[0]))
+    assert rank_with(lambda _: (useless,)) is None
 
 
 def test_figures_count_ranks(every: list[Mutant]) -> None:

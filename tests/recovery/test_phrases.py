@@ -169,3 +169,9 @@ def test_phrases_are_made_for_any_grammar() -> None:
     written = [" ".join(symbols) for symbols in phraser.phrases([(k, None) for k in kinds])]
     assert "A B" == written[0]
     assert {"pair", "unused"} & set(written)
+
+
+def test_enormous_lines_are_not_cut() -> None:
+    """A line longer than any statement has no parts: to find them would take hours."""
+    assert [1] * 119 == [len(part) for part in PHRASER.parts(words_of("(" * 119)) or []]
+    assert PHRASER.parts(words_of("(" * 3_000)) is None

@@ -256,6 +256,7 @@ def test_unsafe_path_is_refused(path: str, why: str, tmp_path: Path) -> None:
         (ENTRY, [ROW, ["other/cell", *ROW[1:]]], "no source for the files of other/cell"),
         (ENTRY, [ROW, [ROW[0], "r1/MAIN.src", *ROW[2:]]], "listed twice"),
         (ENTRY, [[*ROW[:2], "-3", *ROW[3:]]], "not a size and a SHA-256"),
+        (ENTRY, [[*ROW[:2], "9" * 5_000, *ROW[3:]]], "not a size and a SHA-256"),
         (ENTRY, [[*ROW[:3], "abc", *ROW[4:]]], "not a size and a SHA-256"),
         (ENTRY, [ROW[:4]], "6 columns expected"),
     ],
@@ -279,7 +280,7 @@ def test_repository_listed_twice_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["sources.toml", "checksums.tsv"])
-@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[[junk", b"a\tb\n"])
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[[junk", b"a\tb\n", b"a" + b".a" * 9_000])
 def test_junk_is_refused(name: str, content: bytes, tmp_path: Path) -> None:
     """Junk in place of a list is refused, and the file is named."""
     _write_list(tmp_path, ENTRY, ROW)

@@ -17,10 +17,9 @@ from grammar.scopes import Found
 from grammar.symbols import Space
 from grammar.types import CHAR, REAL, UNKNOWN, Array, Type
 from grammar.walk import walk
-from interp.builtins import BUILTINS, FUNCTIONS, WORLD
+from interp.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
-from interp.bytecode.compiler.changes import may_change
 from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
@@ -37,6 +36,7 @@ from interp.bytecode.compiler.places import (
     Value,
     View,
 )
+from interp.bytecode.compiler.rooms import Bound
 from interp.bytecode.crossing import unlike
 from interp.bytecode.program import (
     Argument,
@@ -126,46 +126,27 @@ class Calls(Expressions):
                 kept = Cells(self.writer.temporary(result), result)
                 self.refer(kept)
         bindings: list[Binding] = []
+        bounds: list[Bound | None] = []
         for place, type_ in enumerate(formals.types):
             argument = node.arguments[place] if place < len(node.arguments) else None
             later = node.arguments[place + 1 :]
             if not is_complete_parameter(type_):
                 name = formals.found[place].symbol.name
                 raise self.refuse(str(untyped_parameter(name, routine.name)))
-            if self._needs_no_copy(routine, formals, place, argument):
-                assert argument is not None, "something is passed"
-                self.value(argument, type_)
-                bindings.append(None)
-                continue
-            bindings.append(self._passed(type_, argument, formals.is_in[place], later))
+            binding, bound = self._passed(type_, argument, formals.is_in[place], later)
+            bindings.append(binding)
+            bounds.append(bound)
         if self.context.tables.cells + cells_of_routine(program, routine) > MOST_CELLS:
             raise self.fail("stack")
-        self.emit(Op.CALL, self.context.project.code_of(routine, tuple(bindings)))
+        number = self.context.project.code_of(routine, tuple(bindings))
+        for place, bound in enumerate(bounds):
+            if bound is not None:
+                self.context.project.sizes.receives((number, place), bound)
+        self.emit(Op.CALL, number)
         if kept is not None:
             self.refer(kept)
             return Block(kept.type)
         return None if result is None else Scalar(result)
-
-    def _needs_no_copy(
-        self, routine: Routine, formals: Formals, place: int, argument: ast.Expression | None
-    ) -> bool:
-        """Whether a formal array of this routine is passed on :IN to one that does not change it.
-
-        What else could change it meanwhile is not looked at (unconfirmed).
-        """
-        type_, symbol = formals.types[place], formals.found[place].symbol
-        if not isinstance(type_, Array) or None not in type_.sizes or not formals.is_in[place]:
-            return False
-        while isinstance(argument, ast.Subscript) and argument.indices[0] is None:
-            argument = argument.base
-        found = (
-            self.context.unit.found(argument.name) if isinstance(argument, ast.Variable) else None
-        )
-        given = None if found is None else self.context.variables.get(found.symbol)
-        if not isinstance(given, FormalView):
-            return False
-        is_alike = given == FormalView(given.offset, self.closed(type_.element), len(type_.sizes))
-        return is_alike and not may_change(routine, symbol)
 
     def _passed(
         self,
@@ -173,23 +154,26 @@ class Calls(Expressions):
         argument: ast.Expression | None,
         is_in: bool,
         later: Sequence[ast.Expression | None],
-    ) -> Binding:
-        """Push an argument, or what is left of it when it is a system variable."""
+    ) -> tuple[Binding, Bound | None]:
+        """Push an argument, or what is left of it when it is a system variable.
+
+        Gives what stands for a system variable, and how many elements an array has at most.
+        """
         is_view = isinstance(type_, Array) and (not is_in or None in type_.sizes)
         if argument is None:
-            self._left_out(type_, is_in, is_view)
-        elif not is_in and is_variable(self.context.unit, argument):
+            return None, self._left_out(type_, is_in, is_view)
+        if not is_in and is_variable(self.context.unit, argument):
             place = self.place(argument)
             if isinstance(place, Remote):
-                return self._bound(place)
-            self._referred(place, type_, is_view)
-        elif is_view:
-            self._copied_view(type_, argument)
-        elif is_in and isinstance(self.closed(type_), Plain):
+                return self._bound(place), None
+            return None, self._referred(place, type_, is_view)
+        if is_view:
+            return None, self._copied_view(type_, argument)
+        if is_in and isinstance(self.closed(type_), Plain):
             self.convert(self.value(argument, type_), self.closed(type_))
         else:
             self._copied(self.closed(type_), argument, is_in and not _calls(later))
-        return None
+        return None, None
 
     def _bound(self, place: Remote) -> Binding:
         """Push the indices of a system variable; its path becomes part of the routine."""
@@ -197,37 +181,39 @@ class Calls(Expressions):
         path = tuple(None if isinstance(step, Hole) else step for step in place.path)
         return path, place.type
 
-    def _left_out(self, type_: Type, is_in: bool, is_view: bool) -> None:
+    def _left_out(self, type_: Type, is_in: bool, is_view: bool) -> Bound | None:
         if isinstance(type_, Array) and is_view and None in type_.sizes:
             self.emit(Op.PUSH_NO_VIEW, self.number(type_.element), len(type_.sizes))
-            return
+            return None
         closed = self.closed(type_)
         if is_in and isinstance(closed, Plain):
             self.emit(Op.PUSH_NOTHING)
-            return
+            return None
         kept = Cells(self.writer.temporary(closed), closed)
         self.refer(kept)
         self.emit(Op.CLEAR, self.number(closed))
         self.refer(kept)
-        if is_view:
-            self.as_view(Block(closed))
+        return self.as_view(Block(closed)).most if is_view else None
 
-    def _referred(self, place: Place, type_: Type, is_view: bool) -> None:
-        """Push a reference to a variable, or a view of an array."""
+    def _referred(self, place: Place, type_: Type, is_view: bool) -> Bound | None:
+        """Push a reference to a variable, or a view of an array.
+
+        An array parameter that was left out is passed on as one [SCO-13].
+        """
         assert not isinstance(place, Remote), "it is bound"
         given: Block | View
         if isinstance(place, FormalView | PushedView):
-            given = self.view(place)
+            given = self.view(place, may_be_missing=True)
         else:
             self.refer(place)
             given = Block(place.type)
         if isinstance(type_, Array) and is_view:
             is_array = isinstance(given, View) or isinstance(given.type, Array)
             view = self.as_view(given) if is_array else None
-            if view == View(self.closed(type_.element), len(type_.sizes)):
-                return
+            if view is not None and _is_of(view, self.closed(type_.element), len(type_.sizes)):
+                return view.most
         elif given == Block(self.closed(type_)):
-            return
+            return None
         raise self.unlinked(str(mismatched(type_)))
 
     def _copied(self, type_: Type, argument: ast.Expression, is_copied_by_call: bool) -> None:
@@ -249,11 +235,13 @@ class Calls(Expressions):
     def _reference(self, kept: Cells) -> tuple[Op, int, int]:
         return Op.REF_LOCAL, kept.offset, self.number(kept.type)
 
-    def _copied_view(self, type_: Type, argument: ast.Expression) -> None:
+    def _copied_view(self, type_: Type, argument: ast.Expression) -> Bound:
         """Push a view of a copy of a value."""
         assert isinstance(type_, Array), "only arrays are views"
         behind = self.writer.here
         value = self.value(argument, type_)
+        if isinstance(value, View) and None in type_.sizes:
+            return self._copied_to_room(type_, value)
         made: Type = type_
         if None in type_.sizes:
             match value:
@@ -262,16 +250,24 @@ class Calls(Expressions):
                 case Block(Array() as made):
                     pass
                 case _:
-                    raise self.refuse("an array of unknown size is copied")
+                    raise self.refuse(_other_type(type_))
         made = self.closed(made)
         assert isinstance(made, Array), "made of one"
         if (made.element, len(made.sizes)) != (self.closed(type_.element), len(type_.sizes)):
-            raise self.refuse(f"an argument of another type than {type_}")
+            raise self.refuse(_other_type(type_))
         kept = Cells(self.writer.temporary(made), made)
         self.writer.insert(behind, *self._reference(kept))
         self.store_block(made, value, behind + 1)
         self.refer(kept)
-        self.as_view(Block(made))
+        return self.as_view(Block(made)).most
+
+    def _copied_to_room(self, type_: Array, value: View) -> Bound:
+        """Make of the view on top one of a copy of the array, whose size only running tells."""
+        if not _is_of(value, self.closed(type_.element), len(type_.sizes)):
+            raise self.refuse(_other_type(type_))
+        room = self.writer.room(value.element, value.dimensions, value.most)
+        self.emit(Op.COPY_VIEW, room.offset, room.type)
+        return value.most
 
     # ----------------------------------------------------------------------- the controller's
 
@@ -334,11 +330,20 @@ class Calls(Expressions):
             is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
         if is_out and is_variable(self.context.unit, argument):
             return self._changed(self.place(argument))
-        value = self.value(argument, type_)
+        value = self._given(argument, type_, is_builtin=is_builtin)
         if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
             self.convert(value, REAL)
             value = Scalar(REAL)
         return self.handed(value)
+
+    def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
+        """The value of an argument :IN; for a text see `interp.builtins.reads_text`."""
+        if not (is_builtin and reads_text(type_) and is_variable(self.context.unit, argument)):
+            return self.value(argument, type_)
+        place = self.place(argument)
+        if isinstance(place, FormalView) and _is_of(place, CHAR, 1):
+            return self.view(place, may_be_missing=True)
+        return self.load(place)
 
     def _changed(self, place: Place) -> Argument:
         if isinstance(place, Remote):
@@ -373,6 +378,14 @@ class Calls(Expressions):
 
     def _copy(self, type_: Type) -> tuple[Op, int]:
         return Op.COPY, self.number(type_)
+
+
+def _is_of(view: View | FormalView, element: Type, dimensions: int) -> bool:
+    return (view.element, view.dimensions) == (element, dimensions)
+
+
+def _other_type(type_: Type) -> str:
+    return f"an argument of another type than {type_}"
 
 
 def _paired(

@@ -93,6 +93,7 @@ def initial_values(context: Context, tables: Tables) -> tuple[tuple[int, int], .
         scope = context.program.project.scope(unit.module)
         _DataList(Context(context.project, unit, scope, writer)).fill(content)
     writer.emit(Op.RETURN)
+    code = writer.code(context.project.sizes)
     program = Program(
         tuple(tables.types),
         tuple(tables.texts),
@@ -100,7 +101,7 @@ def initial_values(context: Context, tables: Tables) -> tuple[tuple[int, int], .
         tuple(tables.builtins),
         tuple(tables.data),
         (),
-        (writer.code(),),
+        (code,),
     )
     machine = Machine(Verified(program, ()), "DATA")  # made here, and run here and now
     end = machine.advance()

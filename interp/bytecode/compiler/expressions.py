@@ -7,6 +7,7 @@ program when it is reached, and is told to whoever compiles.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -28,7 +29,7 @@ from grammar.types import (
     Type,
 )
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import bits_of
+from interp.bytecode.cells import array_sizes, bits_of, elements
 from interp.bytecode.compiler.memory import Memory
 from interp.bytecode.compiler.places import (
     Block,
@@ -296,8 +297,8 @@ class Expressions(Memory):
         match self.value(node):
             case Block(type_):
                 return Pushed(type_, None)
-            case View(element, dimensions):
-                return PushedView(element, dimensions, None)
+            case View(element, dimensions, most):
+                return PushedView(element, dimensions, None, most)
         raise self.unlinked("a part of what has none")
 
     def variable(self, name: ast.Name) -> Place:
@@ -395,7 +396,8 @@ class Expressions(Memory):
         if len(given) > len(sizes):
             raise self.unlinked("an array has too many indices")
         self.emit(Op.ROW, self.number(base.type), len(given))
-        return PushedView(base.type.element, len(sizes) - len(given), through)
+        rest = elements(base.type) // math.prod(array_sizes(base.type)[: len(given)])
+        return PushedView(base.type.element, len(sizes) - len(given), through, rest)
 
     def _indexed(
         self,
@@ -430,7 +432,7 @@ class Expressions(Memory):
             self.emit(Op.INDEX_VIEW, base.offset)
             return Pushed(base.element, base.offset)
         self.emit(Op.ROW_VIEW, base.offset, len(nodes))
-        return PushedView(base.element, base.dimensions - len(nodes), base.offset)
+        return PushedView(base.element, base.dimensions - len(nodes), base.offset, base.most)
 
     def _remote_element(self, base: Remote, nodes: list[ast.Expression]) -> Remote:
         steps: list[int | Hole] = []

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from grammar.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain, bits_of, offset_of, shared_cells
+from interp.bytecode.cells import Plain, bits_of, elements, offset_of, shared_cells
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.places import (
     Block,
@@ -132,11 +132,11 @@ class Memory:
             case Formal(offset):
                 self.emit(Op.LOAD_REF, offset)
 
-    def view(self, place: FormalView | PushedView) -> View:
+    def view(self, place: FormalView | PushedView, *, may_be_missing: bool = False) -> View:
         """Leave a view on the stack."""
         if isinstance(place, FormalView):
-            self.emit(Op.LOAD_VIEW, place.offset)
-        return View(place.element, place.dimensions)
+            self.emit(Op.PASS_VIEW if may_be_missing else Op.LOAD_VIEW, place.offset)
+        return View(place.element, place.dimensions, place.most)
 
     def as_view(self, value: Block | View, at: int | None = None) -> View:
         """Make a view of a reference to an array: of the one on top, or of one pushed before."""
@@ -145,7 +145,7 @@ class Memory:
         assert isinstance(value.type, Array), "only arrays have views"
         place = self.writer.here if at is None else at
         self.writer.insert(place, Op.VIEW, self.number(value.type))
-        return View(value.type.element, len(value.type.sizes))
+        return View(value.type.element, len(value.type.sizes), elements(value.type))
 
     def read(self, place: Remote) -> Value:
         """Ask the world for a value."""
@@ -257,7 +257,7 @@ class Memory:
                 return Pushed(place.type, place.offset)
             case FormalView():
                 self.view(place)
-                return PushedView(place.element, place.dimensions, place.offset)
+                return PushedView(place.element, place.dimensions, place.offset, place.most)
             case Cells() | DataCells() if not isinstance(place.type, Plain):
                 self.refer(place)
         return place
@@ -268,7 +268,7 @@ class Memory:
             self._write(place, value, behind)
             return
         if isinstance(place, PushedView):
-            self._fill(View(place.element, place.dimensions), value)
+            self._fill(View(place.element, place.dimensions, place.most), value)
             return
         assert not isinstance(place, FormalView), "made ready"
         if isinstance(place.type, Plain):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grammar.types import Type
+from interp.bytecode.compiler.rooms import Bound
 
 __all__ = [
     "Block",
@@ -50,11 +51,15 @@ class Formal:
 
 @dataclass(frozen=True, slots=True)
 class FormalView:
-    """The array that the parameter at this offset is a view of."""
+    """The array that the parameter at this offset is a view of.
+
+    ``most`` is how many elements a view has at most.
+    """
 
     offset: int
     element: Type
     dimensions: int
+    most: Bound
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +77,7 @@ class PushedView:
     element: Type
     dimensions: int
     through: int | None
+    most: Bound
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +119,7 @@ class View:
 
     element: Type
     dimensions: int
+    most: Bound
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,10 +26,11 @@ from interp.bytecode.compiler.places import (
     PushedView,
     Remote,
 )
+from interp.bytecode.compiler.rooms import Sizes
 from interp.bytecode.compiler.statements import Statements
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.compiler.writer import Writer
-from interp.bytecode.program import Code, CodeKind, Mode, Program
+from interp.bytecode.program import CodeKind, Mode, Program
 from interp.bytecode.verify import measured
 from interp.faults import LinkError
 from interp.program import CheckedProgram, Routine
@@ -71,7 +72,8 @@ class Project:
         self.program = program
         self.tables = Tables()
         self.refusals: dict[Refusal, None] = {}
-        self._codes: list[Code | None] = []
+        self.sizes = Sizes()
+        self._codes: list[Writer | None] = []
         self._numbers: dict[tuple[Symbol, tuple[Binding, ...]], int] = {}
         self._todo: deque[tuple[int, Routine, tuple[Binding, ...]]] = deque()
 
@@ -91,7 +93,7 @@ class Project:
             number, routine, bindings = self._todo.popleft()
             self._codes[number] = self._routine(number, routine, bindings)
         tables = self.tables
-        codes = tuple(code for code in self._codes if code is not None)
+        codes = tuple(one.code(self.sizes) for one in self._codes if one is not None)
         program = Program(
             tuple(tables.types),
             tuple(tables.texts),
@@ -117,14 +119,14 @@ class Project:
         self._codes.append(None)
         return len(self._codes) - 1
 
-    def _routine(self, number: int, routine: Routine, bindings: tuple[Binding, ...]) -> Code:
+    def _routine(self, number: int, routine: Routine, bindings: tuple[Binding, ...]) -> Writer:
         unit = routine.unit
         line = unit.line(routine.node)
         writer = Writer(self.tables, routine.name, CodeKind.ROUTINE, unit.module.path, line)
         context = Context(self, unit, routine.scope, writer, line=line, number=number)
         if self.tables.cells + cells_of_routine(self.program, routine) > MOST_CELLS:
             writer.emit(Op.UNLINKED, self.tables.text(str(too_large(routine))))
-            return writer.code()
+            return writer
         result = self.program.result_of(routine)
         if result is not None:
             self._give(context, result)
@@ -133,7 +135,7 @@ class Project:
             self._formal(context, formals, place, binding)
         self._declare(context, routine, {found.symbol for found in formals.found})
         Statements(context).routine(routine.node)
-        return writer.code()
+        return writer
 
     def _give(self, context: Context, result: Type) -> None:
         """What a function gives: a value, or something put where a hidden parameter leads."""
@@ -157,7 +159,7 @@ class Project:
         if isinstance(type_, Array) and (not is_in or None in type_.sizes):
             element, count = self.tables.closed(type_.element), len(type_.sizes)
             offset = writer.parameter(symbol.name, Mode.VIEW, element, count)
-            context.variables[symbol] = FormalView(offset, element, count)
+            context.variables[symbol] = FormalView(offset, element, count, (context.number, place))
             return
         closed = self.tables.closed(type_)
         offset = writer.parameter(symbol.name, Mode.IN if is_in else Mode.REF, closed)
@@ -202,7 +204,7 @@ class Project:
         else:
             writer.result = self.tables.number(BOOL)
             made.condition(node)
-        self._codes[number] = writer.code()
+        self._codes[number] = writer
         return number
 
     def _used(self, owner: Context, node: ast.Node) -> list[Symbol]:
@@ -223,10 +225,10 @@ class Project:
             case Cells(offset, type_) | Formal(offset, type_):
                 writer.captures.append(offset)
                 return Formal(writer.parameter(symbol.name, Mode.REF, type_), type_)
-            case FormalView(offset, element, dimensions):
+            case FormalView(offset, element, dimensions, most):
                 writer.captures.append(offset)
                 mine = writer.parameter(symbol.name, Mode.VIEW, element, dimensions)
-                return FormalView(mine, element, dimensions)
+                return FormalView(mine, element, dimensions, most)
             case Remote():
                 return self._captured_remote(writer, symbol, place)
         assert not isinstance(place, DataCells | Pushed | PushedView), "a variable of a frame"

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
-from grammar.types import Type
+from grammar.types import Array, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import size
+from interp.bytecode.compiler.rooms import Bound, Sizes
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.flow import ENDS
-from interp.bytecode.isa import shape
+from interp.bytecode.isa import MAX_CELLS, shape
 from interp.bytecode.program import (
     Code,
     CodeKind,
@@ -22,7 +24,7 @@ from interp.bytecode.program import (
     stack_cells,
 )
 
-__all__ = ["Label", "Writer"]
+__all__ = ["Label", "Room", "Writer"]
 
 
 @dataclass(slots=True, eq=False)
@@ -32,12 +34,36 @@ class Label:
     place: int = -1
 
 
+@dataclass(slots=True, eq=False)
+class Later:
+    """An operand that is known at the end."""
+
+    value: int = -1
+
+
+@dataclass(slots=True, eq=False)
+class Room:
+    """A place of the frame for copies of arrays of unknown size: its offset, and its type.
+
+    ``given`` are the bounds of all that is copied there.
+    """
+
+    element: Type
+    dimensions: int
+    given: set[Bound] = field(default_factory=set)
+    offset: Later = field(default_factory=Later)
+    type: Later = field(default_factory=Later)
+
+
+Operand = int | Label | Later
+
+
 @dataclass(slots=True)
 class Written:
     """An instruction; its targets are labels."""
 
     op: Op
-    operands: tuple[int | Label, ...]
+    operands: tuple[Operand, ...]
 
 
 @dataclass(slots=True, eq=False)
@@ -58,7 +84,10 @@ class Writer:
     _code: list[Written] = field(default_factory=list)
     _labels: list[Label] = field(default_factory=list)
     _free: dict[int, list[int]] = field(default_factory=dict)
-    _taken: list[tuple[int, int]] = field(default_factory=list)
+    _rooms: list[Room] = field(default_factory=list)
+    _free_rooms: dict[tuple[int, int], list[Room]] = field(default_factory=dict)
+    #: What is taken for a while, each behind the list that it goes back to.
+    _taken: list[tuple[list[Any], Any]] = field(default_factory=list)
 
     # ----------------------------------------------------------------------- the frame
 
@@ -88,8 +117,20 @@ class Writer:
         number = self.tables.number(type_)
         free = self._free.setdefault(number, [])
         offset = free.pop() if free else self.local(f"%{len(self._locals)}", type_)
-        self._taken.append((number, offset))
+        self._taken.append((free, offset))
         return offset
+
+    def room(self, element: Type, dimensions: int, most: Bound) -> Room:
+        """A place for a copy of an array, until the end of `temporaries`."""
+        free = self._free_rooms.setdefault((self.tables.number(element), dimensions), [])
+        if free:
+            room = free.pop()
+        else:
+            room = Room(element, dimensions)
+            self._rooms.append(room)
+        room.given.add(most)
+        self._taken.append((free, room))
+        return room
 
     @contextmanager
     def temporaries(self) -> Iterator[None]:
@@ -98,13 +139,13 @@ class Writer:
         try:
             yield
         finally:
-            for number, offset in reversed(self._taken[count:]):
-                self._free[number].append(offset)
+            for free, taken in reversed(self._taken[count:]):
+                free.append(taken)
             del self._taken[count:]
 
     # ----------------------------------------------------------------------- instructions
 
-    def emit(self, op: Op, *operands: int | Label) -> None:
+    def emit(self, op: Op, *operands: Operand) -> None:
         """Add an instruction."""
         self._code.append(Written(op, operands))
 
@@ -113,7 +154,7 @@ class Writer:
         """How many instructions there are."""
         return len(self._code)
 
-    def insert(self, place: int, op: Op, *operands: int | Label) -> None:
+    def insert(self, place: int, op: Op, *operands: Operand) -> None:
         """Put an instruction between others of the same expression, which has no labels."""
         self._code.insert(place, Written(op, operands))
 
@@ -140,8 +181,9 @@ class Writer:
         label.place = self.here
         self._labels.append(label)
 
-    def code(self) -> Code:
+    def code(self, sizes: Sizes) -> Code:
         """The code object, without what is never reached; its stack is not known yet."""
+        self._make_rooms(sizes)
         reached = self._reached()
         places = {place: number for number, place in enumerate(reached)}
         return Code(
@@ -158,11 +200,25 @@ class Writer:
             tuple(self._instruction(self._code[place], places) for place in reached),
         )
 
+    def _make_rooms(self, sizes: Sizes) -> None:
+        """Rooms become locals; what does not fit into memory faults when it is copied."""
+        for room in self._rooms:
+            left = (MAX_CELLS - self.tables.cells - self._cells) // size(room.element)
+            count = max(1, min(sizes.most(room.given), left))
+            type_ = Array(room.element, (count, *[1] * (room.dimensions - 1)))
+            room.offset.value = self.local(f"%{len(self._locals)}", type_)
+            room.type.value = self.tables.number(type_)
+
     def _instruction(self, written: Written, places: dict[int, int]) -> Instruction:
-        operands = (
-            places[operand.place] if isinstance(operand, Label) else operand
-            for operand in written.operands
-        )
+        operands: list[int] = []
+        for operand in written.operands:
+            match operand:
+                case Label(place):
+                    operands.append(places[place])
+                case Later(value):
+                    operands.append(value)
+                case _:
+                    operands.append(operand)
         return Instruction(written.op, tuple(operands))
 
     def _reached(self) -> list[int]:

@@ -17,7 +17,7 @@ from interp.requests import Crash, End, Fail, Request
 
 #: A program with something of everything, valid and not meant to make sense.
 EVERYTHING = """\
-bytecode 1
+bytecode 2
 enum COLOUR RED GREEN BLUE
 enum VAR_STATE DECLARED INITIALIZED UNKNOWN
 struct POINT X:REAL Y:REAL C:COLOUR N:CHAR[8]
@@ -238,6 +238,7 @@ code SUB routine "main.src" 20
   view L INT[]
   in C COLOUR
   local I INT
+  local ROOM INT[6]
   result INT
 begin
   LINE 21 L2
@@ -272,6 +273,11 @@ L4:
   ROW INT[2,3] 1
   CALL ROW_OF
   PUSH_NO_VIEW INT 1
+  CALL ROW_OF
+  PASS_VIEW L
+  CALL ROW_OF
+  LOAD_VIEW L
+  COPY_VIEW ROOM INT[6]
   CALL ROW_OF
   RETURN_VALUE
 L5:

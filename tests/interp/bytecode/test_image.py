@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from interp.bytecode.assembler import assemble
 from interp.bytecode.image import ImageError, read_image, write_image
 
-SMALL = 'bytecode 1\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
+SMALL = 'bytecode 2\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 
 
 def sealed(data: bytes) -> bytes:
@@ -33,7 +33,7 @@ def test_program_survives_its_image(everything: str) -> None:
 def test_image_begins_with_its_name_and_version() -> None:
     """Four letters, the version, and the length stand first."""
     image = write_image(assemble(SMALL))
-    assert (b"KRLI", 1, len(image)) == struct.unpack_from("<4sII", image)
+    assert (b"KRLI", 2, len(image)) == struct.unpack_from("<4sII", image)
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,7 @@ def test_image_begins_with_its_name_and_version() -> None:
         (lambda image: image[:0], "not an image"),
         (lambda image: b"ELF" + image[3:], "not an image"),
         (lambda image: image[:12], "too short"),
-        (lambda image: image[:4] + b"\2" + image[5:], "has format 2"),
+        (lambda image: image[:4] + b"\1" + image[5:], "has format 1"),
         (lambda image: image[:-1], "not .* as it says"),
         (lambda image: image + b"\0", "not .* as it says"),
         (lambda image: image[:-1] + b"\1", "checksum"),
@@ -81,7 +81,7 @@ def test_bytes_are_refused_quietly(data: bytes) -> None:
 
 def test_targets_lead_to_instructions() -> None:
     """A target between two words of an instruction is no target."""
-    text = 'bytecode 1\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
+    text = 'bytecode 2\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
     words = _words(write_image(assemble(text)))
     place = words.index(4, len(words) - 8)  # the word of RETURN
     words[place] = 3

@@ -16,7 +16,7 @@ from interp.bytecode.vm import Machine
 from interp.operators import PRIMITIVES
 
 SMALLEST = """
-bytecode 1
+bytecode 2
 code MAIN routine "main.src" 1
 begin
   RETURN

@@ -8,7 +8,7 @@ from interp.bytecode.assembler import AssemblyError, assemble
 from interp.bytecode.disassembler import disassemble
 from interp.bytecode.verify import verify
 
-HEAD = "bytecode 1\n"
+HEAD = "bytecode 2\n"
 BODY = 'code MAIN routine "main.src" 1\n  local X INT\nbegin\n{}\n  RETURN\nend\n'
 
 
@@ -94,17 +94,17 @@ def test_requests_are_written_as_they_are_nested() -> None:
     ("text", "line", "message"),
     [
         ("", 1, "ends early"),
-        ("bytecode 2\n", 1, "format 2"),
-        ("bytecode 1\n\nwhat X\n", 3, "begins no section"),
-        ("bytecode 1\ndata M.X NOTHING\n", 2, "no type NOTHING"),
-        ("bytecode 1\ndata M.X INT\ndata m.x INT\n", 3, "already"),
-        ("bytecode 1\ndata M.X INT[2] = 1 2 3\n", 2, "more values"),
-        ("bytecode 1\ndata M.X INT[1048577]\n", 2, "more than 1,048,576"),
-        ("bytecode 1\nstruct S A:INT\nstruct s B:INT\n", 3, "already"),
-        ("bytecode 1\ntext T 'a'\n", 2, "means nothing"),
-        ('bytecode 1\ntext T "\\x"\n', 2, "not a text"),
-        ('bytecode 1\ntext T "\\ud800"\n', 2, "not a text"),
-        ("bytecode 1\nask A Read %\n", 2, "no part"),
+        ("bytecode 1\n", 1, "format 1"),
+        ("bytecode 2\n\nwhat X\n", 3, "begins no section"),
+        ("bytecode 2\ndata M.X NOTHING\n", 2, "no type NOTHING"),
+        ("bytecode 2\ndata M.X INT\ndata m.x INT\n", 3, "already"),
+        ("bytecode 2\ndata M.X INT[2] = 1 2 3\n", 2, "more values"),
+        ("bytecode 2\ndata M.X INT[1048577]\n", 2, "more than 1,048,576"),
+        ("bytecode 2\nstruct S A:INT\nstruct s B:INT\n", 3, "already"),
+        ("bytecode 2\ntext T 'a'\n", 2, "means nothing"),
+        ('bytecode 2\ntext T "\\x"\n', 2, "not a text"),
+        ('bytecode 2\ntext T "\\ud800"\n', 2, "not a text"),
+        ("bytecode 2\nask A Read %\n", 2, "no part"),
         (HEAD + BODY.format("  NOTHING"), 5, "no instruction NOTHING"),
         (HEAD + BODY.format("  JUMP L"), 5, "no label L"),
         (HEAD + BODY.format("L:\nL:"), 6, "label L already"),
@@ -116,9 +116,9 @@ def test_requests_are_written_as_they_are_nested() -> None:
         (HEAD + BODY.format("  PUSH_INT 1 2"), 5, "too much"),
         (HEAD + BODY.format("  PUSH_INT"), 5, "missing"),
         (HEAD + BODY.format("  FAIL nothing"), 5, "no fault"),
-        ('bytecode 1\ncode M routine "m" 1\nbegin\n', 3, "ends early"),
-        ('bytecode 1\ncode M nothing "m" 1\n', 2, "a code object is"),
-        ("bytecode 1\nask A Read " + "(" * 20 + "\n", 2, "too deep"),
+        ('bytecode 2\ncode M routine "m" 1\nbegin\n', 3, "ends early"),
+        ('bytecode 2\ncode M nothing "m" 1\n', 2, "a code object is"),
+        ("bytecode 2\nask A Read " + "(" * 20 + "\n", 2, "too deep"),
     ],
 )
 def test_what_is_no_program_is_refused(text: str, line: int, message: str) -> None:

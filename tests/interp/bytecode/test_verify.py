@@ -13,7 +13,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verify import VerificationError, verify
 
 HEAD = """\
-bytecode 1
+bytecode 2
 enum E ONE TWO
 enum F ONE TWO
 struct S A:INT B:REAL[3]
@@ -169,6 +169,9 @@ def test_everything_is_verified(everything: str) -> None:
         ("PUSH_NO_VIEW CHAR 1\nSET_TEXT T", "stack does not hold"),
         ("PUSH_NO_VIEW INT[4] 1\nCALL SUB", "elements are no arrays"),
         ("PUSH_NO_VIEW INT 4\nCALL SUB", "no 4 dimensions"),
+        ("PASS_VIEW I\nCALL SUB", "no parameter begins there"),
+        ("REF_LOCAL T CHAR[4]\nVIEW CHAR[4]\nCOPY_VIEW T CHAR[5]\nSET_TEXT T", "is there"),
+        ("PUSH_NO_VIEW CHAR 1\nCOPY_VIEW T CHAR[4]\nSET_TEXT T", "stack does not hold"),
         ("UNLINKED #5", "is no text"),
         ("TELL_LOCAL I REAL", "no REAL is there"),
         ("TELL INT 4", "no 4 dimensions"),

@@ -34,7 +34,7 @@ Runner = Callable[..., list[Any]]
 Starter = Callable[..., Machine]
 
 HEAD = """\
-bytecode 1
+bytecode 2
 struct POINT X:REAL Y:REAL
 struct FRAME X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL
 struct POS X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL S:INT T:INT
@@ -331,6 +331,46 @@ def test_rows_of_parameters(run: Runner) -> None:
         "PUSH_INT 2\nPUSH_INT 1\nROW_VIEW A 2\nASK SHOW_ROW", name="SUB", head="view A INT[,,]"
     )
     assert [[5, 6]] == [list(row) for row in shown(run(text))]
+
+
+_PASSED = """
+  CALL SUB
+  PUSH_INT 1
+  ASK SHOW
+"""
+_INNER = routine("PASS_VIEW A\nCALL LAST", name="SUB", head="view A INT[,]")
+
+
+def test_view_left_out_can_be_passed_on(run: Runner) -> None:
+    """Only where it is used it is missed [SCO-13]."""
+    text = HEAD + routine(f"PUSH_NO_VIEW INT 2{_PASSED}") + _INNER
+    assert [1] == shown(run(text + routine("", name="LAST", head="view A INT[,]")))
+    for body in ("PUSH_INT 1\nPUSH_INT 1\nINDEX_VIEW A\nLOAD\nDROP", "LOAD_VIEW A\nCALL LAST"):
+        assert "uninitialised" == failed(
+            run(text + routine(body, name="LAST", head="view A INT[,]"))
+        )
+
+
+def test_copy_of_a_view(run: Runner) -> None:
+    """A copy has the sizes of what it is of, and cells of its own; without room it faults."""
+    body = """
+  REF_DATA M.A INT[2,2]
+  VIEW INT[2,2]
+  COPY_VIEW ROOM INT[{0},1]
+  CALL SUB
+  LOAD_DATA M.A[2,1]
+  ASK SHOW
+"""
+    text = HEAD + "data M.A INT[2,2] = 1 2 3 4\n" + routine(body, "local ROOM INT[{0},1]")
+    text += routine(
+        "PUSH_INT 2\nPUSH_INT 1\nINDEX_VIEW V\nPUSH_INT 9\nSTORE\n"
+        "PUSH_INT 2\nROW_VIEW V 1\nASK SHOW_ROW",
+        name="SUB",
+        head="view V INT[,]",
+    )
+    row, kept = shown(run(text.format(4)))
+    assert (ArrayValue(Array(INT, (2,)), [9, 4]), 3) == (row, kept)
+    assert "stack" == failed(run(text.format(3)))
 
 
 def test_text_is_cut_and_padded(run: Runner) -> None:

@@ -240,7 +240,9 @@ def test_coincidence_run(go: Go) -> None:
     profile = replace(Profile.load(), runs_coincidence=True)
     text = program("B=$MOVE_BCO", "CONTINUE", "$OUT[1]=TRUE", "PTP {A1 1}", declarations="BOOL B\n")
     ran = go(text, profile=profile)
-    assert [1350] == ran.messages()
+    assert [(0.0, 309), (1.0, 1350)] == [
+        (one.time / 1e6, one.fields["number"]) for one in ran.told("message")
+    ]
     assert [(1.0, 1, True)] == ran.outputs()
     assert False is ran.last("B")
     assert [(0.0, 1, True)] == go(text).outputs()

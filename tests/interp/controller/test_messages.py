@@ -140,6 +140,19 @@ def test_robot_is_stopped(go: Go) -> None:
     assert [1.48] == go(text, "t=0.504 IN[1]=TRUE").times("motion_end")
 
 
+@pytest.mark.parametrize(("kind", "number"), [("RAMP_DOWN", 81), ("PATH_MAINTAINING", 82)])
+def test_submit_stops_the_robot(go: Go, kind: str, number: int) -> None:
+    """A submit program stops the arm, with a message of its own; no override frees it [SUB-06]."""
+    text = program("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n")
+    beside = (
+        f"DEF BESIDE()\nBOOL B\nWAIT SEC 0.48\nB=ROB_STOP(#{kind})\n$OV_PRO=50\n$OV_PRO=100\n"
+        "WAIT SEC 0.36\nROB_STOP_RELEASE()\nLOOP\nWAIT SEC 1\nENDLOOP\nEND\n"
+    )
+    ran = go(text, submit="BESIDE", files={"beside.sub": beside})
+    assert [number] == ran.messages()
+    assert [1.36] == ran.times("motion_end")
+
+
 @pytest.mark.parametrize("body", ["", "I=1\n", "WAIT SEC 0.1\n"])
 def test_trace_ends_with_the_end(go: Go, body: str) -> None:
     """The last event is the end of the program."""

@@ -49,6 +49,9 @@ def test_file(tmp_path: Path) -> None:
         ("timers = 64", "tymers = 64", "profile x: sizes.timers is no int"),
         ("triggers = 40", "", "profile x: most.triggers is no int"),
         ("inputs = 8192", "inputs = 8_192_000_000", "profile x: sizes.inputs is above 10,000,000"),
+        ('"kr6r900"', '"../kr6r900"', "profile x: machine is no name of letters, digits and _"),
+        ('"kr6r900"', '"a\\u0000"', "profile x: machine is no name of letters, digits and _"),
+        ("start = 2020", "start = 9020", "profile x: time.start is after 9000"),
         ('"assumed" ', '"never" ', 'profile x: advance.coincidence is neither "assumed" nor "run"'),
     ],
 )

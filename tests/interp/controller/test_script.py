@@ -40,6 +40,7 @@ def test_language() -> None:
     on message press CONFIRM 1442
     on dialogue answer 2
     on channel SER_1 gets "ping" after 0.1 channel :SER_1 sends "pong"
+    fulfil waits after 1.5
     stop at 10
     """
     script = Script.read(text)
@@ -55,7 +56,8 @@ def test_language() -> None:
         (Asked(), 0, (Answer(2),)),
         (Received("SER_1", "ping"), 100_000, (Send("SER_1", "pong"),)),
     ] == found
-    assert 10_000_000 == script.stop
+    assert (10_000_000, 1_500_000) == (script.stop, script.fulfils)
+    assert 0 == Script.read("FULFIL WAITS").fulfils
 
 
 def test_where_it_stands() -> None:
@@ -68,7 +70,7 @@ def test_where_it_stands() -> None:
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("IN[1]=TRUE", "a line begins with t=SECONDS, with on, or with stop at"),
+        ("IN[1]=TRUE", "a line begins with t=SECONDS, with on, with fulfil waits, or with stop at"),
         ("t=1", "a variable is missing at the end"),
         ("t=x IN[1]=TRUE", "a time in seconds is missing before 'x'"),
         ("t=-1 IN[1]=TRUE", "-1 is no time in seconds"),
@@ -132,6 +134,42 @@ def test_events_repeat(go: Go) -> None:
     ran = go(PROGRAM.format(body), script)
     assert [True, False] * 3 == [one.fields["value"] for one in ran.told("in")]
     assert [0.1, 0.208] == ran.times("in")[:2]
+
+
+@pytest.mark.parametrize(
+    ("condition", "changes"),
+    [
+        ("$IN[3]", [(3, True)]),
+        ("$IN[5] AND NOT $IN[3]", [(5, True)]),
+        ("NOT $IN[3] AND $IN[5]", [(3, True), (5, True), (3, False)]),
+        ("WORD==2", [(8, True), (9, True), (8, False)]),
+        ("$IN[3] AND $FLAG[1]", [(3, True)]),
+        ("$FLAG[1]", []),
+    ],
+)
+def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bool]]) -> None:
+    """The inputs of a condition change through all combinations until it holds."""
+    text = f"DEF main()\nSIGNAL WORD $IN[8] TO $IN[10]\nWAIT FOR {condition}\nEND\n"
+    ran = go(text, "fulfil waits after 1", until=3.0)
+    assert changes == [(one.fields["number"], one.fields["value"]) for one in ran.told("in")]
+    cycles = [1.008 + 0.012 * place for place in range(len(changes))]
+    assert cycles == pytest.approx(ran.times("in"))
+    assert ("time" if "FLAG" in condition else "end") == ran.outcome.ending
+    assert len(changes) == ran.controller.fulfilling.count
+
+
+def test_scripted_inputs_are_not_fulfilled(go: Go) -> None:
+    """What a script sets itself comes when the script says."""
+    ran = go("DEF main()\nWAIT FOR $IN[3]\nEND\n", "fulfil waits\nt=2 IN[3]=TRUE")
+    assert [2.0] == ran.times("in")
+    assert 0 == ran.controller.fulfilling.count
+
+
+def test_waits_begin_anew(go: Go) -> None:
+    """The time of a wait counts from where the program comes to it."""
+    body = "FOR I=1 TO 2\nWAIT FOR $IN[1]\nWAIT FOR NOT $IN[1]\nENDFOR\n"
+    ran = go(PROGRAM.format(body), "fulfil waits after 0.5")
+    assert [0.504, 1.02, 1.536, 2.052] == ran.times("in")
 
 
 def test_inputs_are_told(go: Go) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from interp.faults import Fault
+from interp.robot.arm import Approximation, Place
 from interp.robot.frames import Pose
 from interp.robot.orientation import angle_between
 from interp.robot.placement import IpoMode, Placement
@@ -346,6 +347,9 @@ def test_undoing_what_was_planned(driver: Driver) -> None:
         ("PTP", {"A1": math.inf}, {}, 1422),
         ("LIN", {"Y": 0.0}, {"velocity": 0.0}, 1422),
         ("LIN", {"Y": 0.0}, {"velocity": math.nan}, 1422),
+        ("LIN", {"Y": 0.0}, {"approximation": Approximation(cdis=math.nan)}, 1422),
+        ("PTP", {"A1": 0.0}, {"axis_velocity": (math.nan,) * 12}, 1422),
+        ("LIN", {"Y": 0.0}, {"places": (Place(9, "PATH", math.nan),)}, 1422),
         ("CIRC", {}, {"auxiliary": {"X": 510.0}}, 1456),
         ("CIRC", {"Y": 0.0}, {"auxiliary": {}}, 1457),
         ("CIRC", {"Y": 0.0}, {"auxiliary": {"Y": 0.0}}, 1458),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from interp.robot.machine import Machine
     from tests.interp.robot.conftest import Driver
 
-DOCUMENTED = {1102, 1366, 1447, 1456, 1457, 1458, 1506, 2829}
+DOCUMENTED = {1102, 1211, 1366, 1447, 1456, 1457, 1458, 1506, 2829}
 """Messages of motions that a random program may well ask for."""
 
 POINTS = st.fixed_dictionaries(

@@ -244,8 +244,12 @@ def test_a_path_out_of_reach(arm: Arm) -> None:
 
 
 def test_a_path_beyond_a_limit_switch(arm: Arm) -> None:
-    """An axis that a path turns too far stops it, with the axis in the message."""
+    """A path that ends behind a limit is 1447, one that only leads over it 1211 [MOT-15]."""
     first, last = (0.0, -80.0, 100.0, 0.0, 40.0, 300.0), (0.0, -80.0, 100.0, 0.0, 40.0, 400.0)
-    with pytest.raises(Fault, match="A6 at 35") as caught:
-        follow(arm, path(arm, first, last, 100), first)
+    there = path(arm, first, last, 100)
+    with pytest.raises(Fault, match=r"the point lies behind .* A6 at 400") as caught:
+        follow(arm, there, first)
     assert 1447 == caught.value.number
+    with pytest.raises(Fault, match=r"the path leads onto .* A6 at 35") as caught:
+        follow(arm, [*there, *reversed(there)], first)
+    assert 1211 == caught.value.number

@@ -1,5 +1,6 @@
 """The control core on the arm that really plans: what is undone, cancelled, and batched."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -122,3 +123,39 @@ def test_batches_blend_as_look_ahead_does(motions: Motions) -> None:
     assert 360_000 < starts[1] - starts[0] < 720_000
     rows = min(map(len, paths))
     np.testing.assert_allclose(paths[0][:rows], paths[1][:rows], atol=1e-3)
+
+
+@pytest.mark.parametrize("what", ["x", "a1", "e1", "auxiliary", "angle", "place", "speed"])
+def test_what_is_no_number(motions: Motions, what: str) -> None:
+    """NaN anywhere in a motion is refused with 1422 or 1506, and the arm ends what it has begun."""
+    core, switched = made()
+    core.load(0, Transaction(first(motions)))
+    core.run_until(120_000)
+    place = Place(1, "PATH", math.nan)
+    if what == "speed":
+        motions.settings = Settings(placement=CELL, velocity=math.nan)
+    match what:
+        case "auxiliary":
+            bad = motions.circ({"x": math.nan}, y=100)
+        case "angle":
+            bad = motions.circ({"x": 50.0, "y": 50.0}, y=100, angle=math.nan)
+        case "place":
+            bad = motions.lin(y=100, places=[place])
+        case "a1":
+            bad = motions.ptp(a1=math.nan)
+        case "speed":
+            bad = motions.lin(y=100)
+        case _:
+            bad = motions.lin(**{what: math.nan})
+    transaction = Transaction(bad)
+    if what == "place":
+        gas = OutputCommand(("$OUT", 1), True)
+        transaction.add(gas).link(bad.reached(place), "start", gas)
+    with pytest.raises(Fault) as caught:
+        core.load(core.now, transaction)
+    assert (1506 if what == "angle" else 1422) == caught.value.number
+    assert ("created", []) == (bad.state.value, switched)
+    core.run_out()
+    x, y, z, *_ = CELL.point(core.arm.position(core.now).flange).components
+    assert [0.0] * 3 == pytest.approx([x, y, z], abs=1e-6)
+    assert 0 == core.pending()

@@ -1,0 +1,270 @@
+"""Array parameters ``X[]``: left out, passed on, copied; on every executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from grammar.source import Source
+from interp.agreement import Observed, difference, observe
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.program import Program
+from interp.bytecode.verify import verify
+from interp.bytecode.vm import Machine
+from interp.events import Event, Sink
+from interp.executor import Executor
+from interp.faults import Fault
+from interp.native import AVAILABLE
+from interp.program import CheckedProgram, load
+from interp.rendering import to_json
+from interp.requests import DeclareInterrupt, End, Fail
+from interp.stub import StubWorld
+from interp.tree import TreeExecutor
+
+Maker = Callable[[Sink | None], Executor]
+
+
+def _loaded(text: str) -> CheckedProgram:
+    return load([Source(text, "main.src")], "main.src", strict=False)
+
+
+def _makers(program: CheckedProgram) -> list[Maker]:
+    """The tree interpreter first, then the machines."""
+    verified = verify(compile_program(program).program)
+    name = program.start().name
+    makers: list[Maker] = [
+        lambda sink: TreeExecutor(program, name, sink=sink),
+        lambda sink: Machine(verified, name, sink=sink),
+    ]
+    if AVAILABLE:
+        from interp.native.machine import Machine as Native
+
+        makers.append(lambda sink: Native(verified, name, sink=sink))
+    return makers
+
+
+def _run(text: str) -> Observed:
+    """What all executors ask and tell; the machine in C without a trace ends in the same way."""
+    makers = _makers(_loaded(text))
+    tree, *others = [observe(make, StubWorld(), most=500) for make in makers]
+    for other in others:
+        assert None is difference(tree, other)
+    silent = observe(lambda _sink: makers[-1](None), StubWorld(), most=500)
+    assert repr(tree.last) == repr(silent.last)
+    return tree
+
+
+def _told(text: str, name: str = "N") -> list[object]:
+    """The values that a variable is assigned in a program that ends well."""
+    seen = _run(text)
+    assert isinstance(seen.last, End), seen.last
+    return [
+        to_json(one.value) for one in seen.steps if isinstance(one, Event) and name in one.path[:1]
+    ]
+
+
+def _fault(text: str) -> tuple[str, int]:
+    """The slug of the fault that ends a program, and its line."""
+    last = _run(text).last
+    assert isinstance(last, Fail)
+    assert isinstance(last.fault, Fault), last.fault
+    return last.fault.slug, last.at.line
+
+
+# ------------------------------------------------------------------------------- left out
+
+_LEFT_OUT = """DEF main()
+  q()
+END
+DEF q(t[]:OUT)
+  DECL CHAR t[]
+  DECL INT N
+  DECL BOOL B
+  {0}
+END
+DEF r(t[]:OUT)
+  DECL CHAR t[]
+  DECL INT N
+  {1}
+END
+"""
+
+
+def _q(body: str, inner: str = "") -> str:
+    return _LEFT_OUT.format(body, inner)
+
+
+def test_what_was_left_out_is_passed_on() -> None:
+    """An array parameter that was left out can be left out of a call by passing it on [SCO-13]."""
+    assert [7] == _told(_q("r(t[])", "N=7"))
+    assert [0] == _told(_q("r(t[])", "N=STRLEN(t[])"))
+    assert ("uninitialised", 13) == _fault(_q("r(t[])", 't[1]="a"'))
+
+
+@pytest.mark.parametrize(
+    ("name", "expression", "expected"),
+    [
+        ("N", "STRLEN(t[])", 0),
+        ("B", 'STRCOMP(t[],"",#CASE_SENS)', True),
+        ("N", 'STRFIND(1,t[],"a",#CASE_SENS)', 0),
+        ("N", 'STRFIND(1,"abc",t[],#CASE_SENS)', 0),
+    ],
+)
+def test_what_was_left_out_reads_as_the_empty_text(
+    name: str, expression: str, expected: object
+) -> None:
+    """A function that reads a text finds none in a parameter left out [FCT-04] (unconfirmed)."""
+    assert [expected] == _told(_q(f"{name}={expression}"), name)
+
+
+def test_what_was_left_out_is_copied_as_the_empty_text() -> None:
+    """STRCOPY and STRADD take nothing from a parameter that was left out [FCT-04]."""
+    head = 'q()\nEND\nDEF q(t[]:OUT)\nDECL CHAR t[]\nDECL CHAR s[4]\nDECL INT N\ns[]="abc"\n'
+    assert [3] == _told(f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
+    assert [0] == _told(f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        't[]="abc"',
+        'B=STRCOPY(t[],"a")',
+        "B=STRCLEAR(t[])",
+        "N=STRADD(t[],t[])",
+        "N=STRDECLLEN(t[])",
+        'B=t[1]=="a"',
+    ],
+)
+def test_what_was_left_out_cannot_be_changed(body: str) -> None:
+    """Nothing can be put into a parameter that was left out, nor has it elements or a size."""
+    assert ("uninitialised", 8) == _fault(_q(body))
+
+
+def test_only_texts_are_empty() -> None:
+    """An array of numbers that was left out has no value for a routine of the controller."""
+    text = "DEF main()\nq()\nEND\nDEF q(p[]:OUT)\nDECL INT p[]\nERR_RAISE(p[])\nEND\n"
+    assert ("uninitialised", 6) == _fault(text)
+
+
+_HANDED = """DEF main()
+  DECL INT A[3]
+  q({0})
+  WAIT SEC 1
+END
+DEF q(p[]:OUT)
+  DECL INT p[]
+  INTERRUPT DECL 3 WHEN $IN[1]==TRUE DO act(p[])
+  WAIT SEC 1
+END
+DEF act(p[]:OUT)
+  DECL INT p[]
+END
+"""
+
+
+@pytest.mark.parametrize("given", ["A[]", ""])
+def test_actions_pass_on_what_their_routine_was_given(given: str) -> None:
+    """An action passes a parameter on, left out or not, until its routine has ended."""
+    for make in _makers(_loaded(_HANDED.format(given))):
+        executor, world = make(None), StubWorld()
+        declared = executor.advance()
+        assert isinstance(declared, DeclareInterrupt)
+        inside = executor.advance(world.reply(declared))
+        executor.enter(declared.action)
+        assert isinstance(executor.advance(), End)
+        assert inside == executor.advance()
+        executor.advance(world.reply(inside))
+        executor.enter(declared.action)
+        gone = executor.advance()
+        assert isinstance(gone, Fail)
+        assert isinstance(gone.fault, Fault)
+        assert "uninitialised" == gone.fault.slug
+
+
+# ------------------------------------------------------------------------------- copied
+
+_COPIED = """DEF main()
+  DECL CHAR s[3],w[9],g[2,7]
+  s[]="abc"
+  w[]="abcdefghi"
+  g[2,]="vwxyz"
+  outer(s[])
+  outer(w[])
+  outer(g[2,])
+END
+DEF outer(p[]:IN)
+  DECL CHAR p[]
+  DECL INT N
+  inner(p[],3)
+  N=STRLEN(p[])
+END
+DEF inner(p[]:IN,k:IN)
+  DECL CHAR p[]
+  DECL INT k,M
+  p[k]="!"
+  M=STRFIND(1,p[],"!",#CASE_SENS)
+  IF k>1 THEN
+    inner(p[],k-1)
+  ENDIF
+  p[]="-"
+END
+"""
+
+
+def _rooms(text: str, name: str) -> list[int]:
+    """The sizes of the arrays that copies of formal arrays have in the frame of a routine."""
+    program: Program = compile_program(_loaded(text)).program
+    code = next(one for one in program.codes if one.name.upper() == name)
+    found = [program.types[one.type] for one in code.locals if one.name.startswith("%")]
+    return [one.sizes[0] for one in found if hasattr(one, "sizes")]
+
+
+def test_arrays_of_unknown_size_are_copied() -> None:
+    """An array passed on :IN to a routine that changes it stays as it was [SCO-06]."""
+    assert [3, 9, 5] == _told(_COPIED)
+    assert [3, 2, 1] * 3 == _told(_COPIED, "M")
+
+
+def test_copies_have_room_for_the_largest() -> None:
+    """The room is that of the largest array that comes there, through however many routines."""
+    assert [9] == _rooms(_COPIED, "OUTER")
+    assert [9] == _rooms(_COPIED, "INNER")
+    assert [7] == _rooms(_COPIED.replace("  outer(w[])\n", ""), "OUTER")
+
+
+def test_a_copy_is_made_when_the_argument_is_evaluated() -> None:
+    """What a later argument changes is not seen by the routine [SCO-06]."""
+    text = (
+        'DEF main()\nDECL CHAR s[3]\ns[]="abc"\nouter(s[],s[])\nEND\n'
+        "DEF outer(p[]:IN,o[]:OUT)\nDECL CHAR p[],o[]\n"
+        "inner(o[],change(o[]))\nEND\n"
+        'DEFFCT INT change(o[]:OUT)\nDECL CHAR o[]\no[]="x"\nRETURN 1\nENDFCT\n'
+        "DEF inner(p[]:IN,k:IN)\nDECL CHAR p[]\nDECL INT k,N\nN=STRLEN(p[])\nEND\n"
+    )
+    assert [3] == _told(text)
+
+
+def test_several_copies_in_one_call() -> None:
+    """Two copies in one call are two; more dimensions keep their sizes."""
+    text = (
+        "DEF main()\nDECL INT g[2,3]\ng[2,1]=5\nouter(g[,])\nEND\n"
+        "DEF outer(p[,]:IN)\nDECL INT p[,]\ninner(p[,],p[,],p[2,])\nEND\n"
+        "DEF inner(a[,]:IN,b[,]:IN,c[]:IN)\nDECL INT a[,],b[,],c[],N\n"
+        'a[2,1]=6\nb[2,1]=7\nc[1]=8\nN=a[2,1]*100+b[2,1]*10+c[1]\nN=STRLEN("abc")\n'
+        "c[3]=1\nc[4]=1\nEND\n"
+    )
+    seen = _run(text)
+    values = [one.value for one in seen.steps if isinstance(one, Event) and one.path == ("N",)]
+    assert [678, 3] == values
+    assert isinstance(seen.last, Fail)
+    assert "index" == getattr(seen.last.fault, "slug", None)
+
+
+def test_what_was_left_out_is_not_copied() -> None:
+    """A parameter that was left out has nothing to be copied [SCO-13]."""
+    text = (
+        "DEF main()\nouter()\nEND\nDEF outer(p[]:IN)\nDECL CHAR p[]\ninner(p[])\nEND\n"
+        "DEF inner(p[]:IN)\nDECL CHAR p[]\nEND\n"
+    )
+    assert ("uninitialised", 6) == _fault(text)

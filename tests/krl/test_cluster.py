@@ -1,0 +1,285 @@
+"""A real Dask cluster: the same results as from local processes, whichever worker is killed."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conformance import runner
+from conformance.case import find_cases, selected
+from conformance.differential import campaign
+from conformance.runner import CaseResult, Result, run_cases
+from grammar import read_file
+from grammar.generate import GRAMMAR
+from krl.cli import main
+from recovery import workers
+from recovery.survey import survey
+from recovery.synth import write_cells
+from recovery.workers import WorkersError, in_order, meet
+
+pytest.importorskip("distributed")
+
+
+class _Cluster:
+    """A scheduler and workers, each a process of its own.
+
+    Workers have two threads, so that tasks could get into each other's way. ``failures`` is how
+    many deaths over a task Dask bears before it tells.
+    """
+
+    def __init__(self, folder: Path, workers: int, failures: int = 3) -> None:
+        self.folder = folder
+        # workers unpickle functions of this very file
+        paths = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
+        self._environment = {
+            **os.environ,
+            "PYTHONPATH": paths,
+            "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(failures),
+        }
+        self._processes: list[subprocess.Popen[str]] = []
+        self.scheduler = self._start(
+            "scheduler", "--port", "0", "--no-dashboard", "--host", "127.0.0.1"
+        )
+        self.address = self._address()
+        self.workers: list[subprocess.Popen[str]] = []
+        for _ in range(workers):
+            self.hire()
+
+    def hire(self) -> None:
+        """One worker more."""
+        limits = ("--nthreads", "2", "--no-nanny", "--no-dashboard")
+        worker = self._start("worker", self.address, *limits)
+        threading.Thread(target=worker.communicate, daemon=True).start()
+        self.workers.append(worker)
+
+    def wait(self, seconds: float = 60.0) -> None:
+        """Until all workers have reported."""
+        from distributed import Client
+
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(len(self.workers), timeout=seconds)
+
+    def kill_a_worker(self) -> None:
+        """Without a chance to say goodbye."""
+        worker = self.workers.pop(0)
+        worker.kill()
+        worker.wait()
+
+    def stop(self) -> None:
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+    def _start(self, role: str, *arguments: str) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "distributed.cli.dask_" + role, *arguments],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=self.folder,
+            env=self._environment,
+        )
+        self._processes.append(process)
+        return process
+
+    def _address(self) -> str:
+        assert self.scheduler.stderr is not None
+        for line in self.scheduler.stderr:
+            found = re.search(r"tcp://[\d.]+:\d+", line)
+            if found:
+                threading.Thread(target=self.scheduler.communicate, daemon=True).start()
+                return found.group()
+        raise AssertionError("the scheduler did not start")
+
+
+@pytest.fixture(scope="module")
+def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_Cluster]:
+    started = _Cluster(tmp_path_factory.mktemp("cluster"), workers=0)
+    yield started
+    started.stop()
+
+
+@pytest.fixture
+def cluster(standing: _Cluster) -> _Cluster:
+    """Three workers, whatever the test before did to them."""
+    while len(standing.workers) < 3:
+        standing.hire()
+    standing.wait()
+    return standing
+
+
+@pytest.fixture
+def of_two(tmp_path: Path) -> Iterator[_Cluster]:
+    """Two workers, and a scheduler that tells of the first death."""
+    started = _Cluster(tmp_path, workers=2, failures=0)
+    started.wait()
+    yield started
+    started.stop()
+
+
+def _killing(cluster: _Cluster, after: int, done: list[int]) -> Callable[[int], None]:
+    """What is told of progress: kills a worker once so much is done."""
+
+    def count(number: int) -> None:
+        done.append(number)
+        if sum(done) >= after and len(cluster.workers) == 3:
+            cluster.kill_a_worker()
+
+    return count
+
+
+# ------------------------------------------------------------- one worker killed in the middle
+
+
+def test_survey_is_the_same_though_a_worker_is_killed(cluster: _Cluster, tmp_path: Path) -> None:
+    """Nothing is lost, nothing comes twice, and the order is that of local processes."""
+    corpus = tmp_path / "corpus"
+    write_cells(corpus, 3_000_000, seed=5)
+    for file in sorted(corpus.rglob("*.src"))[::10]:  # so that there are failures to be ordered
+        file.write_bytes(file.read_bytes() + b"\nWAT 1\n")
+    grammar = read_file(GRAMMAR)
+    alone = survey([corpus], grammar, jobs=1)
+    done: list[int] = []
+    there = survey(
+        [corpus], grammar, scheduler=cluster.address, on_done=_killing(cluster, 20, done)
+    )
+    assert 2 == len(cluster.workers)
+    assert len(done) > 3, "there was no middle to kill it in"
+    assert alone.files == there.files
+    assert alone.forms == there.forms
+    assert alone.skipped == there.skipped
+    assert any(file.failures for file in there.files)
+
+
+def _timeless(results: list[CaseResult]) -> list[tuple[str, tuple[Result, ...]]]:
+    """Results by case, without the time they took."""
+    return [
+        (one.case.name, tuple(replace(result, seconds=0.0) for result in one.results))
+        for one in results
+    ]
+
+
+def test_cases_are_the_same_though_a_worker_is_killed(
+    cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each case has the verdicts, checks and observations that it has here, once and in order."""
+    monkeypatch.setattr(runner, "_SHARE", 1)
+    cases = selected(find_cases(), ["control", "io"])[:24]
+    chosen = (["tree", "vm"], ["none"])
+    alone = run_cases(cases, *chosen, jobs=1)
+    done: list[int] = []
+    there = run_cases(cases, *chosen, on_done=_killing(cluster, 3, done), scheduler=cluster.address)
+    assert 2 == len(cluster.workers)
+    assert [1] * 24 == done
+    assert _timeless(alone) == _timeless(there)
+
+
+def test_random_programs_are_the_same_though_a_worker_is_killed(
+    cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every program is run once, and counts and coverage are those of local processes."""
+    monkeypatch.setattr(campaign, "_SHARD", 1)
+    alone = campaign.fuzz(20, 3, ["tree", "vm"])
+    done: list[int] = []
+    there = campaign.fuzz(
+        20, 3, ["tree", "vm"], on_done=_killing(cluster, 2, done), scheduler=cluster.address
+    )
+    assert 2 == len(cluster.workers)
+    assert [1] * 20 == done
+    assert campaign.record_of(alone, 0.0) == campaign.record_of(there, 0.0)
+
+
+# ------------------------------------------------------------------------------- the commands
+
+
+def _record(file: Path) -> dict[str, Any]:
+    """A record without what the clock says."""
+    record: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    for varies in ("seconds", "analysis_seconds", "generated"):
+        record.pop(varies, None)
+    for case in record.get("cases", ()):
+        for result in case["results"]:
+            result.pop("seconds", None)
+    return record
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "recover corpus/programs --no-start --out {out}",
+        "conform control/exit_for --executor tree --executor vm --robot none",
+        "fuzz --programs 6 --executor tree --executor vm",
+    ],
+)
+def test_commands_take_a_scheduler(cluster: _Cluster, tmp_path: Path, command: str) -> None:
+    """With ``--scheduler`` the record is that of local processes."""
+    records = []
+    for name, whom in (("alone", ("--jobs", "1")), ("there", ("--scheduler", cluster.address))):
+        file = tmp_path / f"{name}.json"
+        words = command.format(out=tmp_path / name).split()
+        assert 0 == main([*words, "--json", str(file), *whom])
+        records.append(_record(file))
+    assert records[0] == records[1]
+
+
+# ----------------------------------------------------------------------------- what goes wrong
+
+
+def _deadly(number: int) -> int:
+    """Twice the number; whoever is given 4 dies of it."""
+    if number == 4:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60)
+    return 2 * number
+
+
+def test_what_kills_workers_is_told_from_what_was_beside_it(of_two: _Cluster) -> None:
+    """Only the result of the task that kills is lost, and another worker goes on."""
+    tasks = ((number,) for number in range(7))
+    done = []
+    for result in in_order(_deadly, tasks, scheduler=of_two.address, lost=lambda n: -n):
+        done.append(result)
+        if len(done) == 1:
+            of_two.hire()
+    assert [0, 2, 4, 6, -4, 10, 12] == done
+
+
+def test_scheduler_that_goes_away_is_one_clear_line(of_two: _Cluster) -> None:
+    """Work does not wait for a scheduler that was killed."""
+    results = in_order(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    assert 18 == next(results)
+    of_two.scheduler.kill()
+    with pytest.raises(WorkersError, match=r"the scheduler at .* has gone"):
+        list(results)
+
+
+def test_workers_that_all_go_are_one_clear_line(
+    of_two: _Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Work does not wait for ever where nobody is left to do it."""
+    monkeypatch.setattr(workers, "_PATIENCE", 1.0)
+    results = in_order(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    assert 18 == next(results)
+    of_two.kill_a_worker()
+    of_two.kill_a_worker()
+    with pytest.raises(WorkersError, match=r"has no workers left|again and again"):
+        list(results)
+
+
+def test_workers_of_another_release_are_refused(
+    cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What other code finds is not mixed with ours."""
+    monkeypatch.setattr(workers, "code_digest", lambda: "another")
+    with pytest.raises(WorkersError, match="has another release of krl than this"):
+        meet(cluster.address)

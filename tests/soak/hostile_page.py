@@ -1,0 +1,155 @@
+"""Makes docs/hostile.md: what was tried on krl, with counts, and which limits hold.
+
+    python tests/soak/hostile_page.py [COUNTS.json]...
+
+reads the counts that `make hostile` left, all slices of them, and the limits from the code.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from entries import ENTRIES
+from pieces import KINDS
+
+from grammar import documents
+from recovery import archives
+
+__all__ = ["page", "told"]
+
+REPOSITORY = Path(__file__).parents[2]
+PAGE = REPOSITORY / "docs" / "hostile.md"
+MB = 1 << 20
+
+_HEAD = """\
+# Hostile input
+
+This page is made by `python tests/soak/hostile_page.py` from the counts of `make hostile`; do not edit it.
+
+KRL comes from other people: backups in archives, files of forums, a survey that somebody sends. Nothing of it is
+trusted. `make hostile` makes inputs by chance from a seed, gives each to the command that reads such a
+thing, and looks at what happens. It fails where a command
+
+- ends otherwise than with status 0, 1 or 2, or tells of a defect of ours;
+- needs more than a minute of processor time, or waits for ever;
+- writes, renames or removes anything outside its own folders;
+- sends a control character, or one that turns the direction of writing, to the terminal, in text or in JSON;
+- refuses with more or less than one line on stderr;
+- writes a page in which something of the input would run, or a record that is not JSON.
+
+An input is made from its number, so each can be made again: `make hostile` takes `KRL_HOSTILE_ONLY=6137` or
+the name of an entry point, and `KRL_HOSTILE_PART=2/3` to try a slice.
+"""
+
+
+def added(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The counts of several slices of the same inputs, as one."""
+    entries: dict[str, Counter[str]] = {name: Counter() for name in ENTRIES}
+    kinds: Counter[str] = Counter()
+    for counts in several:
+        kinds.update(counts["kinds"])
+        for name, count in counts["entries"].items():
+            entries[name].update(count)
+    return {
+        "entries": entries,
+        "kinds": kinds,
+        "slowest": max((one["slowest"] for one in several), key=lambda one: one["seconds"]),
+        "seconds": sum(one["seconds"] for one in several),
+    }
+
+
+def _rows(counts: Mapping[str, Any]) -> Iterator[tuple[str, int, int, int, int, float]]:
+    """Name, inputs, those by status, seconds of processor time of each entry point; then all."""
+    total: Counter[str] = Counter()
+    for name, count in counts["entries"].items():
+        total.update(count)
+        yield name, *_row(count)
+    yield "all", *_row(total)
+
+
+def _row(count: Mapping[str, Any]) -> tuple[int, int, int, int, float]:
+    by_status = [int(count.get(status, 0)) for status in "012"]
+    return sum(by_status), by_status[0], by_status[1], by_status[2], count.get("seconds", 0.0)
+
+
+def told(counts: Mapping[str, Any]) -> str:
+    """The counts for a terminal."""
+    lines = [f"{'':18}{'inputs':>8}{'0':>7}{'1':>7}{'2':>7}{'CPU s':>9}"]
+    lines += [
+        f"{name:18}{inputs:8}{zero:7}{one:7}{two:7}{seconds:9.1f}"
+        for name, inputs, zero, one, two, seconds in _rows(counts)
+    ]
+    lines += [f"{counts['kinds'].get(kind, 0):8}  {kind}" for kind in KINDS]
+    slowest = counts["slowest"]
+    lines.append(
+        f"{counts['seconds']} s by the clock, slowest {slowest['seconds']} s ({slowest['input']})"
+    )
+    return "\n".join(lines)
+
+
+def page(counts: Mapping[str, Any]) -> str:
+    """The whole page."""
+    *rows, last = _rows(counts)
+    return "\n".join(
+        [
+            _HEAD,
+            "## What was tried",
+            "",
+            f"The last whole run: **{last[1]:,} inputs**, none of which broke anything. The slowest "
+            f"took {counts['slowest']['seconds']} s of processor time.",
+            "",
+            "| entry point | what is hostile | inputs | status 0 | 1 | 2 |",
+            "| --- | --- | ---: | ---: | ---: | ---: |",
+            *(
+                f"| {name} | {ENTRIES[name].words} | {inputs:,} | {zero:,} | {one:,} | {two:,} |"
+                for name, inputs, zero, one, two, _ in rows
+            ),
+            "",
+            "By kind; an input may hold several:",
+            "",
+            "| kind | inputs |",
+            "| --- | ---: |",
+            *(f"| {kind} | {counts['kinds'].get(kind, 0):,} |" for kind in KINDS),
+            "",
+            "krl reads no YAML at all, and of archives only `.zip`.",
+            "",
+            "## Limits",
+            "",
+            "Beyond a limit a file is left out with its reason, or the command refuses in one line.",
+            "",
+            "| what | at most |",
+            "| --- | --- |",
+            *(f"| {what} | {most} |" for what, most in _limits()),
+            "",
+        ]
+    )
+
+
+def _limits() -> Iterator[tuple[str, str]]:
+    yield "one KRL file, packed or not", f"{archives.MAX_FILE_BYTES // MB} MB"
+    yield "what is read from one archive", f"{archives.MAX_ARCHIVE_BYTES // MB:,} MB"
+    yield "members of one archive, nested ones included", f"{archives.MAX_MEMBERS:,}"
+    yield "the directory of an archive", f"{archives.MAX_DIRECTORY_BYTES // MB} MB"
+    yield "archives in archives", "one level; nothing is unpacked to disk"
+    yield "a grammar, construct, profile, recording, record", f"{documents.MOST_BYTES // MB} MB"
+    yield "a TOML text", f"{documents.MOST_TOML:,} characters, {documents.MOST_DOTS} dots a line"
+    yield "nesting of JSON and TOML", "what Python reads without a deeper stack, some hundreds"
+    yield "a run", "`--max-time` of virtual time, and a budget of statements that pass none"
+    yield "a step of a night", "its share of `--minutes`"
+
+
+def main() -> None:
+    """Write the page."""
+    given = [Path(name) for name in sys.argv[1:]]
+    files = given or sorted((REPOSITORY / "reports" / "out" / "hostile").glob("*.json"))
+    several = [json.loads(file.read_text(encoding="utf-8")) for file in files]
+    PAGE.write_text(page(added(several)), encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    main()
