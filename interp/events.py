@@ -12,18 +12,27 @@ What a FOR gives its counter, and what a function changes in its arguments, is a
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Final, Literal, Protocol
 
 from interp.requests import At, Path, Value
 
-__all__ = ["Event", "Kind", "Recorder", "Sink"]
+__all__ = ["EVERY_KIND", "Event", "Kind", "Recorder", "Sink", "wanting"]
 
 #: The words of the trace.
 Kind = Literal["line", "assign", "call", "return", "branch"]
+EVERY_KIND: Final = frozenset[Kind](("line", "assign", "call", "return", "branch"))
 
 
 class Sink(Protocol):
-    """Takes the events of an executor."""
+    """Takes the events of an executor.
+
+    ``kinds`` are those that it is told, the same as long as it lives: what it does not want is not
+    even worked out.
+    """
+
+    @property
+    def kinds(self) -> frozenset[Kind]:
+        """What it wants to be told."""
 
     def line(self, at: At) -> None:
         """A statement begins."""
@@ -39,6 +48,11 @@ class Sink(Protocol):
 
     def branch(self, at: At, way: int) -> None:
         """A way was taken."""
+
+
+def wanting(sink: Sink | None, kind: Kind) -> Sink | None:
+    """The sink if there is one and it wants events of this kind."""
+    return sink if sink is not None and kind in sink.kinds else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +72,10 @@ class Event:
 
 @dataclass(slots=True)
 class Recorder:
-    """A sink that keeps all events, in their order."""
+    """A sink that keeps events, all by default, in their order."""
 
     events: list[Event] = field(default_factory=list)
+    kinds: frozenset[Kind] = EVERY_KIND
 
     def line(self, at: At) -> None:
         """A statement begins."""

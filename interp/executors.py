@@ -57,7 +57,7 @@ class Prepared:
             case "vm":
                 from interp.bytecode.vm import Machine
 
-                return Machine(self.verified, self._start, limits, sink)
+                return Machine(self.verified, self.start, limits, sink)
             case "native":
                 from interp.native import AVAILABLE
 
@@ -65,9 +65,10 @@ class Prepared:
                     raise LinkError("the machine in C was not built: there was no C compiler")
                 from interp.native.machine import Machine as NativeMachine
 
-                return NativeMachine(self.verified, self._start, limits, sink)
+                return NativeMachine(self.verified, self.start, limits, sink)
         raise ValueError(f"there is no executor {name}")
 
     @property
-    def _start(self) -> str:
+    def start(self) -> str:
+        """The routine to begin with; raises `LinkError` where there is none."""
         return self.program.start(self.routine).name

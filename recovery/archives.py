@@ -73,6 +73,8 @@ _DAMAGE = (
 
 _TOO_DEEP = "an archive in an archive in an archive is not opened"
 _TOO_MANY = f"more than {MAX_MEMBERS:,} members"
+_OVERLAPPING = "its bytes are those of another member too"
+_HEAD_BYTES = 30  # before a member, at least
 _CHANGED = "the archive changed while it was being read"
 
 
@@ -181,9 +183,11 @@ def _listed(
     if budget.members < 0:
         raise ArchiveError(_TOO_MANY)
     prefix, place = (f"{inside.path}/", f"{inside.address}/") if inside else ("", "")
+    overlapping = _overlapping(archive.infos)
     for path, index in _named(archive.infos, wanted):
         info = archive.infos[index]
-        problem = _problem(info) or budget.spend(info.file_size)
+        problem = _OVERLAPPING if index in overlapping else _problem(info)
+        problem = problem or budget.spend(info.file_size)
         if problem is None and is_archive(path):
             problem = _TOO_DEEP if inside else _TOO_MANY if budget.members <= 0 else None
         member = Member(
@@ -244,6 +248,20 @@ def _problem(info: zipfile.ZipInfo) -> str | None:
     if info.file_size > MAX_FILE_BYTES:
         return too_large()
     return None
+
+
+def _overlapping(infos: list[zipfile.ZipInfo]) -> set[int]:
+    """The places of members that begin before another has ended.
+
+    So a few kilobytes can claim to hold gigabytes; no tool that packs files writes that.
+    """
+    found, end = set(), 0
+    for place in sorted(range(len(infos)), key=lambda place: infos[place].header_offset):
+        info = infos[place]
+        if info.header_offset < end:
+            found.add(place)
+        end = max(end, info.header_offset + _HEAD_BYTES + info.compress_size)
+    return found
 
 
 def _in_mb(size: int) -> str:

@@ -12,11 +12,9 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 from grammar.failures import BLOCKS
 from grammar.lexer import SKIPPED
-from grammar.model import Reference, walk
 from grammar.recognizer import Recognizer
 from recovery.aligned import common_phrases
 from recovery.layout import Layout
@@ -100,23 +98,15 @@ class BlockFinder:
     def _closes(self, word: str) -> bool:
         return word in _BLOCK_WORDS or word.startswith("END")
 
-    @cached_property
-    def _used(self) -> frozenset[str]:
-        """Tokens that the rules of the grammar have a use for; to be listed is none."""
-        return frozenset(
-            e.name
-            for rule in self.recognizer.grammar.rules
-            if not rule.is_lexer and rule.name not in self.layout.word_lists
-            for a in rule.alternatives
-            for e in walk(a)
-            if isinstance(e, Reference) and e.is_token
-        )
-
     def _closer(self, opener: str, files: Sequence[Sequence[_Line]]) -> str | None:
         """The word that closes what ``opener`` opens, in balance with it in every file."""
         known = BLOCKS.get(opener, frozenset())
         leads = {lead for lines in files for lead, _ in lines} - {opener, ""}
-        free = [w for w in leads if w in known or (w not in self._used and self._is_word(w, files))]
+        free = [
+            w
+            for w in leads
+            if w in known or (not self.layout.is_written(w) and self._is_word(w, files))
+        ]
         good = [w for w in free if _is_end(w) and all(_balanced(opener, w, f) for f in files)]
         return min(good, key=lambda w: (w not in known, w != f"END{opener}", w), default=None)
 
@@ -148,7 +138,7 @@ class BlockFinder:
                     seen.closers.append(words)
                     blocks.append(open_.pop())
                 elif open_:
-                    free = lead not in self._used and self._is_word(lead, files)
+                    free = not self.layout.is_written(lead) and self._is_word(lead, files)
                     if lead not in outside and (lead in known or free) and not _is_end(lead):
                         open_[-1][lead] += 1
                         seen.middles[lead].append(words)

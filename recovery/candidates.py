@@ -207,7 +207,11 @@ class CandidateFinder:
                 unit = repeated(symbols)
                 if unit is None and not looped:
                     text = _optional(symbols)
-                    yield rank - self.layout.said_so(text), (*tokens, Insert(rule, place, text))
+                    worth = rank - self.layout.said_so(text)
+                    yield worth, (*tokens, Insert(rule, place, text))
+                    better = self.layout.place_as_elsewhere(rule, place, text)
+                    if better is not None:
+                        yield worth - 1, (*tokens, Insert(rule, better, text))
                 again = unit or symbols
                 if again[0] == "','" or unit or looped:
                     text = f"({' '.join(again)})*" if len(again) > 1 else f"{again[0]}*"

@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 
 from grammar.edits import (
     AddAlternative,
@@ -110,6 +111,36 @@ class Layout:
     def said_so(self, text: str) -> int:
         """What speaks for a text that some rule has already, as what is optional or repeated."""
         return _SAID_SO if "".join(text.split()) in self._said else 0
+
+    def place_as_elsewhere(self, rule: str, at: Address, text: str) -> Address | None:
+        """Where a part goes that other sequences have beside what is also found here.
+
+        Behind parts that may be left out a line tells nothing of the order; where the part stands
+        elsewhere does. ``None`` where that speaks for no place before ``at``.
+        """
+        elements = self.sequence(rule, at[:-1]).elements
+        source = self.grammar.by_name[rule].source_of
+        said = ["", *("".join(source(e).split()) for e in elements), ""]
+        new = "".join(text.split())
+
+        def alike(place: int) -> int:
+            return ((said[place - 1], new) in self._beside) + ((new, said[place]) in self._beside)
+
+        first = at[-1]
+        while first > 1 and isinstance(e := elements[first - 2], Repeat) and e.operator != "+":
+            first -= 1
+        best = max(range(first, at[-1] + 1), key=lambda place: (alike(place), place))
+        return (*at[:-1], best) if best < at[-1] else None
+
+    @cached_property
+    def _beside(self) -> frozenset[tuple[str, str]]:
+        """Texts of elements that stand beside one another in some sequence."""
+        found: set[tuple[str, str]] = set()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                said = ["", *("".join(rule.source_of(e).split()) for e in sequence.elements), ""]
+                found |= set(pairwise(said))
+        return frozenset(found)
 
     @cached_property
     def _said(self) -> frozenset[str]:

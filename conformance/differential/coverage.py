@@ -188,7 +188,7 @@ def _motion(node: Any) -> Iterator[str]:
 def _instructions(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[str]:
     """Instructions that belong to executed lines; none where there is no bytecode of it."""
     try:
-        codes = program.compiled.codes
+        codes = program.verified.program.codes
     except LinkError:
         return
     for code in codes:

@@ -83,7 +83,7 @@ class Pool:
             world = world_seed(self.seed, number)
             expected = trace_of(program, EXECUTORS[REFERENCE], world)
             if trace_of(program, EXECUTORS["vm"], world) == expected:
-                codes = program.compiled.codes
+                codes = program.verified.program.codes
                 ops = frozenset(one.op for code in codes for one in code.instructions)
                 self._programs.append((number, program, expected, ops))
                 return True

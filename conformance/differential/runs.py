@@ -9,20 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, Final
 
 from conformance.differential.traces import Fact, Trace
 from conformance.differential.worlds import RandomWorld
-from interp.bytecode.compiler import compile_program
-from interp.bytecode.program import Program
-from interp.bytecode.verify import Verified, verify
-from interp.bytecode.vm import Machine
+from interp import executors
 from interp.events import Sink
 from interp.executor import Executor
+from interp.executors import Prepared, available
 from interp.faults import LinkError, RuntimeFailure
-from interp.native import AVAILABLE
-from interp.program import CheckedProgram, Limits
+from interp.program import Limits
 from interp.requests import (
     Code,
     Crash,
@@ -38,7 +34,6 @@ from interp.requests import (
     SwitchInterrupt,
     SwitchSignal,
 )
-from interp.tree import TreeExecutor
 
 __all__ = ["EXECUTORS", "Factory", "Prepared", "available", "trace_of"]
 
@@ -50,53 +45,16 @@ _MOST_ENTERED: Final = 6
 _CHANCES: Final = 6
 
 
-class Prepared:
-    """A program for executors, compiled only where one of them needs it, and once."""
-
-    def __init__(self, program: CheckedProgram) -> None:
-        self.program = program
-
-    @property
-    def start(self) -> str:
-        """The routine to begin with."""
-        return self.program.start().name
-
-    @cached_property
-    def compiled(self) -> Program:
-        """As bytecode; raises `LinkError`."""
-        return compile_program(self.program).program
-
-    @cached_property
-    def verified(self) -> Verified:
-        """As bytecode that was verified."""
-        return verify(self.compiled)
-
-
 #: Makes an executor of a program.
 Factory = Callable[[Prepared, Limits, Sink], Executor]
 
 
-def _tree(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
-    return TreeExecutor(prepared.program, limits=limits, sink=sink)
-
-
-def _machine(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
-    return Machine(prepared.verified, prepared.start, limits, sink)
-
-
-def _native(prepared: Prepared, limits: Limits, sink: Sink) -> Executor:
-    from interp.native.machine import Machine as MachineInC
-
-    return MachineInC(prepared.verified, prepared.start, limits, sink)
+def _made(name: str) -> Factory:
+    return lambda prepared, limits, sink: prepared.executor(name, limits, sink)
 
 
 #: The executors by name; the first one is the reference.
-EXECUTORS: Mapping[str, Factory] = {"tree": _tree, "vm": _machine, "native": _native}
-
-
-def available() -> tuple[str, ...]:
-    """The executors that can run here: the one in C only where it was built."""
-    return tuple(name for name in EXECUTORS if name != "native" or AVAILABLE)
+EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in executors.EXECUTORS}
 
 
 @dataclass(slots=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+from interp.events import EVERY_KIND
 from interp.requests import At, Code, Path, Request, Value
 from interp.values import ArrayValue, EnumValue, StructureValue
 
@@ -22,6 +23,8 @@ class Trace:
     """A sink that keeps facts."""
 
     __slots__ = ("facts",)
+
+    kinds = EVERY_KIND
 
     def __init__(self) -> None:
         self.facts: list[Fact] = []

@@ -78,7 +78,7 @@ class Control:
         receive = self._receiver(callee.parameters)
         hooks = self._kit.hooks
         is_owner = number in self._kit.owners
-        is_told = hooks.is_told
+        is_told = hooks.calls_are_told
 
         def operation() -> Operation:
             first = state.fp + own
@@ -136,7 +136,7 @@ class Control:
         kind = self._program.codes[here.code].kind
         if kind is CodeKind.ACTION:
             return hooks.leave_action
-        is_told = hooks.is_told and kind is CodeKind.ROUTINE
+        is_told = hooks.returns_are_told and kind is CodeKind.ROUTINE
 
         def operation() -> Operation | None:
             if is_told:

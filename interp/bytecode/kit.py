@@ -18,8 +18,9 @@ Rule = Callable[..., Operation]
 class Hooks(Protocol):
     """What instructions need of the machine around them."""
 
-    #: Whether there is a trace to tell events to.
-    is_told: bool
+    #: Whether there is a trace that is told of calls, and of their ends.
+    calls_are_told: bool
+    returns_are_told: bool
     #: What ends an action, and what ends the routine that the program began with.
     leave_action: Operation
     finish: Operation

@@ -17,7 +17,7 @@ from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Pr
 from interp.bytecode.state import Operation, State
 from interp.bytecode.telling import Names
 from interp.bytecode.transfer import Block, Change, Entry, arguments_of
-from interp.events import Sink
+from interp.events import Sink, wanting
 from interp.faults import BudgetExhausted, LinkError
 from interp.inspection import Seen
 from interp.program import Limits
@@ -50,12 +50,15 @@ class Services:
     ) -> None:
         self._program = program
         self._state = state
-        self._sink = sink
+        self._lines, self._assignments = wanting(sink, "line"), wanting(sink, "assign")
+        self._calls, self._returns = wanting(sink, "call"), wanting(sink, "return")
+        self._branches = wanting(sink, "branch")
         self._names = Names(program, state)
         self._makers = Makers(program, self._handed_over)
         self._surroundings = Surroundings(random, self._names.find)
         self.counter = Counter(state, limits)
-        self.is_told = sink is not None
+        self.calls_are_told = self._calls is not None
+        self.returns_are_told = self._returns is not None
         self.entered = 0
         self.leave_action: Operation = lambda: None
         self.finish: Operation = lambda: None
@@ -92,7 +95,7 @@ class Services:
     def line(self, place: int, after: Operation) -> Operation:
         """What `LINE` does at a place of its code object."""
         state, pause = self._state, self._pause
-        begin = self._told_line(after) if self._sink is not None else after
+        begin = after if self._lines is None else self._told_line(self._lines, after)
 
         def operation() -> Operation | None:
             state.statement = place
@@ -246,10 +249,7 @@ class Services:
 
     # ----------------------------------------------------------------------- telling
 
-    def _told_line(self, after: Operation) -> Operation:
-        sink = self._sink
-        assert sink is not None, "only a trace is told"
-
+    def _told_line(self, sink: Sink, after: Operation) -> Operation:
         def operation() -> Operation:
             sink.line(self.at())
             return after
@@ -257,17 +257,25 @@ class Services:
         return operation
 
     def tell(self, instruction: Instruction, after: Operation) -> Operation:
-        """What an instruction for the trace does."""
-        sink, state, names = self._sink, self._state, self._names
-        assert sink is not None, "only a trace is told"
+        """What an instruction for the trace does; nothing where it does not want that kind."""
+        if instruction.op is Op.TELL_BRANCH:
+            branches = self._branches
+            return after if branches is None else self._told_branch(branches, instruction, after)
+        assignments = self._assignments
+        return after if assignments is None else self._told(assignments, instruction, after)
+
+    def _told_branch(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+        way = instruction.operands[0]
+
+        def operation() -> Operation:
+            sink.branch(self.at(), way)
+            return after
+
+        return operation
+
+    def _told(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+        state, names = self._state, self._names
         op, operands, types = instruction.op, instruction.operands, self._program.types
-        if op is Op.TELL_BRANCH:
-
-            def branch() -> Operation:
-                sink.branch(self.at(), operands[0])
-                return after
-
-            return branch
 
         def operation() -> Operation:
             match op:
@@ -287,7 +295,7 @@ class Services:
 
     def _tell_changed(self, change: Change) -> None:
         """What was written last is an argument that a function has changed."""
-        if self._sink is None:
+        if self._assignments is None:
             return
         given, through = change.changed.given, change.changed.through
         type_ = self._program.types[given.type]
@@ -296,17 +304,17 @@ class Services:
         else:
             found = self._names.through(through, type_, given.dimensions)
         if found is not None:
-            self._sink.assign(self.at(), *found)
+            self._assignments.assign(self.at(), *found)
 
     def tell_call(self, code: int) -> None:
         """A routine is about to be called."""
-        if self._sink is not None:
-            self._sink.call(self.at(), self._program.codes[code].name)
+        if self._calls is not None:
+            self._calls.call(self.at(), self._program.codes[code].name)
 
     def tell_leave(self) -> None:
         """The routine that runs is about to end."""
-        if self._sink is not None:
-            self._sink.leave(self.at(), self.code().name)
+        if self._returns is not None:
+            self._returns.leave(self.at(), self.code().name)
 
 
 def _finished(request: Request) -> Request:

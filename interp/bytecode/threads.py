@@ -66,8 +66,7 @@ class Threads:
         rule = self._rules.get(instruction.op)
         if rule is not None:
             return rule(here, *instruction.operands)
-        # what is left is for the trace
-        return self._hooks.tell(instruction, here.after) if self._hooks.is_told else here.after
+        return self._hooks.tell(instruction, here.after)  # what is left is for the trace
 
 
 def _fallen_off() -> Operation | None:

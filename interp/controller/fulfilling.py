@@ -4,7 +4,8 @@ Behind real programs stand grippers, spindles and a PLC whose scripts nobody has
 waits after 1`` stands for all of them: once the robot's program has waited so long, the digital
 inputs that its condition has read change one at a time, a cycle each, through all their
 combinations, beginning with the one it read first. Inputs that a script sets itself stay as they
-are. A condition that no combination makes TRUE goes on waiting.
+are. Where no combination makes the condition TRUE, they are in the end as they were, and the
+program goes on waiting.
 """
 
 from __future__ import annotations
@@ -89,9 +90,9 @@ def _places(path: Path) -> Iterable[int]:
 
 
 def _combinations(values: dict[int, bool]) -> Iterator[tuple[int, bool]]:
-    """One change after the other that lead through all combinations (a Gray code)."""
+    """One change after the other that lead through all combinations and back (a Gray code)."""
     places = list(values)
-    for count in range(1, 2 ** len(places)):
-        place = places[(count & -count).bit_length() - 1]
+    for count in range(1, 2 ** len(places) + 1) if places else ():
+        place = places[min((count & -count).bit_length(), len(places)) - 1]
         values[place] = not values[place]
         yield place, values[place]

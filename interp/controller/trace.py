@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
+from interp.events import EVERY_KIND, Kind
 from interp.rendering import to_json
 from interp.requests import At, Path, Value
 
@@ -105,19 +106,22 @@ class TaskSink:
         self._trace = trace
         self._names: dict[int, str] = {}
 
+    @property
+    def kinds(self) -> frozenset[Kind]:
+        """Lines and assignments are for the full trace only; most of a program is made of them."""
+        return EVERY_KIND if self._trace.is_full else EVERY_KIND - {"line", "assign"}
+
     def routine(self, depth: int) -> str:
         """The name of the routine called last to this depth."""
         return self._names.get(depth, "")
 
     def line(self, at: At) -> None:
         """A statement begins."""
-        if self._trace.is_full:
-            self._trace.tell(self.task, "line", at)
+        self._trace.tell(self.task, "line", at)
 
     def assign(self, at: At, path: Path, value: Value | None) -> None:
         """A variable of the program was assigned."""
-        if self._trace.is_full:
-            self._trace.tell(self.task, "assign", at, name=path_text(path), value=to_json(value))
+        self._trace.tell(self.task, "assign", at, name=path_text(path), value=to_json(value))
 
     def call(self, at: At, name: str) -> None:
         """A routine is called."""

@@ -27,7 +27,7 @@ from interp.debugging.client import (
 )
 from interp.debugging.conditions import evaluated, parsed, root_of
 from interp.debugging.selection import reason_against
-from interp.events import Sink
+from interp.events import Kind, Sink
 from interp.executor import Executor, Reader
 from interp.faults import Fault, LinkError, RuntimeFailure
 from interp.inspection import Inspectable
@@ -341,11 +341,16 @@ class Debugger:
         self._reason = Stop("selected", self._at)
 
 
+#: What it has to know itself.
+_OWN: frozenset[Kind] = frozenset({"call"})
+
+
 class _Calls:
-    """A sink that knows which routines are open, and passes everything on."""
+    """A sink that knows which routines are open, and passes on what the other one wants."""
 
     def __init__(self, sink: Sink | None, first: str) -> None:
         self._sink = sink
+        self.kinds: frozenset[Kind] = _OWN if sink is None else _OWN | sink.kinds
         #: By depth: the name, where it was called, and the number of the activation.
         self._open: list[tuple[str, At, int]] = [(first, At("", 0, 0), 0)]
         self._serials = 0
@@ -364,7 +369,7 @@ class _Calls:
         """A routine is called."""
         self._serials += 1
         self._open[at.depth + 1 :] = [(name, at, self._serials)]
-        if self._sink is not None:
+        if self._sink is not None and "call" in self._sink.kinds:
             self._sink.call(at, name)
 
     def leave(self, at: At, name: str) -> None:

@@ -65,7 +65,7 @@ void krl_store_data(struct translator *at, int32_t address)
 /* For the trace: what was written last. */
 static void remember(struct translator *at, struct held where)
 {
-    if (at->machine->is_told)
+    if (at->machine->told & KRL_TOLD_ASSIGN)
         krl_emit(at, where.kind == ADDRESS ? KRL_STEP_REMEMBER_LOCAL : KRL_STEP_REMEMBER_DATA)->a = where.a;
 }
 
@@ -165,7 +165,7 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
     at->height = first;
     krl_push(at, held);
     /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
-    if ((array.dimensions == 2 && held.b >= at->code->frame) || at->machine->is_told) {
+    if ((array.dimensions == 2 && held.b >= at->code->frame) || at->machine->told & KRL_TOLD_ASSIGN) {
         krl_secure(at, first);
         krl_settle(at, first);
     }

@@ -243,7 +243,7 @@ static int try_image(const uint8_t *data, size_t length)
     seal(image, length);
     images++;
     state = krl_checksum(image, length) | 1;
-    if (!krl_load_image(&machine, image, length, draw(2) != 0, &why))
+    if (!krl_load_image(&machine, image, length, (int)draw(32), &why))
         return 0;
     accepted++;
     if (!krl_give_memory(&machine, DEPTH, NULL))

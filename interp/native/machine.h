@@ -61,9 +61,18 @@ struct krl_memory {
 /* Of so many calls there may be at most; and of actions entered at once. */
 enum { KRL_MOST_CALLS = 1 << 20, KRL_MOST_ENTERED = 64 };
 
+/* Events, as bits. */
+enum krl_told {
+    KRL_TOLD_LINE = 1,
+    KRL_TOLD_ASSIGN = 2,
+    KRL_TOLD_CALL = 4,
+    KRL_TOLD_RETURN = 8,
+    KRL_TOLD_BRANCH = 16
+};
+
 struct krl_machine {
     struct krl_program program;
-    int is_told; /* whether there is a trace to tell events to */
+    int told; /* of which events there is a trace to tell */
     struct krl_routine *routines;
     struct krl_step *steps;
     int32_t step_count;
@@ -112,7 +121,7 @@ struct krl_stopped {
 enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 
 /* Loads an image. 0 where it is refused. */
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int is_told,
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int told,
              struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 

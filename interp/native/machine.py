@@ -9,7 +9,7 @@ to be done outside, and gives the operation that does it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Any, cast
 
@@ -21,7 +21,7 @@ from interp.bytecode.services import Services
 from interp.bytecode.state import Completion, Operation, State
 from interp.bytecode.threads import Threads
 from interp.bytecode.verify import Verified
-from interp.events import Sink
+from interp.events import Kind, Sink, wanting
 from interp.executor import Reader
 from interp.faults import FAULTS, LinkError, fault
 from interp.native._core import Core
@@ -50,6 +50,8 @@ class _Matter(IntEnum):
     LEAVE = 2
 
 
+#: The kinds of events as ``enum krl_told`` has them.
+_TOLD: Mapping[Kind, int] = {"line": 1, "assign": 2, "call": 4, "return": 8, "branch": 16}
 _SLUGS = [slug for slug, _ in sorted(FAULTS.items(), key=lambda item: item[1].code)]
 
 
@@ -103,9 +105,7 @@ class _State(Core):
 
     base = 0  # where nothing lies on the stack that is not the frame's
 
-    def __init__(
-        self, _image: bytes, _is_told: bool, _most_calls: int, _beside: Core | None
-    ) -> None:
+    def __init__(self, _image: bytes, _told: int, _most_calls: int, _beside: Core | None) -> None:
         self.stack = _Stack(self)
         self.calls = _Calls(self)
         self.reader: Reader | None = None
@@ -223,13 +223,13 @@ class Machine(vm.Machine):
         *,
         beside: vm.Machine | None = None,
     ) -> None:
-        self._is_told = sink is not None
+        self._told = sum(bit for kind, bit in _TOLD.items() if wanting(sink, kind) is not None)
         super().__init__(verified, routine, limits, sink, random, beside=beside)
 
     def _made_state(self, program: Program, limits: Limits) -> State:
         beside = cast("_State", self._together[0]._state) if self._together else None
         image = write_image(program)
-        return cast("State", _State(image, self._is_told, limits.depth, beside))
+        return cast("State", _State(image, self._told, limits.depth, beside))
 
     def _made_ready(self, program: Program) -> Threads:
         state = cast("_State", self._state)

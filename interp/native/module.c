@@ -33,13 +33,13 @@ static PyObject *refused(const struct krl_refusal *why)
 
 static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
 {
-    static char *names[] = {"image", "is_told", "most_calls", "beside", NULL};
+    static char *names[] = {"image", "told", "most_calls", "beside", NULL};
     const char *image;
     Py_ssize_t length;
-    int is_told, most_calls;
+    int told, most_calls;
     PyObject *beside;
     struct krl_refusal why;
-    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#piO", names, &image, &length, &is_told,
+    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#iiO", names, &image, &length, &told,
                                      &most_calls, &beside))
         return NULL;
     if (beside != Py_None && !PyObject_TypeCheck(beside, core_type)) {
@@ -50,7 +50,7 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct core *core = (struct core *)allot(type, 0);
     if (core == NULL)
         return NULL;
-    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, is_told, &why)) {
+    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, told, &why)) {
         Py_DECREF(core);
         return refused(&why);
     }
@@ -325,7 +325,7 @@ static PyGetSetDef core_getset[] = {
 };
 
 static PyType_Slot core_slots[] = {
-    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, is_told, most_calls, beside)."},
+    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, told, most_calls, beside)."},
     {Py_tp_new, core_new},
     {Py_tp_dealloc, core_dealloc},
     {Py_tp_methods, core_methods},

@@ -160,7 +160,7 @@ static void call(struct translator *at, int32_t place)
         is_copied |= handed->mode == KRL_BY_VALUE && !krl_is_plain(at->program, handed->type);
     }
     krl_settle_all(at);
-    if (at->machine->is_told) {
+    if (at->machine->told & KRL_TOLD_CALL) {
         struct krl_step *check = krl_emit(at, KRL_STEP_CHECK_CALL);
         check->b = number;
         check->c = at->code->frame;
@@ -179,7 +179,7 @@ static void leave(struct translator *at, int32_t place)
     int32_t b = 0;
     if (has_value)
         b = krl_operand(at, at->height - 1);
-    if (at->machine->is_told && at->code->kind == KRL_ROUTINE)
+    if (at->machine->told & KRL_TOLD_RETURN && at->code->kind == KRL_ROUTINE)
         python(at, KRL_MATTER_LEAVE, place);
     at->height = 0;
     if (at->code->kind == KRL_ACTION)
@@ -244,7 +244,7 @@ static void builtin(struct translator *at, int32_t place)
         return;
     }
     enum krl_text_function function = krl_text_function_of(at->program, entry);
-    if (function != KRL_TEXT_FUNCTIONS && !at->machine->is_told) {
+    if (function != KRL_TEXT_FUNCTIONS && !(at->machine->told & KRL_TOLD_ASSIGN)) {
         struct krl_step *step = krl_consume(at, KRL_STEP_TEXT, entry->input_cells);
         step->b = number;
         step->tag = (uint16_t)function;
@@ -263,7 +263,7 @@ static void start_here(struct translator *at, int32_t place)
 
 static void line(struct translator *at, int32_t place)
 {
-    if (at->machine->is_told) {
+    if (at->machine->told & KRL_TOLD_LINE) {
         start_here(at, place);
         python(at, KRL_MATTER_INSTRUCTION, place);
     } else {
@@ -458,8 +458,12 @@ static void instruction(struct translator *at, int32_t place)
         unless(at, 1, 2 + (int)now->op - KRL_UNLESS_LT_REAL, operands[0]);
         break;
     case KRL_FOR_LOCAL: case KRL_FOR_DATA: count_up(at, now); break;
-    case KRL_TELL_LOCAL: case KRL_TELL_DATA: case KRL_TELL_REF: case KRL_TELL: case KRL_TELL_BRANCH:
-        if (at->machine->is_told)
+    case KRL_TELL_LOCAL: case KRL_TELL_DATA: case KRL_TELL_REF: case KRL_TELL:
+        if (at->machine->told & KRL_TOLD_ASSIGN)
+            python(at, KRL_MATTER_INSTRUCTION, place);
+        break;
+    case KRL_TELL_BRANCH:
+        if (at->machine->told & KRL_TOLD_BRANCH)
             python(at, KRL_MATTER_INSTRUCTION, place);
         break;
     case KRL_OPCODE_COUNT: break;

@@ -64,13 +64,19 @@ class Journey:
     # -------------------------------------------------------------------------- going and stopping
 
     def go(
-        self, route: Sequence[Section], time: float, override: float, *, is_strict: bool = False
+        self,
+        route: Sequence[Section],
+        time: float,
+        override: float,
+        *,
+        new_behind: Section | None = None,
     ) -> bool:
         """Travel a route from a time on, from whatever the arm does then.
 
-        With ``is_strict`` nothing is done, and the result is false, where a seam would be passed
-        faster than is allowed.
+        ``new_behind``: what follows this section is new. Then nothing is done, and the result is
+        false, where a seam would be passed faster than is allowed.
         """
+        is_strict = new_behind is not None
         if not route:
             return True
         leg = self._under_way(time)
@@ -79,10 +85,13 @@ class Journey:
             return self._lay(route, State(u, 0.0, 0.0), begins, None, override, is_strict)
         time = max(time, leg.begins)
         laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
-        if laid or is_strict:
-            return laid
-        # The acceleration cannot be taken back before the leg ends; so it is travelled first.
+        if laid:
+            return True
+        # The acceleration cannot be taken back before the leg ends, or the override has dropped
+        # and the leg ends faster than it allows now. Neither is the fault of what comes far behind.
         rest, state = _behind(leg, route)
+        if is_strict and not any(section is new_behind for section in rest):
+            return False
         return not rest or self._lay(rest, state, leg.ends, None, override, is_strict)
 
     def halt(

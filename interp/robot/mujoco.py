@@ -31,7 +31,7 @@ Array = npt.NDArray[np.float64]
 
 _STEP = 1_000  # µs
 _CHUNK = 120_000  # µs
-_STIFFNESS = 150.0  # 1/s: how fast an error goes
+_STIFFNESS = 250.0  # 1/s: how fast an error goes; a quarter of a step, far from what would swing
 _LOST = 2.0
 """Degrees or mm off the set-point at which the arm no longer follows; nothing is known to reach it
 but a model that is too stiff for its steps."""

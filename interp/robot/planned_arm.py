@@ -159,6 +159,8 @@ class PlannedArm:
             return False
         leaves = 1.0 - zone.before
         reached = self._journey.reached(body, self._now * MICROSECOND)
+        if self._override == 0.0:  # it may brake still
+            reached = max(reached, self._journey.stood_at(body))
         if leaves < body.start or reached > leaves:
             return False
         try:
@@ -173,7 +175,7 @@ class PlannedArm:
         first, *others = _sections(track)
         rest = (replace(first, start=zone.after, gear=2.0 * zone.after), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
-        if not self._reschedule(route, is_strict=True):
+        if not self._reschedule(route, new_behind=shorter):
             return False
         self._plan = _Plan(
             programmed,
@@ -389,13 +391,16 @@ class PlannedArm:
         axes: Array = section.curve.axes(np.array([self._journey.stood_at(section)]))[0]
         return axes
 
-    def _reschedule(self, route: Sequence[Section], *, is_strict: bool = False) -> bool:
-        """Lay legs for a route from now on; with ``is_strict`` only if no seam is overrun."""
+    def _reschedule(self, route: Sequence[Section], *, new_behind: Section | None = None) -> bool:
+        """Lay legs for a route from now on; with an override of 0, once that is greater.
+
+        Where it is new behind a section, only if no seam is overrun.
+        """
         self._agenda = None
         if self._override == 0.0:
-            return not is_strict
+            return True
         time = self._now * MICROSECOND
-        return self._journey.go(route, time, self._override, is_strict=is_strict)
+        return self._journey.go(route, time, self._override, new_behind=new_behind)
 
     def _halt(self, override: float, *, is_hard: bool) -> None:
         """Stop on the path."""

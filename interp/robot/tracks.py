@@ -101,8 +101,14 @@ class Tracks:
         """The track of a motion behind a target, and the target it leads to.
 
         After an aborted motion CIRC is executed as LIN, since its start is not where it was
-        [INT-14]. Raises `Fault`.
+        [INT-14]. Raises `Fault`, with 3094 for #IGNORE, which only segments of a spline block may
+        have (where it is allowed is unconfirmed) [ORI-03].
         """
+        is_cp = motion.kind not in {"PTP", "SPTP"}
+        if is_cp and motion.settings.orientation == "#IGNORE":
+            raise Fault(
+                "orientation", "#IGNORE is not allowed here", number=3094, rules=("ORI-03",)
+            )
         match motion.kind:
             case "PTP" | "SPTP":
                 return self._ptp(motion, before)

@@ -262,8 +262,8 @@ class Expressions:
             yield Write(self.at(), place.path, of_type(place.type, value))
             return
         place.set(value)
-        if self.run.sink is not None:
-            self.run.sink.assign(self.at(), place.path, copied(place.get()))
+        if self.run.assignments is not None:
+            self.run.assignments.assign(self.at(), place.path, copied(place.get()))
 
     # ----------------------------------------------------------------------- calls
 

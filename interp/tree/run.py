@@ -16,7 +16,7 @@ from grammar.scopes import Scope
 from grammar.symbols import Symbol
 from grammar.types import Type
 from interp.builtins import Randomness
-from interp.events import Sink
+from interp.events import Sink, wanting
 from interp.faults import BudgetExhausted, LinkError
 from interp.program import CheckedProgram, Limits, Routine, Unit
 from interp.requests import At, Code, Request, Slice
@@ -80,7 +80,8 @@ class Guard(Enum):
 class Run:
     """The state of a program apart from its frames.
 
-    ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold.
+    ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold. The
+    sink is there once for each kind of event, where it wants that kind.
     """
 
     def __init__(
@@ -92,7 +93,9 @@ class Run:
     ) -> None:
         self.program = program
         self.limits = limits or Limits()
-        self.sink = sink
+        self.lines, self.assignments = wanting(sink, "line"), wanting(sink, "assign")
+        self.calls, self.returns = wanting(sink, "call"), wanting(sink, "return")
+        self.branches = wanting(sink, "branch")
         self.random = random or Randomness()
         self.data: dict[Symbol, Local] = {}
         self.depth = 0
@@ -118,8 +121,8 @@ class Run:
             yield Slice(self.at(frame))
         self._begun += 1
         self._since += 1
-        if self.sink is not None:
-            self.sink.line(self.at(frame))
+        if self.lines is not None:
+            self.lines.line(self.at(frame))
 
     def asked(self) -> None:
         """A request was made: a new slice begins."""

@@ -80,8 +80,8 @@ class Statements(Motions):
             raise LinkError(f"the label {jump.label} is not there to go to") from None
         except _Exit:
             raise LinkError("EXIT outside of a loop") from None
-        if self.run.sink is not None:
-            self.run.sink.leave(self.at(), self.frame.name)
+        if self.run.returns is not None:
+            self.run.returns.leave(self.at(), self.frame.name)
         return value
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> Steps[None]:
@@ -156,8 +156,8 @@ class Statements(Motions):
         return self.run.begin(self.frame, self.frame.unit.line(node))
 
     def _branch(self, way: int) -> None:
-        if self.run.sink is not None:
-            self.run.sink.branch(self.at(), way)
+        if self.run.branches is not None:
+            self.run.branches.branch(self.at(), way)
 
     def _is_true(self, condition: ast.Expression) -> Steps[bool]:
         """A condition that the way depends on."""

@@ -26,7 +26,7 @@ _DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
 _RESULTS = {
     "end": "to its end",
     "halt": "to a HALT",
-    "waits": "waits for an input",
+    "waits": "waits for ever",
     "goes on": "never ends",
     "fault": "a fault",
     "unlinked": "needs what no file has",

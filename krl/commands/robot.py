@@ -22,6 +22,7 @@ app = typer.Typer(help="Ask what an arm does, by its machine data.")
 _COMPONENTS = "xyzabc"
 _NEEDED = {"numpy", "scipy", "py_opw_kinematics"}
 _DIGITS = 9  # of a degree; more would be noise
+_LARGEST_INT = 2**31 - 1  # of KRL
 
 
 @app.callback()

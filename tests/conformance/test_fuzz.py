@@ -127,8 +127,9 @@ def test_difference_is_reduced(
     assert small.statements is not None
     assert small.statements <= 10
     assert small.difference.expected != small.difference.actual
-    again = examine(prepared(small.files), campaign.world_seed(1, small.number), ["tree", "vm"])
-    assert again
+    program = prepared(small.files)
+    worlds = (campaign.world_seed(1, small.number, n) for n in range(campaign._SEEDS))
+    assert any(examine(program, world, ["tree", "vm"]) for world in worlds)
     assert "*" in "".join(text for _, text in small.files)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from grammar.source import Source
+from grammar.types import Array
 from interp.agreement import Observed, difference, observe
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.program import Program
@@ -217,7 +218,7 @@ def _rooms(text: str, name: str) -> list[int]:
     program: Program = compile_program(_loaded(text)).program
     code = next(one for one in program.codes if one.name.upper() == name)
     found = [program.types[one.type] for one in code.locals if one.name.startswith("%")]
-    return [one.sizes[0] for one in found if hasattr(one, "sizes")]
+    return [one.sizes[0] or 0 for one in found if isinstance(one, Array)]
 
 
 def test_arrays_of_unknown_size_are_copied() -> None:

@@ -18,7 +18,8 @@ def backup(tmp_path: Path) -> Path:
     files = {
         "R1/Program/ends": f"ends ( )\n{MOVE}part ( )\n",
         "R1/Program/part": f"part ( )\n{MOVE}",
-        "R1/Program/waits": f"waits ( )\n{MOVE}WAIT FOR $IN[9]\n",
+        "R1/Program/asks": f"asks ( )\n{MOVE}WAIT FOR $IN[8] AND NOT $IN[7]\n",
+        "R1/Program/waits": f"waits ( )\n{MOVE}WAIT FOR $OV_PRO==50\n",
         "R1/Program/halts": f"halts ( )\n{MOVE}HALT\n{MOVE}",
         "R1/Program/turns": "turns ( )\nLOOP\nPTP {A1 10}\nPTP {A1 0}\nENDLOOP\n".replace(
             "LOOP\nPTP", f"{MOVE}LOOP\nPTP", 1
@@ -54,6 +55,7 @@ def test_main_programs_and_their_results(backup: Path, capsys: pytest.CaptureFix
     assert {
         "cell": "waits",
         "ends": "end",
+        "asks": "end",
         "waits": "waits",
         "halts": "end",
         "turns": "goes on",
@@ -61,8 +63,8 @@ def test_main_programs_and_their_results(backup: Path, capsys: pytest.CaptureFix
         "lacks": "unlinked",
     } == found
     said = capsys.readouterr().out
-    assert "7 main programs on the robot none, tree; 0 files that cannot be read" in said
-    assert "to its end: 2; waits for an input: 2; never ends: 1; a fault: 1;" in said
+    assert "8 main programs on the robot none, tree; 0 files that cannot be read" in said
+    assert "to its end: 3; waits for ever: 2; never ends: 1; a fault: 1;" in said
 
 
 def test_where_and_why(backup: Path) -> None:
@@ -73,14 +75,27 @@ def test_where_and_why(backup: Path) -> None:
     assert (0, "KR6R900 SIZED") == (row["motions"], row["machine"])
 
 
-def test_scripts(backup: Path) -> None:
-    """A script with the name of an archive or of a program gives inputs."""
+def test_inputs_that_are_waited_for(backup: Path) -> None:
+    """They come after a second, and the row tells how many had to change; a script has its own."""
+    row = results(backup)["asks"]
+    assert ("end", 1) == (row["result"], row["inputs"])
+    assert 1.58 < row["seconds"] < 1.62
     scripts = backup.parent / "scripts"
     scripts.mkdir()
-    (scripts / "waits.io").write_text("t=2 IN[9]=TRUE\n", encoding="utf-8")
+    (scripts / "asks.io").write_text("t=2 IN[8]=TRUE\n", encoding="utf-8")
+    row = results(backup, "--scripts", str(scripts))["asks"]
+    assert ("end", 2) == (row["result"], row["inputs"])  # $IN[7] there and back
+    assert 2.0 <= row["seconds"] < 2.02
+
+
+def test_scripts(backup: Path) -> None:
+    """A script with the name of an archive or of a program says what the cell does."""
+    scripts = backup.parent / "scripts"
+    scripts.mkdir()
+    (scripts / "waits.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
     found = results(backup, "--scripts", str(scripts))
     assert ("end", "waits") == (found["waits"]["result"], found["cell"]["result"])
-    (scripts / "cell.io").write_text("t=2 IN[9]=TRUE\n", encoding="utf-8")
+    (scripts / "cell.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
     assert "end" == results(backup, "--scripts", str(scripts))["cell"]["result"]
 
 
@@ -88,7 +103,7 @@ def test_own_machine_data_is_asked_for(backup: Path) -> None:
     """Programs of a backup without an arm are left aside, unless all are asked for."""
     (backup / "R1" / "Mada" / "$machine.dat").unlink()
     assert {} == results(backup)
-    assert 7 == len(results(backup, "--every"))
+    assert 8 == len(results(backup, "--every"))
 
 
 @pytest.mark.parametrize(

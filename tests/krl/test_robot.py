@@ -155,6 +155,7 @@ GOOD = json.dumps({"id": "P", **BENT})
         (f"[{GOOD.replace('445', 'true')}]", "point 1 ('P'): x is not a number"),
         (f"[{GOOD.replace('445', 'null')}]", "point 1 ('P'): x is not a number"),
         (f"[{GOOD.replace(': 2}', ': 2.5}')}]", "point 1 ('P'): s is not a whole number from 0"),
+        (f"[{GOOD.replace(': 2}', ': 1e30}')}]", "s is not a whole number from 0 to 2147483647"),
         (f"[{GOOD.replace(': 2}', ': -1}')}]", "point 1 ('P'): s is not a whole number from 0"),
         (f'[{GOOD[:-1]},"t":"B10"}}]', "point 1 ('P'): t is not a number"),
         (f'[{GOOD[:-1]},"tool":3}}]', "point 1 ('P'), tool is not an object"),

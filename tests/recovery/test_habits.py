@@ -104,6 +104,29 @@ def test_a_lost_part_comes_back_as_it_is_elsewhere() -> None:
     assert (Insert("statement", (2, 3), "(CA expression)?"),) == entry.proposals[0].edits
 
 
+def test_a_part_goes_where_it_stands_elsewhere() -> None:
+    """Behind what may be left out the order is that of another sequence; else it is the last."""
+    layout = Layout(
+        Recognizer(
+            read("""grammar S;
+program : line* EOF ;
+line : LIN NAME extra? BLEND? NEWLINE | CIRC NAME BLEND? ON? NEWLINE ;
+extra : WITH NAME ;
+BLEND : 'BLEND' ;
+CIRC : 'CIRC' ;
+LIN : 'LIN' ;
+ON : 'ON' ;
+WITH : 'WITH' ;
+NAME : [A-Z]+ ;
+NEWLINE : '\\n' ;
+""")
+        )
+    )
+    assert (2, 3) == layout.place_as_elsewhere("line", (2, 5), "extra?")
+    assert layout.place_as_elsewhere("line", (2, 3), "extra?") is None
+    assert layout.place_as_elsewhere("line", (2, 5), "WITH?") is None
+
+
 def test_a_keyword_with_a_meaning_is_no_name() -> None:
     """A value is a truth already: to call one a name would give it two readings."""
     assert PHRASER.would_be_read_twice("name", "TRUE")

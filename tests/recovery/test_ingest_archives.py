@@ -229,6 +229,23 @@ def with_claimed_size(size: int) -> bytes:
     return bytes(data)
 
 
+def test_members_that_share_their_bytes_are_read_once(tmp_path: Path) -> None:
+    """A directory that names the same bytes many times makes a small archive no bomb."""
+    data = packed(("a.src", b"DEF A()\nEND\n"), ("b.src", b"DEF B()\nEND\n"))
+    listed, end = data.index(b"PK\x01\x02"), data.rindex(b"PK\x05\x06")
+    entry, others = data[listed : listed + 51], data[listed + 51 : end]
+    assert others.startswith(b"PK\x01\x02")
+    tail = bytearray(data[end:])
+    tail[8:12] = struct.pack("<HH", 401, 401)
+    tail[12:16] = struct.pack("<I", len(entry) * 400 + len(others))
+    file = tmp_path / "bomb.zip"
+    file.write_bytes(data[:listed] + entry * 400 + others + tail)
+    found = survey(file)
+    reasons = [what for what in found.values() if isinstance(what, str)]
+    assert ["its bytes are those of another member too"] * 399 == reasons
+    assert 2 == len(found) - len(reasons)
+
+
 def test_a_size_claimed_too_small_is_found(tmp_path: Path) -> None:
     """A member is never read beyond the size the directory claims; its checksum then tells."""
     (tmp_path / "backup.zip").write_bytes(with_claimed_size(5))

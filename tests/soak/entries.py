@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from foundry import Foundry
-
 from krl.cli import main
+from tests.soak.foundry import Foundry
 
 __all__ = ["ENTRIES", "Entry", "Given", "put"]
 
@@ -53,7 +52,7 @@ STRANGE = ["\x1b[31m.src", "a\nb.src", "<b>\u202ecrs.src", "\udcff.src", "-o.src
 
 
 def _named(foundry: Foundry, plain: list[str]) -> str:
-    name = foundry.chance.choice([*plain, *STRANGE])
+    name: str = foundry.chance.choice([*plain, *STRANGE])
     if name in STRANGE:
         foundry.note("strange names of files and folders")
     return name
@@ -360,9 +359,9 @@ def fuzzed(folder: Path, foundry: Foundry) -> Given:
     """Options of the fuzzer, and numbers that are none of theirs."""
     foundry.note("strange words on the command line")
     numbers = ["1", "2", "0", "-1", "x", "9" * 30, "1e3", "\u0663", ""]
-    options = ["--programs", foundry.chance.choice(["1", "2", "0", "-1", "x", "1e3", ""])]
+    options = ["--programs", foundry.chance.choice(["1", "1", "1", "2", "0", "-1", "x"])]
     for option in ("--seed", "--jobs", "--executor", "--json"):
-        if foundry.chance.random() < 0.4:
+        if foundry.chance.random() < 0.3:
             words = [*numbers, "tree", "vm", "\x1b[31m", str(folder)]
             if option == "--jobs":
                 words = ["1", "0", "-1", "x", ""]
@@ -488,7 +487,7 @@ ENTRIES: dict[str, Entry] = {
     "run archive": Entry(
         12,
         "a program in an archive",
-        lambda d, f: krl("run", put(d, "a.zip", f.archive()) / "KRC/R1/x.src"),
+        lambda d, f: krl("run", put(d, "a.zip", f.archive(f.runnable())) / "KRC/R1/x.src"),
     ),
     "run io": Entry(
         50, "a script of inputs", lambda d, f: _ran(d, "--io", put(d, "s.txt", f.text(SCRIPT)))

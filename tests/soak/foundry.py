@@ -16,7 +16,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pieces import BOMBS, KINDS, NAMES, NUMBERS, PIECES, TOKENS, VALUES
+from tests.soak.pieces import BOMBS, KINDS, NAMES, NUMBERS, PIECES, TOKENS, VALUES
 
 REPOSITORY = Path(__file__).parents[2]
 
@@ -155,12 +155,18 @@ class Foundry:
         data[:] = b"\n".join(lines)
 
     def _piece(self) -> bytes:
-        return bytes(self.one_of(PIECES).encode("utf-8", "surrogatepass"))
+        piece: str = self.one_of(PIECES)
+        return piece.encode("utf-8", "surrogatepass")
 
-    def archive(self) -> bytes:
-        """An archive whose names lead out of it, lie about sizes, are links, bombs, nested."""
+    def archive(self, program: bytes = b"") -> bytes:
+        """An archive whose names lead out of it, lie about sizes, are links, bombs, nested.
+
+        A ``program`` lies in it as KRC/R1/x.src.
+        """
         stream = io.BytesIO()
         with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+            if program:
+                archive.writestr("KRC/R1/x.src", program)
             for _ in range(self.chance.randrange(1, 5)):
                 self._member(archive)
         return self._damaged_archive(bytearray(stream.getvalue()))

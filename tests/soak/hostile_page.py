@@ -1,6 +1,6 @@
 """Makes docs/hostile.md: what was tried on krl, with counts, and which limits hold.
 
-    python tests/soak/hostile_page.py [COUNTS.json]...
+    python -m tests.soak.hostile_page [COUNTS.json]...
 
 reads the counts that `make hostile` left, all slices of them, and the limits from the code.
 """
@@ -14,11 +14,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from entries import ENTRIES
-from pieces import KINDS
-
 from grammar import documents
 from recovery import archives
+from tests.soak.entries import ENTRIES
+from tests.soak.pieces import KINDS
 
 __all__ = ["page", "told"]
 
@@ -29,21 +28,33 @@ MB = 1 << 20
 _HEAD = """\
 # Hostile input
 
-This page is made by `python tests/soak/hostile_page.py` from the counts of `make hostile`; do not edit it.
+This page is made by `python -m tests.soak.hostile_page` from the counts of `make hostile`; do not
+edit it.
 
-KRL comes from other people: backups in archives, files of forums, a survey that somebody sends. Nothing of it is
-trusted. `make hostile` makes inputs by chance from a seed, gives each to the command that reads such a
-thing, and looks at what happens. It fails where a command
+KRL comes from other people: backups in archives, files of forums, a survey that somebody sends.
+Nothing of it is trusted. `make hostile` makes inputs by chance from a seed, gives each to the
+command that reads such a thing, and looks at what happens. It fails where a command
 
 - ends otherwise than with status 0, 1 or 2, or tells of a defect of ours;
 - needs more than a minute of processor time, or waits for ever;
 - writes, renames or removes anything outside its own folders;
-- sends a control character, or one that turns the direction of writing, to the terminal, in text or in JSON;
+- sends a control character, or one that turns the direction of writing, to the terminal, in text or
+  in JSON;
 - refuses with more or less than one line on stderr;
 - writes a page in which something of the input would run, or a record that is not JSON.
 
-An input is made from its number, so each can be made again: `make hostile` takes `KRL_HOSTILE_ONLY=6137` or
-the name of an entry point, and `KRL_HOSTILE_PART=2/3` to try a slice.
+An input is made from its number, so each can be made again: `make hostile` takes
+`KRL_HOSTILE_ONLY=6137` or the name of an entry point, and `KRL_HOSTILE_PART=2/3` to try a slice.
+"""
+
+
+_KILLED = """\
+## Killed at any moment
+
+`make killed` kills surveys (30 times), growths (8), nights (5) and acceptances of a construct (7)
+at moments drawn from a seed, and runs them again. What was finished is not done again, records and
+pages are whole or not there, the last record is that of an undisturbed run, and ledger, grammar and
+parser are all those before an acceptance or all those after.
 """
 
 
@@ -100,8 +111,8 @@ def page(counts: Mapping[str, Any]) -> str:
             _HEAD,
             "## What was tried",
             "",
-            f"The last whole run: **{last[1]:,} inputs**, none of which broke anything. The slowest "
-            f"took {counts['slowest']['seconds']} s of processor time.",
+            f"The last whole run: **{last[1]:,} inputs**, none of which broke anything. The "
+            f"slowest took {counts['slowest']['seconds']} s of processor time.",
             "",
             "| entry point | what is hostile | inputs | status 0 | 1 | 2 |",
             "| --- | --- | ---: | ---: | ---: | ---: |",
@@ -120,12 +131,13 @@ def page(counts: Mapping[str, Any]) -> str:
             "",
             "## Limits",
             "",
-            "Beyond a limit a file is left out with its reason, or the command refuses in one line.",
+            "Beyond a limit a file is left out with its reason, or the command refuses it.",
             "",
             "| what | at most |",
             "| --- | --- |",
             *(f"| {what} | {most} |" for what, most in _limits()),
             "",
+            _KILLED,
         ]
     )
 

@@ -7,7 +7,7 @@ made from a seed, so what fails can be made again. The environment chooses:
 - KRL_HOSTILE_PART: `2/3` for the second third of them, so that they can be tried in slices;
 - KRL_HOSTILE_ONLY: entry points or single numbers to try.
 
-The counts go to reports/out/hostile/; `python tests/soak/hostile_page.py` makes docs/hostile.md.
+The counts go to reports/out/hostile/; `python -m tests.soak.hostile_page` makes docs/hostile.md.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from entries import ENTRIES, Given, put
-from foundry import Foundry
-from hostile_page import told
 
 import grammar.g4
 from krl.cli import main
+from tests.soak.entries import ENTRIES, Given, put
+from tests.soak.foundry import Foundry
+from tests.soak.hostile_page import told
 
 pytestmark = [
     pytest.mark.soak,
@@ -121,11 +121,8 @@ def _plan() -> Iterator[tuple[str, int]]:
     number = 0
     for name, entry in ENTRIES.items():
         for _ in range(max(1, -(-INPUTS * entry.share // shares))):
-            if ONLY:
-                is_wanted = name in ONLY or str(number) in ONLY
-            else:
-                is_wanted = number % PARTS == PART - 1
-            if is_wanted:
+            is_named = name in ONLY or str(number) in ONLY
+            if is_named or (not ONLY and number % PARTS == PART - 1):
                 yield name, number
             number += 1
 
@@ -156,7 +153,7 @@ def test_nothing_breaks_and_nothing_escapes(
     monkeypatch.setattr(grammar.g4, "read", cache(grammar.g4.read))  # the same text thousandfold
     canary = put(tmp_path, "canary", b"alive")
     foundry, watch, guard = Foundry(), Watch(), Guard(tmp_path)
-    went, kinds, worked = Counter[tuple[str, int]](), Counter[str](), Counter[str]()
+    went, kinds, worked = Counter[tuple[str, int]](), Counter[str](), dict.fromkeys(ENTRIES, 0.0)
     slowest = (0.0, "")
     failures: list[str] = []
     began = time.monotonic()

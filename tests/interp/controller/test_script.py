@@ -143,12 +143,16 @@ def test_events_repeat(go: Go) -> None:
         ("$IN[5] AND NOT $IN[3]", [(5, True)]),
         ("NOT $IN[3] AND $IN[5]", [(3, True), (5, True), (3, False)]),
         ("WORD==2", [(8, True), (9, True), (8, False)]),
-        ("$IN[3] AND $FLAG[1]", [(3, True)]),
+        ("$IN[3] AND $FLAG[1]", [(3, True), (3, False)]),
+        (
+            "$IN[3] AND $IN[4] AND $FLAG[1]",
+            [(3, True), (4, True), (3, False), (4, False)],
+        ),
         ("$FLAG[1]", []),
     ],
 )
 def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bool]]) -> None:
-    """The inputs of a condition change through all combinations until it holds."""
+    """The inputs of a condition change through all combinations until it holds, or back."""
     text = f"DEF main()\nSIGNAL WORD $IN[8] TO $IN[10]\nWAIT FOR {condition}\nEND\n"
     ran = go(text, "fulfil waits after 1", until=3.0)
     assert changes == [(one.fields["number"], one.fields["value"]) for one in ran.told("in")]

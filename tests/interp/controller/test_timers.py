@@ -140,6 +140,20 @@ def test_override(go: Go) -> None:
     assert [2.0, 4.0] == go(text.replace("REAL X\n", "REAL X\n$OV_PRO=50\n")).times("motion_end")
 
 
+def test_home(go: Go) -> None:
+    """$IN_HOME and $IN_HOME1 to 5 tell whether every axis is within its tolerance of home."""
+    home = "{E6AXIS: A1 1,A2 0,A3 0,A4 0,A5 0,A6 0,E1 0,E2 0,E3 0,E4 0,E5 0,E6 0}"
+    look = "WAIT SEC 0\nB=$IN_HOME\nB=$IN_HOME2\n"
+    ran = go(
+        program(
+            f"$H_POS={home}\n$AXIS_HOME[2]={home}\n$H_AXIS_TOL[2]={{E6AXIS: A1 0.5}}\n{look}"
+            f"PTP {{A1 0.6,A2 0,A3 0,A4 0,A5 0,A6 0}}\n{look}PTP {{A1 1}}\n{look}"
+        )
+    )
+    told = [one.fields["value"] for one in ran.told("assign") if one.fields["name"] == "B"]
+    assert [False, False, False, True, True, True] == told
+
+
 def test_states(go: Go) -> None:
     """$PRO_STATE tells what the program does, $ROB_STOPPED whether the arm stands [SUB-08]."""
     text = program("B=$PRO_STATE1==#P_ACTIVE\nB=$PRO_STATE0==#P_FREE\nB=$ROB_STOPPED\nB=$T1\n")

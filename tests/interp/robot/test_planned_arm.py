@@ -347,6 +347,7 @@ def test_undoing_what_was_planned(driver: Driver) -> None:
         ("PTP", {"A1": math.inf}, {}, 1422),
         ("LIN", {"Y": 0.0}, {"velocity": 0.0}, 1422),
         ("LIN", {"Y": 0.0}, {"velocity": math.nan}, 1422),
+        ("LIN", {"Y": 0.0}, {"orientation": "#IGNORE"}, 3094),
         ("LIN", {"Y": 0.0}, {"approximation": Approximation(cdis=math.nan)}, 1422),
         ("PTP", {"A1": 0.0}, {"axis_velocity": (math.nan,) * 12}, 1422),
         ("LIN", {"Y": 0.0}, {"places": (Place(9, "PATH", math.nan),)}, 1422),

@@ -235,6 +235,27 @@ def test_override_zero_stands(moving: Driver) -> None:
     assert 3 == moving.arm.pending()
 
 
+@pytest.mark.parametrize("percent", [0.0, 5.0, 40.0])
+def test_a_fallen_override_prevents_no_blend(driver: Driver, percent: float) -> None:
+    """A motion planned while the arm is still too fast for the new override blends all the same."""
+    near = {"criteria": ("C_DIS",), "approximation": Approximation(cdis=30.0), "velocity": 0.5}
+    driver.move("PTP", FIRST)
+    driver.play()
+    for target in (SECOND, FIRST, SECOND):
+        driver.move("LIN", target, **near)
+    while driver.play(until=driver.now + 1_000)[-1].kind != "blend_start":
+        pass
+    driver.play(until=driver.now + 10_000)
+    driver.arm.override(driver.now, percent)
+    driver.move("LIN", FIRST, velocity=0.5)
+    driver.play(until=driver.now + 2_000_000)
+    driver.arm.override(driver.now, 100.0)
+    driver.play()
+    assert [2, 3, 4] == [one.motion for one in driver.events if one.kind == "blend_apex"]
+    assert not any(event.is_exact_unwanted for event in driver.events)
+    driver.check_limits()
+
+
 @pytest.mark.parametrize("percent", [-1.0, 100.5, float("nan")])
 def test_override_that_is_none(driver: Driver, percent: float) -> None:
     """$OV_PRO lies between 0 and 100."""
