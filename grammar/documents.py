@@ -72,9 +72,7 @@ def toml_of(text: str) -> dict[str, Any]:
         raise DocumentError(f"not TOML that is read: longer than {MOST_TOML:,} characters")
     for number, line in enumerate(text.splitlines(), 1):
         if line.count(".") > MOST_DOTS:
-            raise DocumentError(
-                f"not TOML that is read: more than {MOST_DOTS} dots, line {number}"
-            )
+            raise DocumentError(f"not TOML that is read: more than {MOST_DOTS} dots, line {number}")
     try:
         return tomllib.loads(text)
     except RecursionError:

@@ -12,6 +12,8 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from types import TracebackType
 from typing import ParamSpec, TypeVar
 
+from recovery.orphans import end_with_parent
+
 __all__ = ["Lanes"]
 
 _P = ParamSpec("_P")
@@ -29,7 +31,7 @@ class Lanes:
         context = multiprocessing.get_context("spawn")
         self.count = max(1, count)
         self._pools = [
-            ProcessPoolExecutor(1, mp_context=context)
+            ProcessPoolExecutor(1, context, end_with_parent)
             for _ in range(self.count if count > 1 else 0)
         ]
         self._loads = [0] * self.count

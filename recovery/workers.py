@@ -20,6 +20,8 @@ from functools import cache
 from importlib import resources
 from typing import Any, Final, Protocol, TypeVar, TypeVarTuple
 
+from recovery.orphans import end_with_parent
+
 __all__ = ["WorkersError", "code_digest", "in_order", "meet"]
 
 _T = TypeVar("_T")
@@ -167,7 +169,7 @@ class _Local:
         """Start afresh after a death."""
         # 'spawn' behaves the same on every system and never copies a process with threads in it
         context = multiprocessing.get_context("spawn")
-        self._pool = ProcessPoolExecutor(self._jobs, mp_context=context)
+        self._pool = ProcessPoolExecutor(self._jobs, context, end_with_parent)
 
     def close(self) -> None:
         self._pool.shutdown(wait=True, cancel_futures=True)

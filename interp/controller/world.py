@@ -110,6 +110,7 @@ class World:
             "$DISTANCE": lambda: single(self.core.arm.distances(self.clock.now)[0]),
             "$DIST_NEXT": lambda: single(self.core.arm.distances(self.clock.now)[1]),
             "$STOPMESS": lambda: bool(self.board.waiting),
+            "$I_O_ACTCONF": self._mode_is("EXT"),
             "$NUM_IN": lambda: self.profile.sizes["inputs"],
             "$NUM_OUT": lambda: self.profile.sizes["outputs"],
             "$NULLFRAME": _null_frame,

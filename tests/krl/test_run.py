@@ -232,7 +232,7 @@ def test_names_that_are_no_text(run: Run, tmp_path: Path, executor: str) -> None
     file.write_text("DEF a ( )\nHALT\nEND\n", encoding="utf-8")
     page = tmp_path / "\x1b[31m.html"
     status, out, _ = run(None, str(file), "--executor", executor, "--html", str(page))
-    assert (0, f"a\\xff\\x1b.src: halt after 0 s at a\\xff\\x1b.src:2\n") == (
+    assert (0, "a\\xff\\x1b.src: halt after 0 s at a\\xff\\x1b.src:2\n") == (
         status,
         out[: out.index("page")],
     )

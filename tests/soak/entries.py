@@ -341,7 +341,7 @@ def _ran(folder: Path, *options: str | Path) -> Given:
 def corpus(folder: Path, foundry: Foundry) -> Given:
     """A list of repositories and of their files, damaged, in a working folder of its own."""
     listed = {
-        "sources.toml": f'[[source]]\nrepository = "a/b"\nurl = "file:///nothing"\n'
+        "sources.toml": f'[[source]]\nrepository = "a/b"\nurl = "https://example.org/a/b"\n'
         f'commit = "{"0" * 40}"\nlicence = "MIT"\ngeneration = "KRC4"\nnote = "n"\n',
         "checksums.tsv": "repository\tpath\tbytes\tsha256\tkind\tquality\n"
         f"a/b\tx.src\t12\t{'0' * 64}\tuser\treal\n",

@@ -154,6 +154,14 @@ def test_home(go: Go) -> None:
     assert [False, False, False, True, True, True] == told
 
 
+def test_interface_of_the_plc(go: Go) -> None:
+    """$I_O_ACTCONF tells that the PLC has its say, as in mode #EX."""
+    body = program("B=$I_O_ACTCONF\nB=$EXT\n")
+    assert [False] * 2 == [one.fields["value"] for one in go(body).told("assign")]
+    ran = go(body, "t=0 MODE_OP=#EX")
+    assert [True] * 2 == [one.fields["value"] for one in ran.told("assign")]
+
+
 def test_states(go: Go) -> None:
     """$PRO_STATE tells what the program does, $ROB_STOPPED whether the arm stands [SUB-08]."""
     text = program("B=$PRO_STATE1==#P_ACTIVE\nB=$PRO_STATE0==#P_FREE\nB=$ROB_STOPPED\nB=$T1\n")
