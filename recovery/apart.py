@@ -7,6 +7,8 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from typing import ParamSpec, TypeVar
 
+from recovery.orphans import end_with_parent
+
 __all__ = ["apart"]
 
 _P = ParamSpec("_P")
@@ -16,5 +18,6 @@ _T = TypeVar("_T")
 def apart(function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs) -> _T:
     """What the function returns in a fresh process, the only one at work meanwhile."""
     # 'spawn' is the same on every system, and takes over nothing that this process remembers
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, context, end_with_parent) as pool:
         return pool.submit(function, *arguments, **named).result()

@@ -31,6 +31,7 @@ from recovery.joined import together
 from recovery.judge import judge_of
 from recovery.mutation import Mutant
 from recovery.negatives import Negative, NegativeSet
+from recovery.orphans import end_with_parent
 from recovery.progress import Progress, unheard
 from recovery.reduce import Reducer
 from recovery.survey import survey_texts
@@ -313,6 +314,7 @@ _examiners: list[_Examiner] = []  # of a worker process
 
 
 def _prepare(material: Material) -> None:
+    end_with_parent()
     _examiners[:] = [_Examiner(material)]
 
 

@@ -18,6 +18,7 @@ from recovery.assessment import Material
 from recovery.cluster import Clusters, cluster
 from recovery.judge import judge_of
 from recovery.mutation import Mutant
+from recovery.orphans import end_with_parent
 from recovery.progress import Progress, unheard
 from recovery.survey import survey_texts
 
@@ -72,6 +73,7 @@ _materials: list[Material] = []  # of a worker process
 
 
 def _prepare(material: Material) -> None:
+    end_with_parent()
     _materials[:] = [material]
 
 

@@ -24,6 +24,7 @@ from conformance.verdicts import KnownFailures
 from interp.controller.controller import Controller
 from interp.executors import Prepared
 from interp.robot.core import ControlCore
+from recovery.orphans import end_with_parent
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
 
@@ -78,7 +79,7 @@ def try_faults(
     numbers = [known[id(one)] for one in faults]
     shares = [range(first, len(numbers), jobs) for first in range(jobs)]
     judged: dict[int, Verdict] = {}
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(jobs, get_context("spawn"), end_with_parent) as pool:
         tasks = [pool.submit(_judged, [numbers[one] for one in share], ordered) for share in shares]
         for share, task in zip(shares, tasks, strict=True):
             judged.update(zip(share, task.result(), strict=True))

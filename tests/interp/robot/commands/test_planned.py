@@ -146,7 +146,8 @@ def test_what_is_no_number(motions: Motions, what: str) -> None:
         case "speed":
             bad = motions.lin(y=100)
         case _:
-            bad = motions.lin(**{what: math.nan})
+            coordinate: dict[str, Any] = {what: math.nan}
+            bad = motions.lin(**coordinate)
     transaction = Transaction(bad)
     if what == "place":
         gas = OutputCommand(("$OUT", 1), True)
