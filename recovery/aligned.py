@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from recovery.habits import last_two
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 __all__ = ["common_phrases"]
 
@@ -85,7 +86,7 @@ def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
 def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
     """A phrase cut into parts; ``a , a , a`` is one part."""
     out: list[_Part] = []
-    spans = phraser.parts(words) or []
+    spans = phraser.cutter.parts(words) or []
     signs = [phraser.sign(span) for span in spans]
     for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
         # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from recovery.answers import answered
-from recovery.causes import no_judge
+from recovery.cause import no_judge
 from recovery.cluster import cluster
 from recovery.growth import Steps
 from recovery.judge import judge_of

@@ -25,9 +25,9 @@ from grammar.lexer import lexer_of
 from grammar.model import Grammar, Reference, walk
 from grammar.recognizer import Recognizer
 from grammar.sentences import Sentences, Speller
-from recovery.causes import Judge
+from recovery.cause import Judge
 from recovery.cluster import Clusters, cluster
-from recovery.joined import together
+from recovery.joined_edits import together
 from recovery.judge import judge_of
 from recovery.mutation import Mutant
 from recovery.negatives import Negative, NegativeSet

@@ -18,7 +18,8 @@ from grammar.lexer import SKIPPED
 from grammar.recognizer import Recognizer
 from recovery.aligned import common_phrases
 from recovery.layout import Layout
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 __all__ = ["Block", "BlockFinder"]
 
@@ -55,6 +56,7 @@ class BlockFinder:
     def __init__(self, recognizer: Recognizer, layout: Layout, phraser: Phraser) -> None:
         self.recognizer = recognizer
         self.layout = layout
+        self.vocabulary = layout.vocabulary
         self.phraser = phraser
 
     def find(self, opener: str, texts: Sequence[str], meant: frozenset[str]) -> list[Block]:
@@ -105,7 +107,7 @@ class BlockFinder:
         free = [
             w
             for w in leads
-            if w in known or (not self.layout.is_written(w) and self._is_word(w, files))
+            if w in known or (not self.vocabulary.is_written(w) and self._is_word(w, files))
         ]
         good = [w for w in free if _is_end(w) and all(_balanced(opener, w, f) for f in files)]
         return min(good, key=lambda w: (w not in known, w != f"END{opener}", w), default=None)
@@ -138,7 +140,7 @@ class BlockFinder:
                     seen.closers.append(words)
                     blocks.append(open_.pop())
                 elif open_:
-                    free = not self.layout.is_written(lead) and self._is_word(lead, files)
+                    free = not self.vocabulary.is_written(lead) and self._is_word(lead, files)
                     if lead not in outside and (lead in known or free) and not _is_end(lead):
                         open_[-1][lead] += 1
                         seen.middles[lead].append(words)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from grammar.edits import AddAlternative, Address, Edit, Insert, Widen
 from grammar.recognizer import Recognizer
@@ -21,7 +22,8 @@ from recovery.layout import Layout
 from recovery.likeness import Likeness
 from recovery.opening import UNLIKELY, Line, Opening, Ranked
 from recovery.openings import OpeningFinder
-from recovery.phrases import Phraser, Word, repeated
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 __all__ = ["BREADTH_COSTS", "Candidate", "CandidateFinder", "Line"]
 
@@ -131,7 +133,7 @@ class CandidateFinder:
             rank += _NO_LINES
         symbols = (*block.symbols, *self._closing(rule))
         return rank + self.likeness.unlike(rule, symbols), (
-            *self.layout.reserve(k for k in block.keywords if k not in known),
+            *self.layout.vocabulary.reserve(k for k in block.keywords if k not in known),
             AddAlternative(rule, " ".join(symbols)),
         )
 
@@ -169,7 +171,7 @@ class CandidateFinder:
         phrases = sorted({opening.words for opening in openings}, key=str)
         words = [word for phrase in phrases for word in phrase]
         near = self.layout.near(some.rule)
-        units = [_unit(phrase) for phrase in phrases]
+        units = [_unit(phrase) or phrase for phrase in phrases]
         for symbols in common_phrases(self.phraser, units, near):
             yield from self._written(some, words, symbols, looped=units != phrases)
 
@@ -204,7 +206,7 @@ class CandidateFinder:
                         yield rank - _BODY, (*tokens, Insert(rule, place, f"{text}?"))
                         yield rank - _BODY + 1, (*tokens, Insert(rule, place, f"{text}*"))
             case "insert":
-                unit = repeated(symbols)
+                unit = _unit(symbols)
                 if unit is None and not looped:
                     text = _optional(symbols)
                     worth = rank - self.layout.said_so(text)
@@ -240,13 +242,16 @@ def _hope(lines: int, rank: int) -> float:
     return lines * float(BREADTH_COSTS**rank)
 
 
-def _unit(words: tuple[Word, ...]) -> tuple[Word, ...]:
-    """The shortest unit that the words repeat."""
-    for size in range(1, len(words) // 2 + 1):
-        unit = words[:size]
-        if len(words) % size == 0 and unit * (len(words) // size) == words:
+_T = TypeVar("_T")
+
+
+def _unit(items: tuple[_T, ...]) -> tuple[_T, ...] | None:
+    """The shortest unit that symbols or words repeat, where they are more than one of it."""
+    for size in range(1, len(items) // 2 + 1):
+        unit = items[:size]
+        if len(items) % size == 0 and unit * (len(items) // size) == items:
             return unit
-    return words
+    return None
 
 
 def _optional(symbols: tuple[str, ...]) -> str:

@@ -1,102 +1,33 @@
 """Causes: failing lines grouped by the edit that mends them.
 
 Two failures have one cause when the same edit mends both. Shapes give a first grouping; then,
-heaviest group first, candidate edits for some of its lines are tried on all lines still without a
-cause. The best edit takes every line it mends, whatever its shape; lines of the group that it does
-not mend are searched again.
+heaviest group first, the best edit is sought for its lines (`recovery.search`). It takes every line
+it mends, whatever its shape; lines of the group that it does not mend are searched again. In the
+end causes that are one become one (`recovery.joined_causes`).
 """
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
 
-from grammar.edits import AddAlternative, AddToken, Edit
 from grammar.recognizer import Recognizer
-from recovery.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
-from recovery.joined import one_choice, one_form, reach_the_same, together
-from recovery.phrases import Word
+from recovery.candidates import Line
+from recovery.cause import Cause, Judge
+from recovery.joined_causes import joined, sought_together
 from recovery.progress import Progress, unheard
 from recovery.readable import Readable, nothing_readable
-from recovery.trial import Outcome, Trial, changed_rules
+from recovery.search import Search
 from recovery.uncollected import uncollected
 from recovery.whole import WholeFiles
 
-__all__ = ["Cause", "Judge", "Proposal", "Search", "find_causes", "no_judge"]
+__all__ = ["find_causes"]
 
-# Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
-# that a first trial looks at: what is kept after it is tried on everything.
-_SPECIMENS = 3
-_MOST_TRIED = 105
 # Behind the groups that hold back most a quicker look has to do.
 _HEAVY_GROUPS = 12
-_MOST_TRIED_LIGHT = 48
-_FIRST_TRIAL = 8
-# Candidates of each place that are tried before any other, and wider ones where these do most.
-_NARROW = 2
-_WIDER = 4
-# Lines whose openings are compared for what they have in common.
-_VARIED = 6
-_KEPT = 10
-_KEPT_LIGHT = 6
-_KEPT_OF_A_RULE = 3
-_MOST_JUDGED = 24
-_MOST_JUDGED_LIGHT = 12
-_ALIKE = 12
-_SHOWN = 5
-# What the lines themselves count where whole files cannot be read on behind them.
-_LINE_COUNTS = 0.2
-# Causes that a later one is compared with: the first ones hold back most.
-_MOST_JOINED = 40
+# Causes that are sought in a group, one after the other.
 _ROUNDS = 4
 # What the trials of a group leave behind, in the measure of `recovery.uncollected`.
 _GARBAGE = 2_000_000
-# Symbols of an alternative that make it a form of its own, whatever word it begins with.
-_A_FORM = 4
-# What a mended line counts that is of another group than the one a cause is sought for.
-_OTHERS_COUNT = 0.3
-# What an edit gains that mends every line which fails at the same token: it leaves none to explain.
-_ALL_ALIKE = 1.25
-# What an edit loses that reads a word as a name which all lines have as a keyword.
-_LEFT_A_NAME = 0.6
-# What an edit loses that reserves a word which is a name in files that can be read.
-_LOSES_FILES = 0.5
-# What an edit loses that gives some of its lines two readings.
-_TWO_READINGS = 0.97
-
-
-@dataclass(frozen=True, slots=True)
-class Proposal:
-    """An edit that was tried: the lines it mends, lets be read further, and what it costs.
-
-    ``accepts_negatives`` counts programs that must stay rejected and no longer would be.
-    """
-
-    edits: tuple[Edit, ...]
-    mended: frozenset[int]
-    advanced: frozenset[int]
-    breadth: int
-    accepts_negatives: int
-
-
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """Lines with one cause, and what would mend it, the best first."""
-
-    lines: tuple[int, ...]
-    proposals: tuple[Proposal, ...]
-
-
-#: How many negatives an edit would let in.
-Judge = Callable[[Sequence[Edit]], int]
-
-
-def no_judge(edits: Sequence[Edit]) -> int:
-    """Where there are no negatives nothing speaks against an edit."""
-    del edits
-    return 0
 
 
 def find_causes(
@@ -123,8 +54,8 @@ def find_causes(
             causes += _of_group(search, group)
         on_done(1)
     with uncollected(_GARBAGE):
-        causes = search.sought_together(causes)
-    return search.joined(causes)
+        causes = sought_together(search, causes)
+    return joined(search, causes)
 
 
 def _of_group(search: Search, group: Sequence[int]) -> Iterator[Cause]:
@@ -142,328 +73,3 @@ def _of_group(search: Search, group: Sequence[int]) -> Iterator[Cause]:
     if left:
         search.open.difference_update(left)
         yield Cause(tuple(left), ())
-
-
-class Search:
-    """Searches edits for the lines of one grammar."""
-
-    def __init__(
-        self,
-        recognizer: Recognizer,
-        lines: Sequence[Line],
-        weights: Sequence[int],
-        judge: Judge,
-        whole: WholeFiles | None = None,
-        readable: Readable = nothing_readable,
-    ) -> None:
-        self.lines = lines
-        self.weights = weights
-        self.judge = judge
-        self.whole = whole or WholeFiles(recognizer)
-        self.readable = readable
-        self.finder = CandidateFinder(recognizer)
-        self.trial = Trial(recognizer, lines)
-        self.thorough = True
-        self._sought: frozenset[int] = frozenset()
-        self._has_words = False  # whether all lines sought for have words the grammar lacks
-        self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
-        self._meant = frozenset(word for line in lines for _, word in line.keywords)
-        self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
-        self.same_lead: dict[Word, list[int]] = defaultdict(list)
-        for number in sorted(self.open, key=lambda n: (-weights[n], n)):
-            self.same_token[self._token(number)].append(number)
-            self.same_lead[lines[number].words()[0]].append(number)
-
-    def best_for(self, group: Sequence[int]) -> Cause | None:
-        """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
-        members = self._sought = frozenset(group)
-        self._has_words = all(self.lines[n].keywords for n in group)
-        proposals = self._proposals(group)
-        for place, best in enumerate(proposals):
-            # what an edit lets be read further has its first cause here, and others behind it
-            taken = (best.mended & self.open) | (best.advanced & members)
-            if taken:
-                return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
-        return None
-
-    def with_entailed(self, cause: Cause) -> Cause:
-        """The cause with the lines that fail only because of its own."""
-        best = cause.proposals[0]
-        wider = self.trial.wider(best.edits)
-        others = self.open.difference(cause.lines)
-        if wider is None or not others:
-            return cause
-        mended = best.mended.intersection(cause.lines)
-        more = self.whole.entailed(wider, mended, others)
-        return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
-
-    def _proposals(self, group: Sequence[int]) -> list[Proposal]:
-        heavy = sorted(group, key=lambda n: (-self.weights[n], n))
-        specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
-        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
-        alike = self._alike(specimens[0])
-        led_alike = self._led_alike(specimens[0])
-        near = dict.fromkeys((*specimens, *_spread(heavy, _VARIED)))
-        varied = dict.fromkeys((*near, *_spread(alike, _VARIED), *_spread(led_alike, _VARIED)))
-        tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
-        sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
-        sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
-        first = self._tried(tried, most, sample)
-        first += [
-            (candidate, self.trial.outcome(candidate.edits, sample))
-            for candidate in one_choice([c for c, o in first if o.mended])
-        ]
-        proposals = []
-        for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
-            outcome = self.trial.outcome(candidate.edits, self.open)
-            edits, breadth = candidate.edits, candidate.breadth
-            proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
-        kept = [self._names_kept(proposal) for proposal in proposals]
-        useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
-        return self._ranked(list(useful.values()), heavy)[:_SHOWN]
-
-    def _names_kept(self, proposal: Proposal) -> Proposal:
-        """The proposal; where files have a word as a name that it reserves, with that left one."""
-        if not self._loses(proposal.edits):
-            return proposal
-        layout = self.finder.layout
-        edits = layout.still_names(proposal.edits)
-        if layout.names is None or edits is None or self._loses(edits):
-            return proposal
-        outcome = self.trial.outcome(edits, self.open)
-        breadth = proposal.breadth + layout.width(layout.names) // 2
-        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
-
-    def _loses(self, edits: tuple[Edit, ...]) -> bool:
-        """Whether files that can be read cannot be any more."""
-        words = [edit.name for edit in edits if isinstance(edit, AddToken)]
-        wider = self.trial.wider(edits) if words else None
-        return wider is not None and self.readable.is_lost(wider, words)
-
-    def _tried(
-        self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
-    ) -> list[tuple[Candidate, Outcome]]:
-        """At most so many candidates with what they do to a sample of lines.
-
-        First the narrowest at each place; then the wider ones where these do most.
-        """
-        at: dict[object, list[Candidate]] = defaultdict(list)
-        for candidate in candidates:
-            at[candidate.place].append(candidate)
-        narrow = [c for c in candidates if c in at[c.place][:_NARROW]][: most - most // 3]
-        out = [(c, self.trial.outcome(c.edits, sample)) for c in narrow]
-        gains: dict[object, tuple[float, int]] = {}
-        for c, outcome in out:
-            gain = self._gain(outcome)
-            if gain:
-                gains[c.place] = max((gain, -c.breadth), gains.get(c.place, (0.0, 0)))
-        hopeful = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
-        wide = [c for place in hopeful for c in at[place][_NARROW : _NARROW + _WIDER]]
-        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // 3]]
-
-    def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
-        """The best of the blocks that a line may open, with the negatives they let in."""
-        line = self.lines[number]
-        opener = self._lead(line)
-        if not opener:
-            return []
-        texts = self.whole.texts(heavy)
-        found = [
-            (self.whole.share(wider, heavy), candidate)
-            for candidate in self.finder.find_blocks(line, opener, texts, self._meant)
-            if (wider := self.trial.wider(candidate.edits)) is not None
-        ]
-        found.sort(
-            key=lambda pair: (-pair[0] * BREADTH_COSTS ** pair[1].breadth, str(pair[1].edits))
-        )
-        return [
-            (candidate, self.judge(candidate.edits)) for _, candidate in found[:_KEPT_OF_A_RULE]
-        ]
-
-    def _lead(self, line: Line) -> str:
-        """The keyword or would-be keyword that a line begins with."""
-        kind, keyword = line.words()[0]
-        lexer = self.finder.recognizer.lexer
-        return keyword or (lexer.display[kind] if lexer.is_keyword(kind) else "")
-
-    def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
-        """The edits tried on all lines, whatever their cause."""
-        outcome = self.trial.outcome(edits)
-        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
-
-    def sought_together(self, causes: Sequence[Cause]) -> list[Cause]:
-        """Causes whose lines are led by the same word made one where one edit mends them.
-
-        Each was sought for its own lines alone: what reads all of them may never have been tried.
-        """
-        led: dict[str, list[Cause]] = defaultdict(list)
-        for cause in causes[:_MOST_JOINED]:
-            leads = {self._lead(self.lines[n]) for n in cause.lines} if cause.proposals else set()
-            if len(leads) == 1:
-                led[leads.pop()].append(cause)
-        out = list(causes)
-        for word, several in sorted(led.items()):
-            if word and len(several) > 1:
-                one, parts = self._found_for_all(several)
-                if one is not None:
-                    place = out.index(parts[0])
-                    out = [cause for cause in out if cause not in parts]
-                    out.insert(place, one)
-        return out
-
-    def _found_for_all(self, causes: Sequence[Cause]) -> tuple[Cause | None, list[Cause]]:
-        """A cause in place of several of the causes, and which; nothing where there is none."""
-        lines = sorted(n for cause in causes for n in cause.lines)
-        self.thorough = True
-        self.open = set(lines)
-        found = self.best_for(lines)
-        if found is None:
-            return None, []
-        best = found.proposals[0]
-        parts = [
-            cause
-            for cause in causes
-            if best.mended.issuperset(cause.proposals[0].mended.intersection(cause.lines))
-        ]
-        negatives = sum(cause.proposals[0].accepts_negatives for cause in parts)
-        if len(parts) < 2 or best.accepts_negatives > negatives:
-            return None, []
-        best = self.proposal(best.edits, best.breadth)
-        members = tuple(sorted(n for cause in parts for n in cause.lines))
-        return Cause(members, (best, *found.proposals[1:])), parts
-
-    def joined(self, causes: Sequence[Cause]) -> list[Cause]:
-        """Causes of which one is missing in several places made one."""
-        out: list[Cause] = []
-        for cause in causes:
-            for place, other in enumerate(out[:_MOST_JOINED] if cause.proposals else ()):
-                one = self._as_one(other, cause) if other.proposals else None
-                if one is not None:
-                    out[place] = one
-                    break
-            else:
-                out.append(cause)
-        return out
-
-    def _as_one(self, first: Cause, second: Cause) -> Cause | None:
-        """The two as one cause, where one edit mends what the best edits of both mend."""
-        one, other = first.proposals[0], second.proposals[0]
-        negatives = one.accepts_negatives + other.accepts_negatives
-        lines = tuple(sorted({*first.lines, *second.lines}))
-        for edits, breadth in self._for_both(one, other):
-            both = self.proposal(edits, breadth)
-            if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
-                others = (p for p in first.proposals if p.edits != both.edits)
-                return Cause(lines, (both, *others)[:_SHOWN])
-        return None
-
-    def _for_both(self, one: Proposal, other: Proposal) -> Iterator[tuple[tuple[Edit, ...], int]]:
-        """Edits that might do what two proposals do."""
-        layout = self.finder.layout
-        if changed_rules(one.edits) == changed_rules(other.edits):
-            yield other.edits, other.breadth
-        pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
-        for choice in one_choice(pair, self._may_be_chosen):
-            yield choice.edits, choice.breadth
-        form = one_form(layout, one.edits, other.edits)
-        if form is not None:
-            yield form, max(one.breadth, other.breadth) + 1
-        if reach_the_same(layout, one.edits, other.edits):
-            yield together(one.edits, other.edits), max(one.breadth, other.breadth) + 1
-
-    def _may_be_chosen(self, edit: Edit, place: int) -> bool:
-        """Whether words there are a choice: those that begin alternatives name constructs."""
-        if not isinstance(edit, AddAlternative) or place > 0:
-            return True
-        is_form = len(edit.text.split(" ")) >= _A_FORM
-        return is_form or self.finder.layout.is_set_of_words(edit.rule)
-
-    def _alike(self, number: int) -> list[int]:
-        """Other lines that fail at the same token, whatever else they look like."""
-        return [n for n in self.same_token[self._token(number)] if n in self.open]
-
-    def _led_alike(self, number: int) -> list[int]:
-        """Other lines that begin with the same kind of token or the same word."""
-        return [n for n in self.same_lead[self.lines[number].words()[0]] if n in self.open]
-
-    def _token(self, number: int) -> tuple[int, str | None]:
-        line = self.lines[number]
-        return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
-
-    def _gain(self, outcome: Outcome | Proposal) -> float:
-        """What the lines count that are mended; those a cause is sought for count most."""
-        sought = self._sought
-        whole = sum(self.weights[n] for n in outcome.mended & sought)
-        further = sum(self.weights[n] for n in outcome.advanced & sought)
-        if not whole and not further:
-            return 0.0
-        others = sum(self.weights[n] for n in outcome.mended - sought)
-        return whole + further / 4 + others * _OTHERS_COUNT
-
-    def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
-        """Gain, less a little for all that an edit lets in besides, and for a word left a name."""
-        worth = self._gain(outcome) * BREADTH_COSTS**candidate.breadth
-        reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
-        return worth * _LEFT_A_NAME if self._has_words and not reserves else worth
-
-    def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
-        """The most worthwhile candidates, first those that let in no negatives."""
-        useful = self._diverse(outcomes)
-        useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
-        clean: list[tuple[Candidate, int]] = []
-        costly: list[tuple[Candidate, int]] = []
-        in_rule: Counter[str] = Counter()
-        judged = 0
-        for candidate, _ in useful:
-            rule = getattr(candidate.edits[-1], "rule", "")
-            if in_rule[rule] >= _KEPT_OF_A_RULE:
-                continue
-            negatives = self.judge(candidate.edits)
-            judged += 1
-            in_rule[rule] += not negatives
-            (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == (_KEPT if self.thorough else _KEPT_LIGHT) or judged == (
-                _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
-            ):
-                break
-        return clean + costly[: _KEPT - len(clean)]
-
-    def _diverse(
-        self, outcomes: list[tuple[Candidate, Outcome]]
-    ) -> list[tuple[Candidate, Outcome]]:
-        """Candidates that do something; of those that do the same the most restrictive few."""
-        alike: dict[Outcome, list[tuple[Candidate, Outcome]]] = defaultdict(list)
-        for candidate, outcome in outcomes:
-            if outcome.mended or outcome.advanced:
-                alike[outcome].append((candidate, outcome))
-        return [
-            pair
-            for same in alike.values()
-            for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[:_ALIKE]
-        ]
-
-    def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
-        """No negatives first; then by worth, and by how much of whole files can be read."""
-        worth = {}
-        alike = self._alike(lines[0])
-        for p in proposals:
-            wider = self.trial.wider(p.edits)
-            share = 0.0 if wider is None else self.whole.share(wider, lines)
-            worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
-            if p.mended.issuperset(alike):
-                worth[p.edits] *= _ALL_ALIKE
-            if self._loses(p.edits):
-                worth[p.edits] *= _LOSES_FILES
-            if self.trial.is_ambiguous(p.edits, p.mended):
-                worth[p.edits] *= _TWO_READINGS
-        return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
-
-
-_T = TypeVar("_T")
-
-
-def _spread(items: Sequence[_T], count: int) -> list[_T]:
-    """The first of ``items``, and others evenly from the rest."""
-    if len(items) <= count:
-        return list(items)
-    return [items[i * len(items) // count] for i in range(count)]

@@ -11,7 +11,8 @@ from functools import partial
 from grammar.failures import Context, FailureFinder
 from grammar.recognizer import Recognizer
 from recovery.candidates import Line
-from recovery.causes import Cause, Judge, Proposal, find_causes, no_judge
+from recovery.cause import Cause, Judge, Proposal, no_judge
+from recovery.causes import find_causes
 from recovery.progress import Progress, unheard
 from recovery.readable import Readable
 from recovery.shapes import Shape, Shaper

@@ -8,7 +8,7 @@ from functools import cache
 from grammar.edits import Edit
 from grammar.g4 import Grammar
 from grammar.recognizer import Recognizer
-from recovery.causes import Judge
+from recovery.cause import Judge
 from recovery.invalid import generate
 from recovery.negatives import Negative, NegativeSet
 from recovery.trial import edited

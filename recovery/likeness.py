@@ -26,6 +26,7 @@ class Likeness:
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
+        self.vocabulary = layout.vocabulary
         self._classes: dict[str, list[list[str]]] = {}
         self._leading_words: dict[str, frozenset[str]] = {}
 
@@ -50,11 +51,11 @@ class Likeness:
         if self.layout.only_passes_on(rule):
             return 0
         kinds = {_kind(old[0]) for old in known if old}
-        if len(symbols) == 1 and self.layout.has_choice(rule) and self.layout.is_set_of_words(rule):
+        if len(symbols) == 1 and self._is_one_of_words(rule):
             return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
         if self.gathers(rule):
             if not self._is_single(symbols):
-                if self.layout.words_of(rule):
+                if self.vocabulary.words_of(rule):
                     return 3 * _LIKE  # each is a word, and this is none
                 return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
             if not self.layout.is_free(symbols[0]):
@@ -66,6 +67,10 @@ class Likeness:
         if best >= _ALIKE and len(known) > 1:
             return -round(_LIKE * best)
         return 2 + max(0, _TOGETHER - len(known))
+
+    def _is_one_of_words(self, rule: str) -> bool:
+        """Whether a rule is a choice of words."""
+        return self.layout.has_choice(rule) and self.vocabulary.is_set_of_words(rule)
 
     def _is_known_by(self, rule: str, word: str) -> bool:
         """Whether one of the rules that a rule gathers is known by a word."""
@@ -102,9 +107,7 @@ class Likeness:
     def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
         """Whether a rule is one kind of statement, known by its words, and the symbols another."""
         leads = self._leads(rule)
-        another_word = (
-            self.layout.has_choice(rule) and self.layout.is_set_of_words(rule) and len(symbols) == 1
-        )
+        another_word = len(symbols) == 1 and self._is_one_of_words(rule)
         known = "" in leads or symbols[0] in leads or len(leads) >= HUB
         return rule in self._gathered and not (known or another_word)
 
@@ -162,9 +165,9 @@ class Likeness:
 
     def _words(self, element: Element) -> list[str]:
         """A reserved word, or those of a choice; an empty one for anything else."""
-        if isinstance(element, Reference) and self.layout.is_keyword(element):
+        if isinstance(element, Reference) and self.vocabulary.is_keyword(element):
             return [element.name]
-        if isinstance(element, Group) and self.layout.is_keyword(element):
+        if isinstance(element, Group) and self.vocabulary.is_keyword(element):
             return [w for a in element.alternatives for w in self._words(a.elements[0])]
         return [""]
 

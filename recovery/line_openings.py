@@ -15,7 +15,8 @@ from grammar.recognizer import Configuration, State
 from recovery.layout import Layout
 from recovery.likeness import Likeness
 from recovery.opening import UNLIKELY, Opening, Ranked, places_of, sites_of
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 __all__ = ["LineOpenings"]
 
@@ -128,7 +129,8 @@ class LineOpenings:
 
     def _readers(self, kinds: tuple[int, ...]) -> tuple[str, ...]:
         """Rules of which the line is a whole sentence or the first line."""
-        whole = self.phraser.rules_for(kinds) | frozenset(self.phraser.opened_by(kinds))
+        readers = self.phraser.readers
+        whole = readers.rules_for(kinds) | frozenset(readers.opened_by(kinds))
         return tuple(sorted(whole - self.layout.line_ends))
 
     def as_new_line(self, before: State, words: list[Word]) -> Iterator[Opening]:

@@ -8,7 +8,7 @@ from typing import Literal as OneOf
 from grammar.edits import Address, Edit
 from grammar.failures import Form
 from grammar.recognizer import Configuration, Recognizer, State
-from recovery.phrases import Word
+from recovery.parts import Word
 
 __all__ = ["UNLIKELY", "Line", "Opening", "Ranked", "places_of", "sites_of"]
 

@@ -18,7 +18,8 @@ from recovery.layout import Layout
 from recovery.likeness import Likeness
 from recovery.line_openings import LineOpenings
 from recovery.opening import UNLIKELY, Line, Opening, Ranked, places_of, sites_of
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 __all__ = ["OpeningFinder"]
 
@@ -37,6 +38,7 @@ class OpeningFinder:
         self.recognizer = layout.recognizer
         self.grammar = layout.grammar
         self.layout = layout
+        self.vocabulary = layout.vocabulary
         self.likeness = likeness
         self.phraser = phraser
         self._lines = LineOpenings(layout, likeness, phraser)
@@ -71,7 +73,7 @@ class OpeningFinder:
 
     def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
         """The edits that reserve the would-be keywords among the words."""
-        return self.layout.reserve(keyword for _, keyword in words if keyword)
+        return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
 
     def block_rules(self, line: Line) -> list[str]:
         """Rules that can begin where a line begins and whose alternatives are lines or blocks."""
@@ -247,7 +249,7 @@ class OpeningFinder:
         kind, keyword = words[0]
         if keyword is None and kind < 0:
             return
-        if before.name in self.phraser.rules_for(tuple(k for k, _ in words[1:])):
+        if before.name in self.phraser.readers.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
             rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
             rank -= self.layout.said_so(text)
@@ -261,7 +263,7 @@ class OpeningFinder:
         elements = self.layout.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
-        for block in self.phraser.opened_by([kind for kind, _ in words]):
+        for block in self.phraser.readers.opened_by([kind for kind, _ in words]):
             if isinstance(inner, Reference) and not inner.is_token and inner.name != block:
                 hub = inner.name
                 if len(self.grammar.by_name[hub].alternatives) > 1:
@@ -286,8 +288,8 @@ class OpeningFinder:
         if called and (layout.has_choice(called) or not (whole and layout.is_hub(rule))):
             rank = layout.width(called) + 8
             yield Opening("alternative", called, (1, 1), tuple(words), rank)
-        leading = place[-1] == 1 and layout.is_keyword(element)
-        closing = place[-1] == len(elements) and layout.is_keyword(element)
+        leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
+        closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
         lexer = self.recognizer.lexer
         word = len(words) == 1 and (words[0][1] or lexer.is_keyword(words[0][0]))
         if len(place) > 2 and len(elements) == 1:
@@ -303,7 +305,7 @@ class OpeningFinder:
             rank += 2 * UNLIKELY  # there is hardly anything that the two words have in common
         if isinstance(element, Repeat):
             rank += UNLIKELY  # one more thing in a loop made for something else
-        if layout.is_keyword(element) and (len(words) > 1 or closing):
+        if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
             rank += UNLIKELY
         yield Opening("widen", rule, place, tuple(words), rank)
 
@@ -338,7 +340,7 @@ class OpeningFinder:
                     ends = (left_out[0] is sequence.elements[0]) or last[-1] > len(
                         sequence.elements
                     )
-                    if ends and any(map(self.layout.is_keyword, left_out)):
+                    if ends and any(map(self.vocabulary.is_keyword, left_out)):
                         rank += 2 * UNLIKELY  # the words that begin and close a line or a block
                     yield rank, (MakeOptional(rule, place, count),)
                     break

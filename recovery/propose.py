@@ -10,7 +10,7 @@ from grammar.ambiguity import is_ambiguous
 from grammar.edits import AddToken, apply, describe, to_data
 from grammar.paths import Paths
 from grammar.recognizer import Recognizer
-from recovery.causes import Proposal
+from recovery.cause import Proposal
 from recovery.cluster import Cluster, Clusters
 from recovery.ingest import Skipped, decode, read
 from recovery.survey import Survey, SurveyedFile

@@ -40,6 +40,8 @@ _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
 _FARTHEST: Final = 10_000_000
 _PATHS: Final = frozenset({"LIN", "CIRC", "SLIN", "SCIRC"})
 _STATUS_BITS: Final = 7
+#: The message that a motion leads to where the arm is [MOT-11].
+_LENGTH_ZERO: Final = 3171
 _KINDS: Final = {
     "started": "motion_start",
     "ended": "motion_end",
@@ -109,7 +111,7 @@ class Moving(World):
         #: Calls of triggers that have fired and were not entered yet.
         self.fired: list[CallCommand] = []
         self.has_stopped = False
-        #: Every motion that was planned, in order.
+        #: Every motion that was planned and leads anywhere, in order.
         self.points: list[PlannedPoint] = []
         #: Where the motion stands in the program that started last.
         self.running: At | None = None
@@ -151,16 +153,17 @@ class Moving(World):
         arm = self.core.arm
         target = arm.target() if isinstance(arm, _Aiming) else None
         self._ways[motion.number] = _Way(built, task, target)
-        self.points.append(
-            PlannedPoint(
-                motion.number,
-                motion.kind,
-                motion.at,
-                target,
-                motion.settings.placement.tool,
-                bool(motion.criteria),
+        if _LENGTH_ZERO not in command.notices:
+            self.points.append(
+                PlannedPoint(
+                    motion.number,
+                    motion.kind,
+                    motion.at,
+                    target,
+                    motion.settings.placement.tool,
+                    bool(motion.criteria),
+                )
             )
-        )
         if task.level is not None:
             task.level.motions.add(motion.number)
             task.level.has_moved = True
@@ -317,8 +320,10 @@ class Moving(World):
             self.following.placed(self.clock.now, way.built.motion.settings.placement)
 
     def _ended(self, event: CoreEvent, way: _Way) -> None:
-        motion, task = way.built.motion, way.task
+        motion, task, command = way.built.motion, way.task, event.command
         self._gone(motion.number, task, keeps=True)
+        if isinstance(command, MotionCommand) and _LENGTH_ZERO in command.notices:
+            task.spent += self.profile.requests // 2  # it took no time: a loop of such has to wait
         for owner, at, path, value in self._at_end.pop(motion.number, ()):
             self.put_at(owner.name, at, path, value)
         if self._is_other_way(motion):

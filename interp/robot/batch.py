@@ -15,13 +15,17 @@ from interp.robot.core import ControlCore, Switch
 
 __all__ = ["BatchCore"]
 
+_MOST_HELD = 256
+"""Motions in a batch: a program may loop over approximated motions for ever (a choice of ours)."""
+
 
 class BatchCore(ControlCore):
     """A control core that holds transactions with motions back and loads them as one.
 
-    The batch goes when its last motion has no approximation criterion, or with `release`. What
-    has no motion and no link to the batch is loaded at once. Motions that are held are not
-    `pending`: the program goes on, however deep its advance run may be.
+    The batch goes when its last motion has no approximation criterion, with `release`, or once so
+    many motions are held that it might never. What has no motion and no link to the batch is loaded
+    at once. Motions that are held are not `pending`: the program goes on, however deep its advance
+    run may be.
     """
 
     def __init__(self, arm: Arm, switch: Switch, cycle: int) -> None:
@@ -40,7 +44,8 @@ class BatchCore(ControlCore):
             return super().load(now, transaction)
         self._check(_joined((*self._held, transaction)))
         last = motions[-1] if motions else None
-        if not isinstance(last, MotionCommand) or last.motion.criteria:
+        waits = not isinstance(last, MotionCommand) or bool(last.motion.criteria)
+        if waits and self.held + len(motions) < _MOST_HELD:
             self._held.append(transaction)
             return None
         return self._load_batch(now, transaction)

@@ -20,6 +20,7 @@ from interp.robot.kinematics import Array
 from interp.robot.limits import AxisLimits, Ceiling, PathLimits, ceiling_of
 from interp.robot.machine import ROBOT_AXES, CartesianLimits, Machine
 from interp.robot.profile import Bounds, ramp
+from interp.robot.targets import check_path
 from interp.robot.timeline import tool_tangents
 from interp.robot.tracks import Piece, Track
 
@@ -98,6 +99,8 @@ def blend_of(
     course = _common_course(first, second, zone)
     if course is None or not isinstance(one, CourseCurve) or not isinstance(other, CourseCurve):
         curve: Curve = BlendedAxes(one, zone.before, other, zone.after)
+        if not (one.is_straight and other.is_straight):  # a parabola keeps between its points
+            check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
         paths = _tool_limits(first, second, curve, machine)
     else:
         (start,) = one.axes(np.array([1.0 - zone.before]))

@@ -25,11 +25,14 @@ from interp.robot.machine import ROBOT_AXES
 from interp.robot.programmed import Programmed
 from interp.robot.ranges import with_ranges
 from interp.robot.spline import Knot, Segment, chains_of, courses_of
+from interp.robot.targets import check_path
 from interp.robot.tracks import Piece, Track, Tracks
 
 __all__ = ["block"]
 
 _STILL = 1e-6  # mm or degrees
+_CLOSE = np.linspace(0.0, 1.0, 257)
+"""Of u, where a spline of axes is looked at for software limits: it may swing beyond its points."""
 _MOST_SEGMENTS = 1000
 """Segments of one block; where the limit of a controller lies is not published."""
 
@@ -122,6 +125,7 @@ def _pieces(
             ):
                 piece = tracks.still(np.concatenate((axes, travelled[place])), settings)
             else:
+                check_path(tracks.machine.externals, others.at(_CLOSE))
                 piece = tracks.along(course, axes, others, "SPL", settings)
                 if place:
                     piece = replace(piece, gear=courses[place - 1].length / course.length)
@@ -188,6 +192,7 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             else:
                 part_of = Piecewise(spline, float(knots[place - first]), spans[place])
                 curve = JointSpline(tracks.arm, own.placement, part_of)
+                check_path(tracks.every, part_of.at(_CLOSE))
             limits = tracks.programmed(own)
             ceiling = ceiling_of(curve, tracks.limits, limits, tracks.reduced(curve, own))
             gear = spans[place - 1] / spans[place] if place > first else 0.0

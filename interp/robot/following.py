@@ -55,8 +55,8 @@ class PathRecord:
 class Following:
     """Sends the set-points of a path to a robot as time goes on.
 
-    ``start`` is where the arm stands at time 0, ``cycle`` the interpolation cycle in µs, a multiple
-    of the robot's step.
+    ``start`` is where the arm stands at time 0, as `Machine.standing` takes it; ``cycle`` the
+    interpolation cycle in µs, a multiple of the robot's step.
     """
 
     def __init__(
@@ -64,6 +64,7 @@ class Following:
     ) -> None:
         if robot.step and cycle % robot.step:
             raise ValueError(f"a cycle of {cycle} µs is no multiple of {robot.step} µs")
+        stands = machine.standing(start)
         self._arm = arm
         self._robot = robot
         self._kinematics = Kinematics(machine)
@@ -72,10 +73,10 @@ class Following:
         self._place_times = [0]
         self._placements = [Placement(robroot=machine.robroot)]
         self._times: list[npt.NDArray[np.int64]] = [np.zeros(1, dtype=np.int64)]
-        self._axes: list[Array] = [np.array([start], dtype=np.float64)]
+        self._axes: list[Array] = [np.array([stands])]
         self._measured: list[Array | None] = [None]
         self._last: Array | None = None
-        robot.stand(start)
+        robot.stand(stands)
 
     @property
     def chunk(self) -> int | None:

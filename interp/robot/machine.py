@@ -15,7 +15,7 @@ $MAMES tells where the axes are mastered and has no part in the chain.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -129,6 +129,15 @@ class Machine:
     acceleration: CartesianLimits
     t1_speed: float
     t1_reduction: float
+
+    def standing(self, axes: Sequence[float]) -> tuple[float, ...]:
+        """All axes, where those that are given stand: others at 0, or the limit nearest to it.
+
+        Degrees, or mm for linear ones, robot axes first; what there is no axis for is left out.
+        """
+        every = (*self.axes, *self.externals)
+        rest = (min(max(0.0, axis.lower), axis.upper) for axis in every[len(axes) :])
+        return (*(float(value) for value in axes[: len(every)]), *rest)
 
     @property
     def elbow(self) -> float:

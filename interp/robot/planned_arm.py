@@ -68,20 +68,17 @@ class _Mark:
 class PlannedArm:
     """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
 
-    ``start`` are the axes in degrees or mm, robot axes first; external ones left out are at 0.
-    With ``is_selected`` the first motion has to be a PTP that leaves nothing open [MOT-10]. Raises
-    `Fault` 1447 for a start beyond a software limit switch, 1443 for a first motion that is not
-    allowed as such.
+    ``start`` are the axes as `Machine.standing` takes them. With ``is_selected`` the first motion
+    has to be a PTP that leaves nothing open [MOT-10]. Raises `Fault` 1447 for a start beyond a
+    software limit switch, 1443 for a first motion that is not allowed as such.
     """
 
     def __init__(
         self, machine: Machine, start: Sequence[float], *, is_selected: bool = True
     ) -> None:
         self._tracks = Tracks(machine)
-        every = (*machine.axes, *machine.externals)
-        axes = np.zeros(len(every))
-        axes[: len(start)] = start[: len(every)]
-        check_limits(every, axes.tolist())
+        axes = np.array(machine.standing(start))
+        check_limits((*machine.axes, *machine.externals), axes.tolist())
         self._plan = _Plan(Programmed(self._tracks.arm, axes))
         #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
         self._brakes: list[_Plan | None] = []

@@ -94,6 +94,7 @@ class Tracks:
         self.machine = machine
         self.arm = Arm(machine)
         self.limits = axis_limits(machine)
+        self.every = (*machine.axes, *machine.externals)
 
     def track(
         self, motion: Motion, before: Programmed, *, is_after_abort: bool = False
@@ -264,8 +265,7 @@ class Tracks:
         speeds = np.minimum(np.sqrt(2.0 * gain * np.minimum(grid, 1.0 - grid)), most)
         over = (np.abs(first) * speeds[:, None] > self.limits.velocity).any(axis=0)
         if over.any():
-            axes = (*self.machine.axes, *self.machine.externals)
-            name = axes[int(np.argmax(over))].name
+            name = self.every[int(np.argmax(over))].name
             text = f"the path would move {name} faster than it can"
             raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
 

@@ -6,7 +6,8 @@ from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from recovery.aligned import common_phrases
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
 PHRASER = Phraser(RECOGNIZER)

@@ -11,7 +11,8 @@ from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from recovery.candidates import Line
-from recovery.causes import Cause, Judge, find_causes
+from recovery.cause import Cause, Judge
+from recovery.causes import find_causes
 from recovery.survey import survey_texts
 from recovery.trial import Trial
 

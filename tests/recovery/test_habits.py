@@ -2,7 +2,7 @@
 
 import pytest
 
-from grammar.edits import AddAlternative, AddToken, Insert, RemoveElement, apply
+from grammar.edits import Insert, RemoveElement, apply
 from grammar.g4 import read
 from grammar.recognizer import Recognizer
 from recovery.cluster import cluster
@@ -141,14 +141,3 @@ def test_an_alternative_with_more_around_it_is_an_extension() -> None:
     assert likeness.extends("label", ["SET", "name", "':'"])
     assert not likeness.extends("turn", ["TURN"])
     assert not likeness.extends("label", ["name", "SET", "':'"])
-
-
-def test_a_reserved_word_may_stay_a_name() -> None:
-    """It is entered where words are that are names elsewhere, and in no list of other words."""
-    edits = (AddToken("NEW"), AddAlternative("statement", "NEW name"))
-    assert "name" == LAYOUT.names
-    assert (
-        AddToken("NEW"),
-        AddAlternative("name", "NEW"),
-        AddAlternative("statement", "NEW name"),
-    ) == LAYOUT.still_names(edits)

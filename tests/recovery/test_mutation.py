@@ -12,7 +12,7 @@ from grammar.edits import AddAlternative
 from grammar.recognizer import Recognizer
 from recovery import assessment
 from recovery.assessment import Material, Verdict, assess, covering, examine, figures
-from recovery.causes import Proposal, no_judge
+from recovery.cause import Proposal, no_judge
 from recovery.cluster import Clusters, cluster
 from recovery.mutation import Mutant, combined, mutants
 from recovery.specimens import choose

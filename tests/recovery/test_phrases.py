@@ -11,7 +11,8 @@ from grammar.g4 import read, read_file
 from grammar.generate import GRAMMAR
 from grammar.network import network_of
 from grammar.recognizer import Recognizer
-from recovery.phrases import Phraser, Word
+from recovery.parts import Word
+from recovery.phrases import Phraser
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
@@ -24,10 +25,6 @@ def words_of(text: str, *keywords: str) -> list[Word]:
     lexer = RECOGNIZER.lexer
     lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexer.kinds[lexeme] != -1]
     return [(lexer.kinds[x], x if x in keywords else None) for x in lexemes]
-
-
-def kinds_of(text: str) -> tuple[int, ...]:
-    return tuple(kind for kind, _ in words_of(text))
 
 
 def phrases(text: str, *keywords: str) -> list[str]:
@@ -105,37 +102,7 @@ def test_rules_near_by_are_tried_too(text: str) -> None:
     assert all(reads(phrase, words) for phrase in more)
 
 
-# -------------------------------------------------------------------------------- rules
-
-
-@pytest.mark.parametrize(
-    ("text", "inside", "outside"),
-    [
-        ("1", {"literal", "primary", "factor", "sum", "expression"}, {"variable", "index", "call"}),
-        ("A", {"variable", "target", "type", "expression"}, {"literal", "call", "relation"}),
-        ("[ 1 ]", {"index"}, {"variable", "expression"}),
-        ("F ( )", {"call", "expression", "interruptAction"}, {"variable", "statement"}),
-        ("A 1", {"component"}, {"expression", "variable"}),
-        ("1 +", set(), {"sum", "expression"}),
-    ],
-)
-def test_rules_are_those_of_which_the_tokens_are_a_sentence(
-    text: str, inside: set[str], outside: set[str]
-) -> None:
-    """A rule is found when the tokens are the whole of it, no more and no less."""
-    found = PHRASER.rules_for(kinds_of(text))
-    assert inside <= found
-    assert not outside & found
-
-
-def test_a_block_is_known_by_the_line_that_opens_it() -> None:
-    """The rules of several lines that begin with a line, and no others."""
-    opened = PHRASER.opened_by(kinds_of("IF A THEN\n"))
-    assert "ifStatement" in opened
-    assert not {"forStatement", "simpleStatement", "expression"} & set(opened)
-    assert "loopStatement" in PHRASER.opened_by(kinds_of("LOOP\n"))
-    assert "ifStatement" not in PHRASER.opened_by(kinds_of("IF A\n"))
-    assert "halt" not in PHRASER.opened_by(kinds_of("HALT"))
+# ------------------------------------------------------------------------------- breadth
 
 
 def test_tokens_let_in_less_than_rules_and_narrow_rules_less_than_wide_ones() -> None:
@@ -165,13 +132,7 @@ def test_phrases_are_made_for_any_grammar() -> None:
     """Nothing is taken from KRL: a grammar of three tokens has its phrases too."""
     phraser = Phraser(Recognizer(read(SMALL)))
     kinds = phraser.recognizer.kinds("A B")[:-1]
-    assert {"pair", "unused"} <= phraser.rules_for(tuple(kinds))
+    assert {"pair", "unused"} <= phraser.readers.rules_for(tuple(kinds))
     written = [" ".join(symbols) for symbols in phraser.phrases([(k, None) for k in kinds])]
     assert "A B" == written[0]
     assert {"pair", "unused"} & set(written)
-
-
-def test_enormous_lines_are_not_cut() -> None:
-    """A line longer than any statement has no parts: to find them would take hours."""
-    assert [1] * 119 == [len(part) for part in PHRASER.parts(words_of("(" * 119)) or []]
-    assert PHRASER.parts(words_of("(" * 3_000)) is None

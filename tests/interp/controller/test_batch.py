@@ -36,6 +36,14 @@ def test_batch_is_longer_than_the_advance_run(go: Go) -> None:
     assert [11.0] == ran.times("end")
 
 
+def test_a_batch_that_might_never_end_goes(go: Go) -> None:
+    """A loop over approximated motions moves the arm: a batch has at most 256 of them."""
+    body = "LOOP\nPTP {A1 1} C_PTP\nENDLOOP\n"
+    ran = go(program(body), until=5.0, core=BatchCore)
+    assert [0.0, 1.0, 2.0, 3.0, 4.0, 5.0] == ran.times("motion_start")
+    assert 1 + 256 == len(ran.times("motion_planned"))
+
+
 def test_advance_stop_lets_it_go(go: Go) -> None:
     """What stops the advance run ends a batch: its last point is exact [ADV-04]."""
     ran = go(program("PTP {A1 1} C_PTP\n$OUT[1]=TRUE\nPTP {A1 2} C_PTP\n"), core=BatchCore)

@@ -1,5 +1,7 @@
 """The controller with the arm as it is planned: what it shows of it, and how it stops."""
 
+from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -24,7 +26,13 @@ FIRST = FRAMES + HOME + "PTP {X 500,Y 100,Z 600,A 180,B 0,C 180,S 2}\n"
 class Ran:
     """A run with the planned arm."""
 
-    def __init__(self, text: str, script: str = "", following: Any = None) -> None:
+    def __init__(
+        self,
+        text: str,
+        script: str = "",
+        following: Any = None,
+        until: int = 60_000_000,
+    ) -> None:
         machine = default_machine()
         self.arm = PlannedArm(machine, START)
         trace = Trace(is_full=True)
@@ -40,7 +48,7 @@ class Ran:
             machine=machine,
             following=following,
         )
-        self.outcome = self.controller.run(60_000_000)
+        self.outcome = self.controller.run(until)
         self.events = trace.events
 
     def times(self, kind: str, **fields: Any) -> list[int]:
@@ -125,10 +133,10 @@ def test_actual_position_in_frames_set_behind_the_last_motion() -> None:
     """Once the arm stands the main run has caught up: PTP $POS_ACT leads nowhere [MOT-18]."""
     frames = "$TOOL={X 0,Y 0,Z 150,A 0,B 30,C 0}\n$BASE={X 300,Y 20,Z 10,A 45,B 0,C 0}\n"
     ran = Ran(program(f"LIN {{Y 100,Z 700}}\n{frames}PTP $POS_ACT\n"))
-    before, after = (point.position for point in ran.controller.points[-2:])
-    assert before is not None
-    assert after is not None
-    assert pytest.approx(before.axes, abs=1e-4) == after.axes
+    assert 3171 == ran.messages()[-1]
+    assert 3 == ran.controller.points[-1].number
+    before, after = (ran.arm.position(time).axes for time in ran.times("motion_end")[-2:])
+    assert pytest.approx(before, abs=1e-4) == after
 
 
 def test_status_and_turn_of_a_position() -> None:
@@ -150,6 +158,24 @@ def test_points() -> None:
     position = points[2].position
     assert isinstance(position, Position)
     assert pytest.approx((500, -100, 600)) == position.flange.position
+
+
+def test_a_loop_of_motions_to_where_the_arm_is_lets_time_pass() -> None:
+    """Two motions of length zero are a slice: the loop goes on in the next cycle [MOT-11]."""
+    loop = "$ADVANCE=1\nLOOP\nPTP_REL {A1 0} C_PTP\nENDLOOP\n"
+    ran = Ran(program(loop), until=2_000_000)
+    assert "time" == ran.outcome.ending
+    ends = Counter(time for time in ran.times("motion_end") if time % 12_000 == 0)
+    assert {2} == set(ends.values())
+    assert {12_000} == {after - before for before, after in pairwise(sorted(ends))}
+    assert len(ends) > 100
+
+
+def test_points_leave_out_motions_to_where_the_arm_is() -> None:
+    """A motion of length zero leads nowhere, so its point is that of the motion before it."""
+    ran = Ran(program("LIN {Y -100}\nLIN {Y -100}\nLIN {Z 700}\n"))
+    assert [3171] == ran.messages()
+    assert [1, 2, 3, 5] == [one.number for one in ran.controller.points]
 
 
 def test_status_monitoring() -> None:

@@ -6,12 +6,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from interp.robot.arm import Position, Samples
+from interp.requests import At
+from interp.robot.arm import Motion, Position, Samples, Settings
 from interp.robot.following import Following
 from interp.robot.frames import IDENTITY, Pose
 from interp.robot.kinematics import Arm
+from interp.robot.machine import Machine
 from interp.robot.models import default_machine
 from interp.robot.placement import Placement
+from interp.robot.planned_arm import PlannedArm
 from interp.robot.robots import KinematicRobot, NoRobot, RobotFault, make_robot
 
 START = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
@@ -67,6 +70,18 @@ def test_a_row_each_cycle(arm: Any) -> None:
     assert flange.components == pytest.approx(record.points[-1], abs=1e-9)
     assert record.axes_measured is None
     assert "t q1 q2 q3 q4 q5 q6 x y z a b c".split() == list(record.columns())
+
+
+def test_external_axes_nobody_told_the_start_of(machine: Machine) -> None:
+    """They stand at 0 at first, in the record and for the robot, and have columns of their own."""
+    arm = PlannedArm(machine, START, is_selected=False)
+    following = Following(arm, KinematicRobot(12_000), machine, 12_000, START)
+    arm.plan(0, Motion(1, At("test.src", 1, 0), "PTP", Settings(), {"E1": 300.0}))
+    following.settle(2_000_000)
+    columns = following.record().columns()
+    assert 0.0 == columns["e1"][0]
+    assert 300.0 == pytest.approx(columns["e1"][-1])
+    assert "t q1 q2 q3 q4 q5 q6 e1 x y z a b c".split() == list(columns)
 
 
 def test_set_points_go_in_chunks(arm: Any) -> None:

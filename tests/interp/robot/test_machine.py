@@ -79,6 +79,15 @@ def test_a_linear_external_axis(machine_text: Callable[..., str]) -> None:
     assert (AxisKind.ENDLESS, -math.inf, math.inf) == (table.kind, table.lower, table.upper)
 
 
+def test_where_axes_stand_that_nobody_tells(machine_text: Callable[..., str]) -> None:
+    """At 0, or at the software limit nearest to it."""
+    lines = ("INT $EX_AX_NUM=2", "$SOFTN_END[7]=150.0", "$SOFTP_END[7]=4000.0")
+    machine = read_machine(machine_text(*lines))
+    told = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert (*told, 150.0, 0.0) == machine.standing(told)
+    assert (*told, 700.0, 8.0) == machine.standing((*told, 700.0, 8.0, 9.0))
+
+
 def test_limits_that_are_none(machine_text: Callable[..., str]) -> None:
     """Two software limits that leave no room are not in use."""
     axis = read_machine(machine_text("$SOFTN_END[4]=0.0", "$SOFTP_END[4]=0.0")).axes[3]

@@ -152,6 +152,17 @@ def test_a_block_of_ptp(driver: Driver) -> None:
         assert np.allclose(bend, onward * other.gear**2)
 
 
+@pytest.mark.parametrize("kind", ["SPLINE", "PTP_SPLINE"])
+def test_swinging_beyond_a_software_limit(driver: Driver, kind: str) -> None:
+    """A spline whose points are within the limits, but not all between them, is 1211 [MOT-15]."""
+    places = ((500.0, 1900.0), (530.0, 1995.0), (600.0, 100.0))
+    segment = "SPL" if kind == "SPLINE" else "SPTP"
+    parts = tuple(SplinePart(segment, {"X": x, "E1": e}) for x, e in places)
+    with pytest.raises(Fault, match=r"software limit switch: E1 at 2\d\d\d") as caught:
+        run(driver, parts, kind=kind)
+    assert 1211 == caught.value.number
+
+
 def test_single_spline_motions(driver: Driver) -> None:
     """SLIN, SCIRC and SPTP exist as motions of their own, and can be blended [SPL-02]."""
     near = {"criteria": ("C_SPL",), "approximation": Approximation(cdis=20.0, cptp=10)}

@@ -5,7 +5,7 @@ from grammar.g4 import read_file
 from grammar.generate import GRAMMAR
 from grammar.recognizer import Recognizer
 from recovery.candidates import Candidate
-from recovery.joined import one_choice, one_form, reach_the_same, together
+from recovery.joined_edits import one_choice, one_form, reach_the_same, together
 from recovery.layout import Layout
 
 LAYOUT = Layout(Recognizer(read_file(GRAMMAR.with_name("preliminary.g4"))))

@@ -1,9 +1,8 @@
-"""Causes that are one: the same word or phrase is missing in several places.
+"""Edits that are one thing: the same word or phrase is missing in several places.
 
-What a shape keeps apart, an edit can show to be one thing. ``A == B`` and ``A < B`` fail at
-different signs, but the edits that mend them differ in one word at the same place; a phrase may be
-missing in two rules, or two lost alternatives may be all that ever used a rule. Such causes become
-one, with the edits of both.
+``A == B`` and ``A < B`` fail at different signs, but the edits that mend them differ in one word at
+the same place; a phrase may be missing in two rules, or two lost alternatives may be all that ever
+used a rule. Here is what tells so, and what writes such edits as one.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
 
 def _main(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
     """The edits but for those that reserve words."""
-    reserving = layout.reserve(e.name for e in edits if isinstance(e, AddToken))
+    reserving = layout.vocabulary.reserve(e.name for e in edits if isinstance(e, AddToken))
     return [e for e in edits if e not in reserving]
 
 
@@ -75,7 +74,7 @@ def one_form(
     if len(words) > 1 or one.rule == other.rule or len(_main(layout, first)) > 1:
         return None
     word = words.pop()
-    if not word.isidentifier() or not word[0].isupper() or layout.is_written(word):
+    if not word.isidentifier() or not word[0].isupper() or layout.vocabulary.is_written(word):
         return None
     text = max(one.text, other.text, key=lambda t: (len(t), t))
     both = (replace(one, text=text), replace(other, text=text))
