@@ -133,7 +133,8 @@ class Trial:
             following = recognizer.step(state, kind)
             assert following is not None
             state = following
-        return rules | {rule_of[p] for p, _ in recognizer.sites(state)}
+            rules |= {rule_of[p] for p, _ in recognizer.sites(state)}
+        return rules
 
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
         """Lines that the edits might mend."""

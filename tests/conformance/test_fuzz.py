@@ -237,7 +237,7 @@ def test_world_faults_now_and_then() -> None:
 def test_interference_is_compared() -> None:
     """Conditions are looked at, actions entered, and RESUME unwinds, on some programs."""
     words: set[str] = set()
-    for number in range(40):
+    for number in range(90):
         program = prepared(seeded(31, number).files)
         facts = trace_of(program, EXECUTORS["tree"], campaign.world_seed(31, number))
         words |= {str(one[0]) for one in facts}

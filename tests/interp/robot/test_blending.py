@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
-from interp.robot.arm import Approximation
+from interp.faults import Fault
+from interp.requests import At
+from interp.robot.arm import Approximation, Motion, Settings
+from interp.robot.blending import Zone, blend_of
 from interp.robot.course import Blend
 from interp.robot.curve import BlendedAxes
 from interp.robot.frames import Pose
 from interp.robot.placement import Placement
+from interp.robot.programmed import Programmed
+from interp.robot.tracks import Tracks
 
 if TYPE_CHECKING:
     from interp.robot.timeline import Section
     from tests.interp.robot.conftest import Driver
 
+START = {"A1": 0.0, "A2": -90.0, "A3": 100.0, "A4": 0.0, "A5": 60.0, "A6": 0.0}
 FIRST = {"X": 500.0, "Y": 200.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
 CORNER = {**FIRST, "Y": -100.0}
 LAST = {**CORNER, "X": 400.0}
@@ -290,3 +298,22 @@ def test_blends_that_use_up_a_motion(driver: Driver) -> None:
     driver.play()
     assert driver.time("blend_end", 3) == driver.time("blend_start", 3)
     driver.check_limits()
+
+
+def test_a_blend_of_axes_keeps_within_software_limits(driver: Driver) -> None:
+    """Beside a line axes may swing, so the blend itself is looked at; else it is none [MOT-15]."""
+    tracks = Tracks(driver.machine)
+    here = Programmed(tracks.arm, np.array(driver.machine.standing(tuple(START.values()))))
+    turn = Motion(1, At("test.src", 1, 0), "PTP", Settings(), {"A1": 30.0}, criteria=("C_DIS",))
+    line = Motion(2, At("test.src", 2, 0), "LIN", Settings(), {"Y": -100.0})
+    first, there = tracks.track(turn, here)
+    second, _ = tracks.track(line, there)
+    zone = Zone(0.4, 0.4)
+    curve, _ = blend_of(first, second, zone, driver.machine, tracks.limits)
+    most = float(curve.axes(np.linspace(0.0, 1.0, 500))[:, 0].max())
+    axis = driver.machine.axes[0]
+    for upper, is_beyond in ((most + 0.01, False), (most - 0.5, True)):
+        axes = (replace(axis, upper=upper), *driver.machine.axes[1:])
+        machine = replace(driver.machine, axes=axes)
+        with pytest.raises(Fault) if is_beyond else nullcontext():
+            blend_of(first, second, zone, machine, tracks.limits)
