@@ -50,7 +50,8 @@ def find_causes(
     causes: list[Cause] = []
     for place, group in enumerate(groups):
         search.thorough = place < _HEAVY_GROUPS
-        with uncollected(_GARBAGE):
+        is_open = not search.open.isdisjoint(group)
+        with uncollected(_GARBAGE if is_open else 0):
             causes += _of_group(search, group)
         on_done(1)
     with uncollected(_GARBAGE):

@@ -29,6 +29,8 @@ _SHARED = 4
 _LONGEST_RUN = 24
 # What a rule may have in front of it and still be the same thing.
 _LONGEST_PREFIX = 3
+# What is let in ahead of a failure is rather a thing that was begun there than another one.
+_NOT_BEGUN = 2
 
 
 class OpeningFinder:
@@ -92,8 +94,7 @@ class OpeningFinder:
     ) -> Iterator[Opening]:
         """Alternatives of the rules that the tokens before the failure were taken for."""
         recognizer, network = self.recognizer, self.recognizer.network
-        state, _ = recognizer.run(before, form.kinds[: form.index])
-        begun = {frames[i:] for frames in recognizer.frames(state) for i in range(1, len(frames))}
+        begun = {frames for _, frames in self._begun(before, form)}
         latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
         state = before
         for start in range(form.index):
@@ -120,9 +121,20 @@ class OpeningFinder:
                     self.layout.width(rule) + 8,
                 )
 
+    def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
+        """The rules that were being read where the line failed, with the frames below them."""
+        state, _ = self.recognizer.run(before, form.kinds[: form.index])
+        rule = self.recognizer.network.rule
+        return {
+            (rule[each[i - 1]], each[i:])
+            for each in self.recognizer.frames(state)
+            for i in range(1, len(each))
+        }
+
     def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[Opening]:
         """Openings ahead of the failure: what was to be let in was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
+        begun = self._begun(before, form)
         for start in range(max(0, form.index - _MOST_SKIPPED), form.index):
             state, _ = recognizer.run(before, form.kinds[:start])
             for site in sites_of(self.recognizer, state):
@@ -134,6 +146,8 @@ class OpeningFinder:
                     beyond = recognizer.at((back, site[1]), state)
                     called = network.rule[entry]
                     rank = self.layout.width(called) + 8
+                    if (called, (back, *site[1].positions())) not in begun:
+                        rank += _NOT_BEGUN
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
                 # what was let in may end where another reading went on, and failed later

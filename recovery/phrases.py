@@ -21,6 +21,8 @@ __all__ = ["Phraser"]
 
 _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
+# Rules that are tried for an operand that stands alone.
+_MOST_READERS = 6
 _MOST_SPELLINGS = 12
 # What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
 _USUAL = 2
@@ -185,6 +187,11 @@ class Phraser:
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
             yield from islice(product(*choices), _MOST_SPELLINGS)
+        if len(parts) == 1 and not any(keyword for _, keyword in words):
+            # an operand that is all of a phrase may be whatever reads it, the most used ones first
+            rules = self.readers.rules_for(tuple(kind for kind, _ in words))
+            ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
+            yield from ((rule,) for rule in ordered[:_MOST_READERS])
 
     def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
         """The symbols, with what the grammar usually writes where that reads the parts."""
