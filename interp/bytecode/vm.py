@@ -237,7 +237,11 @@ class Machine:
     def _failed(self, error: RuntimeFailure) -> None:
         """The program ends, or the fault is noted where ON_ERROR_PROCEED holds."""
         state, services = self._state, self._services
-        if services.counter.guard is not Guard.NOW or not isinstance(error, Fault):
+        if (
+            services.counter.guard is not Guard.NOW
+            or not isinstance(error, Fault)
+            or (error.slug == "no_result" and state.statement >= 0)  # behind the last statement
+        ):
             state.request, state.completion = Fail(services.at(), error), None
             return
         services.counter.guard = Guard.OFF

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 from grammar import ast
 from grammar.predefined import Parameter, System
 from grammar.scopes import Found
-from grammar.symbols import Space
+from grammar.symbols import Kind, Space
 from grammar.types import CHAR, REAL, UNKNOWN, Array, Type
 from grammar.walk import walk
 from interp.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
@@ -49,8 +50,10 @@ from interp.bytecode.program import (
     Mode,
     Program,
 )
+from interp.faults import LinkError
 from interp.phrases import is_variable
 from interp.program import Routine
+from interp.values import letters
 from interp.variables import (
     MOST_CELLS,
     cells_of_routine,
@@ -61,7 +64,10 @@ from interp.variables import (
     untyped_result,
 )
 
-__all__ = ["Binding", "Calls", "Formals", "formals_of"]
+__all__ = ["BY_TEXT", "Binding", "Calls", "Formals", "formals_of"]
+
+#: Functions that are given the name of a variable as a text [TYP-18].
+BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 
 #: What stands for a system variable in a routine: its path, ``None`` for each index.
 Binding = tuple[tuple[str | int | None, ...], Type] | None
@@ -330,11 +336,35 @@ class Calls(Expressions):
             is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
         if is_out and is_variable(self.context.unit, argument):
             return self._changed(self.place(argument))
+        if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
+            return self.handed(Text(letters(self._name_to_find(argument.text))))
         value = self._given(argument, type_, is_builtin=is_builtin)
         if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
             self.convert(value, REAL)
             value = Scalar(REAL)
         return self.handed(value)
+
+    def _name_to_find(self, text: str) -> str:
+        """A name as the machine finds it, which knows no IMPORT: what it stands for [ADV-05].
+
+        Where the name of that means something else here, the text stays, and finds nothing.
+        """
+        root = text.partition("[")[0].partition(".")[0].strip()
+        answer = self.context.scope.find(Space.VALUE, root.upper())
+        if not isinstance(answer, Found) or answer.symbol.kind is not Kind.IMPORT:
+            return text
+        try:
+            meant = self.context.program.declaration(answer).symbol
+        except LinkError:
+            return text
+        places, data = list(self.context.places), self.context.tables.data
+        if meant not in places or any(one.key == meant.key for one in self.context.variables):
+            return text
+        same = [number for number, one in enumerate(data) if one.name.upper() == meant.key]
+        module = PurePosixPath(self.context.unit.module.path).stem.upper()
+        own = [number for number in same if data[number].module.upper() == module]
+        seen = own or [number for number in same if data[number].is_global]
+        return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
 
     def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
         """The value of an argument :IN; for a text see `interp.builtins.reads_text`."""

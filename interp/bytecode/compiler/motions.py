@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from grammar import ast
 from grammar.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
 from grammar.walk import walk
@@ -37,6 +39,9 @@ from interp.values import Value as Known
 
 __all__ = ["Motions"]
 
+#: What stands in a spline block.
+_Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
+
 
 class Motions(Calls):
     """Makes the code of statements that ask the world to do something."""
@@ -47,31 +52,48 @@ class Motions(Calls):
         """PTP, LIN, CIRC and all others."""
         self.ask("Move", *self._move(node))
 
-    def _move(self, node: ast.Motion) -> tuple[Argument, ...]:
+    def _move(self, node: ast.Motion, *, is_early: bool = False) -> tuple[Argument, ...]:
+        """The parts of a motion; ``is_early`` where something may change before the request."""
         auxiliary: Cells | None = None
         if node.auxiliary is not None:
             auxiliary = self._kept(node.auxiliary)
-        target = self.handed(self._target(node))
+        target = self.handed(self._target(node, is_early=is_early))
         parts: list[Argument] = [Constant(node.kind), target, Constant(None)]
         if auxiliary is not None:
             self.refer(auxiliary)
             parts[2] = self.handed(Block(auxiliary.type))
         parts.append(self._optional(node.angle))
-        parts.append(self._values(node.values))
+        parts.append(self._values(node.values, is_early=is_early))
         parts.append(Items(tuple(Constant(one) for one in node.criteria)))
         parts.append(Constant(None if node.reference is None else node.reference.name.key))
         return tuple(parts)
 
-    def _target(self, node: ast.Motion) -> Value:
+    def _target(self, node: ast.Motion, *, is_early: bool) -> Value:
         """The target; a copy where it could be changed before the request is made."""
-        later: list[ast.Expression] = [one.value for one in node.values]
-        if node.angle is not None:
-            later.append(node.angle)
-        if any(isinstance(one, ast.Call) for part in later for one in walk(part)):
-            kept = self._kept(node.target)
-            self.refer(kept)
-            return Block(kept.type)
+        if is_early or self._disturbs((*_parts_of_values(node.values), node.angle)):
+            return self.load(self._kept(node.target))
         return self.value(node.target)
+
+    def _disturbs(self, nodes: Iterable[ast.Expression | None]) -> bool:
+        """Whether variables may change when these are evaluated.
+
+        What is called can change them. So can an action that is entered while the world is asked.
+        """
+        named = [inner for node in nodes if node is not None for inner in walk(node)]
+        return any(
+            isinstance(one, ast.Call) or (isinstance(one, ast.Variable) and self._is_asked(one))
+            for one in named
+        )
+
+    def _is_asked(self, node: ast.Variable) -> bool:
+        """Whether the world may be asked for a variable."""
+        found = self.context.unit.found(node.name)
+        if found is None:
+            return True
+        place = self.context.variables.get(found.symbol)
+        return isinstance(place, Remote) or (
+            place is None and found.symbol not in self.context.places
+        )
 
     def _kept(self, node: ast.Expression) -> Cells:
         """A copy of a value, in the frame."""
@@ -79,6 +101,10 @@ class Motions(Calls):
         value = self.value(node)
         if not isinstance(value, Block | Scalar):
             raise self.refuse("a motion goes to what is no position")
+        return self._kept_value(value, behind)
+
+    def _kept_value(self, value: Block | Scalar, behind: int) -> Cells:
+        """A copy of what has been pushed since the code was ``behind`` instructions long."""
         kept = Cells(self.writer.temporary(value.type), value.type)
         self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(kept.type))
         self.emit(*((Op.COPY, self.number(kept.type)) if isinstance(value, Block) else (Op.STORE,)))
@@ -90,16 +116,22 @@ class Motions(Calls):
         self.real(node)
         return Input(Mode.IN, self.number(REAL))
 
-    def _values(self, nodes: tuple[ast.Assignment, ...]) -> Items:
-        """What stands behind WITH [SPL-08]."""
+    def _values(self, nodes: tuple[ast.Assignment, ...], *, is_early: bool = False) -> Items:
+        """What stands behind WITH [SPL-08]; ``is_early`` as for `_move`."""
         found: list[Argument] = []
-        for node in nodes:
+        for number, node in enumerate(nodes, 1):
             place = self.place(node.target)
             if not isinstance(place, Remote):
                 raise self.unlinked("WITH gives a value to what is no system variable")
             path = self.pushed_path(place)
             behind = self.writer.here
             value = self.value(node.value, place.type)
+            if isinstance(value, Block) and (
+                is_early or self._disturbs(_parts_of_values(nodes[number:]))
+            ):
+                kept = self._kept_value(value, behind)
+                behind = self.writer.here
+                self.refer(kept)
             found.append(Items((path, self.remote_value(place.type, value, behind))))
         return Items(tuple(found))
 
@@ -120,11 +152,13 @@ class Motions(Calls):
 
     def spline_block(self, node: ast.SplineBlock, end: Label) -> None:
         """SPLINE: what stands in it is evaluated first, then planned as one motion [SPL-01]."""
-        values = self._values(node.values)
+        places = enumerate(node.items, 1)
+        last = max((at for at, one in places if self._disturbs(_parts_of(one))), default=0)
+        values = self._values(node.values, is_early=last > 0)
         first, items = self.context.line, []
-        for item in node.items:
+        for at, item in enumerate(node.items, 1):
             self._go_on_at(self.context.unit.line(item), end)
-            items.append(self._item(item))
+            items.append(self._item(item, is_early=at < last))
         self._go_on_at(first, end)
         is_approximated = Constant(node.is_approximated)
         self.ask("MoveSpline", Constant(node.keyword), values, Items(tuple(items)), is_approximated)
@@ -134,13 +168,11 @@ class Motions(Calls):
             self.context.line = line
             self.emit(Op.AT, line, end)
 
-    def _item(
-        self, node: ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
-    ) -> Record:
+    def _item(self, node: _Item, *, is_early: bool) -> Record:
         line = self.context.line
         match node:
             case ast.Motion():
-                return Record("Move", line, self._move(node))
+                return Record("Move", line, self._move(node, is_early=is_early))
             case ast.Trigger():
                 return Record("SetTrigger", line, self._set_trigger(node))
             case ast.ConstantVelocity():
@@ -287,3 +319,25 @@ class Motions(Calls):
         if name is None:
             raise self.unlinked("nothing tells which signal is meant")
         return name
+
+
+def _parts_of_values(nodes: Iterable[ast.Assignment]) -> Iterator[ast.Expression | None]:
+    """What is evaluated of assignments behind WITH: values, and indices of their targets."""
+    for node in nodes:
+        for inner in walk(node.target):
+            if isinstance(inner, ast.Subscript):
+                yield from inner.indices
+        yield node.value
+
+
+def _parts_of(node: _Item) -> Iterator[ast.Expression | None]:
+    """What is evaluated of something in a spline block before the block is asked for."""
+    match node:
+        case ast.Motion():
+            yield from (node.target, node.auxiliary, *_parts_of_values(node.values), node.angle)
+        case ast.Trigger():
+            yield from (node.place, node.delay, node.priority)
+        case ast.TimeBlock():
+            yield node.value
+        case _:
+            yield node.place

@@ -12,7 +12,7 @@ from grammar.types import BOOL, INT, Array, Type
 from grammar.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
-from interp.bytecode.compiler.calls import Binding, Formals, formals_of
+from interp.bytecode.compiler.calls import BY_TEXT, Binding, Formals, formals_of
 from interp.bytecode.compiler.context import Context, Refusal
 from interp.bytecode.compiler.data import declare_data, initial_values
 from interp.bytecode.compiler.places import (
@@ -215,7 +215,7 @@ class Project:
                 means = owner.unit.found(one.name)
                 if means is not None and means.symbol in owner.variables:
                     found[means.symbol] = None
-            elif isinstance(one, ast.Call) and one.name.key in _BY_TEXT:
+            elif isinstance(one, ast.Call) and one.name.key in BY_TEXT:
                 found.update(dict.fromkeys(_named_by_text(owner, one)))
         return list(found)
 
@@ -243,10 +243,6 @@ class Project:
             else:
                 steps.append(step)
         return Remote(tuple(steps), place.type)
-
-
-#: Functions that are given the name of a variable as a text [TYP-18].
-_BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 
 
 def _named_by_text(owner: Context, call: ast.Call) -> list[Symbol]:

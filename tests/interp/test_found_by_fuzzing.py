@@ -1,0 +1,106 @@
+"""Programs on which the executors once differed, made small; on every executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from grammar.source import Source
+from interp.agreement import Observed, difference, observe
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.verify import verify
+from interp.bytecode.vm import Machine
+from interp.events import Event, Sink
+from interp.executor import Executor
+from interp.faults import Fault
+from interp.native import AVAILABLE
+from interp.program import load
+from interp.rendering import to_json
+from interp.requests import End, Fail, MoveSpline
+from interp.stub import StubWorld
+from interp.tree import TreeExecutor
+
+Maker = Callable[[Sink | None], Executor]
+
+
+def _run(main: str, **others: str) -> Observed:
+    """What all executors ask and tell; ``others`` are files, ``lib_dat`` being ``lib.dat``."""
+    sources = [Source(main, "main.src")]
+    sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
+    program = load(sources, "main.src")
+    verified = verify(compile_program(program).program)
+    makers: list[Maker] = [
+        lambda sink: TreeExecutor(program, "MAIN", sink=sink),
+        lambda sink: Machine(verified, "MAIN", sink=sink),
+    ]
+    if AVAILABLE:
+        from interp.native.machine import Machine as Native
+
+        makers.append(lambda sink: Native(verified, "MAIN", sink=sink))
+    tree, *machines = [observe(make, StubWorld(), most=500) for make in makers]
+    for machine in machines:
+        assert None is difference(tree, machine)
+    return tree
+
+
+_LIB = "DEFDAT lib PUBLIC\nGLOBAL INT KEPT=0\nINT OWN[2]\nOWN[1]=1\nENDDAT\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("THEIRS", True),
+        (" theirs ", True),
+        ("THEIRS[1]", False),
+        ("KEPT", True),
+        ("NOWHERE", False),
+    ],
+)
+def test_an_imported_variable_is_found_by_its_name(text: str, expected: bool) -> None:
+    """VARSTATE knows an IMPORT that nothing else in the program names [TYP-18, ADV-05]."""
+    seen = _run(
+        f'DEF main()\nBOOL B\nB=VARSTATE("{text}")==#INITIALIZED\nEND\n',
+        main_dat="DEFDAT main\nIMPORT INT THEIRS IS /R1/LIB..KEPT\nENDDAT\n",
+        lib_dat=_LIB,
+    )
+    assert isinstance(seen.last, End)
+    told = [to_json(one.value) for one in seen.steps if isinstance(one, Event) and one.path]
+    assert [expected] == told
+
+
+def test_a_function_without_return_fails_behind_a_guarded_statement() -> None:
+    """ON_ERROR_PROCEED holds for one statement, and the end of a function is none [CTL-09]."""
+    last = _run(
+        "DEF main()\nINT N\nN=f()\nEND\nDEFFCT INT f()\nINT K\nON_ERROR_PROCEED\nK=1\nENDFCT\n"
+    ).last
+    assert isinstance(last, Fail)
+    assert isinstance(last.fault, Fault)
+    assert ("no_result", 8) == (last.fault.slug, last.at.line)
+
+
+_SPLINE = """DEF main()
+  FRAME P
+  P={{X 1.0,Y 2.0,Z 3.0,A 0.0,B 0.0,C 0.0}}
+  SPLINE WITH $BASE=P
+    {0}
+    SLIN f(P)
+  ENDSPLINE
+END
+DEFFCT FRAME f(Q:OUT)
+  FRAME Q
+  Q.X=Q.X+10.0
+  RETURN Q
+ENDFCT
+"""
+
+
+@pytest.mark.parametrize("before", ["", "SLIN P", "SCIRC P,P", "SLIN P WITH $TOOL=P"])
+def test_positions_of_a_spline_are_those_of_when_they_were_evaluated(before: str) -> None:
+    """What a later motion of a block changes does not move the earlier ones [SPL-01]."""
+    seen = _run(_SPLINE.format(before))
+    assert isinstance(seen.last, End)
+    (asked,) = [one for one in seen.steps if isinstance(one, MoveSpline)]
+    written = str(to_json(asked.values[0][1]))
+    assert "11.0" not in written
+    assert "1.0" in written
