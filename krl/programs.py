@@ -1,5 +1,6 @@
 """The program that a file on the command line means: with all files of its project."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ if TYPE_CHECKING:
     from interp.program import CheckedProgram
     from recovery.ingest import Found
 
-__all__ = ["load_program", "read_sources"]
+__all__ = ["load_program", "read_sources", "sources_below"]
 
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
@@ -28,6 +29,27 @@ def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, 
 
     sources, main, left = read_sources(file)
     return load(sources, main, strict=strict), left
+
+
+def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
+    """The files below folders and in archives that can be read, each with where it comes from.
+
+    Raises `Unusable` where there is no root, or one that cannot be looked into.
+    """
+    from grammar.source import Source
+    from recovery.decode import decode
+    from recovery.ingest import Found, IngestError, Skipped, discover, read
+
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    try:
+        for one in discover(roots):
+            data = read(one) if isinstance(one, Found) else one
+            text = data.reason if isinstance(data, Skipped) else decode(data)
+            if not isinstance(text, str):
+                yield one.origin, Source(text.text, one.path)
+    except IngestError as error:
+        raise Unusable(str(error)) from error
 
 
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":

@@ -18,11 +18,12 @@ def check_targets(out: Path, json_file: Path | None) -> None:
         raise Unusable(f"{json_file}: a folder, not a file")
 
 
-def write_json(record: Mapping[str, Any], target: Path) -> None:
-    """Write ``record`` whole or not at all."""
+def write_json(record: Mapping[str, Any], target: Path, indent: int | None = None) -> None:
+    """Write ``record`` whole or not at all, on one line or with so many blanks a level."""
     target.parent.mkdir(parents=True, exist_ok=True)
     scratch = target.with_name(target.name + ".part")
     # half of a character, which names of files may hold, is an escape of JSON then
     with scratch.open("w", encoding="utf-8", newline="\n", errors="backslashreplace") as stream:
-        stream.write(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
+        stream.write(text + "\n")
     scratch.replace(target)

@@ -104,21 +104,29 @@ def _next(
     crew: _Crew,
     lost: Callable[[*_Ts], _T] | None,
 ) -> _T:
-    """The result of the first task; where a process has died, all that wait go out again."""
+    """The result of the first task; where whoever did it has died, of another try."""
     task, promise = waiting.popleft()
     try:
         return promise.result()  # type: ignore[no-any-return]
     except crew.broken:
-        others = [one for one, _ in waiting]
-        waiting.clear()
+        _settle(promise for _, promise in waiting)
     found = _alone(function, task, crew)
-    if found is None and lost is None:
-        raise WorkersError("workers die again and again over the same work (out of memory?)")
-    waiting.extend((one, crew.submit(function, one)) for one in others)
     if found is not None:
         return found[0]
-    assert lost is not None, "else it was raised above"
+    if lost is None:
+        raise WorkersError("workers die again and again over the same work (out of memory?)")
     return lost(*task)
+
+
+def _settle(promises: Iterable[_Promise]) -> None:
+    """Wait until nothing is out; what has failed is told when its turn comes."""
+    for promise in promises:
+        try:
+            promise.result()
+        except WorkersError:
+            raise
+        except Exception:
+            continue
 
 
 def _alone(function: Callable[[*_Ts], _T], task: tuple[*_Ts], crew: _Crew) -> tuple[_T] | None:

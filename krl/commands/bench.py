@@ -1,6 +1,5 @@
 """`krl bench`: how good and how fast the tools themselves are."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,6 +18,7 @@ from krl.commands.bench_real_code import real_code
 from krl.commands.bench_vm import bench_vm
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 __all__ = ["app"]
 
@@ -82,7 +82,7 @@ def recover(
         raise Unusable(str(error)) from error
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
     if json_file is not None:
-        _write(record, json_file)
+        write_json(record, json_file, indent=1)
     _print_speed(record)
     return FINE
 
@@ -122,7 +122,7 @@ def check(
         raise Unusable(str(error)) from error
     record = {"bench": "check", **record}
     if json_file is not None:
-        _write(record, json_file)
+        write_json(record, json_file, indent=1)
     _print_check(record)
     return FINE
 
@@ -136,12 +136,6 @@ def _sizes(given: str) -> list[float]:
     if not all(0 < size <= _LARGEST for size in sizes):
         raise Unusable(f"--sizes {given}: not a list of MB, each above 0 and up to {_LARGEST:,}")
     return sizes
-
-
-def _write(record: Mapping[str, Any], target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-    target.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
 # -- in the terminal -------------------------------------------------------------------------------

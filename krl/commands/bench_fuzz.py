@@ -1,6 +1,5 @@
 """`krl bench fuzz`: how many planted faults `krl fuzz` finds."""
 
-import json
 import os
 from pathlib import Path
 from typing import Annotated
@@ -10,6 +9,7 @@ from rich.console import Console
 
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 __all__ = ["fuzz"]
 
@@ -40,9 +40,7 @@ def fuzz(
         verdicts = hunt(programs, seed, jobs or os.cpu_count() or 1, bar)
     record = record_of(verdicts, programs, seed)
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
         f"{record['caught']:,} of {record['mutants']:,} planted faults found "

@@ -1,6 +1,5 @@
 """`krl bench mutation`: how well the search for causes finds its way back."""
 
-import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from rich.table import Table
 
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 __all__ = ["mutation"]
 
@@ -95,9 +95,7 @@ def mutation(
         "runs": runs,
     }
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
         _table(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])

@@ -1,8 +1,7 @@
 """`krl bench programs`: which main programs of controllers' backups run to their end."""
 
-import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,7 +13,9 @@ from rich.table import Table
 
 from krl.commands.run import Executor, Robot
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.programs import sources_below
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 if TYPE_CHECKING:
     from grammar.source import Source
@@ -77,7 +78,9 @@ def programs(
     from interp.main_programs import main_programs, run_main, survey_profile
     from interp.session import Setup
 
-    origins = _sources(paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()])
+    origins: dict[str, list[Source]] = {}
+    for origin, source in sources_below(paths or [d for d in _DEFAULT_CORPUS if d.is_dir()]):
+        origins.setdefault(origin, []).append(source)
     setup = Setup(
         executor=executor.value if executor is not None else available()[-1],
         robot=robot.value,
@@ -108,31 +111,9 @@ def programs(
         "unread": unread,
     }
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     _print(record)
     return FINDINGS if "crash" in record["results"] else FINE
-
-
-def _sources(roots: Sequence[Path]) -> "dict[str, list[Source]]":
-    """The files by the archive or repository that they come from."""
-    from grammar.source import Source
-    from recovery.decode import decode
-    from recovery.ingest import Found, IngestError, Skipped, discover, read
-
-    if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
-    found: dict[str, list[Source]] = {}
-    try:
-        for one in discover(roots):
-            data = read(one) if isinstance(one, Found) else one
-            text = data.reason if isinstance(data, Skipped) else decode(data)
-            if not isinstance(text, str):
-                found.setdefault(one.origin, []).append(Source(text.text, one.path))
-    except IngestError as error:
-        raise Unusable(str(error)) from error
-    return found
 
 
 def _script(folder: Path | None, origin: str, main: "MainProgram") -> str:

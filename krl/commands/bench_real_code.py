@@ -1,6 +1,5 @@
 """`krl bench real-code`: every routine of a corpus on every executor."""
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
@@ -13,10 +12,11 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.programs import sources_below
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 if TYPE_CHECKING:
-    from grammar.source import Source
     from interp.trials import Trial, Unread
 
 __all__ = ["real_code"]
@@ -75,7 +75,8 @@ def real_code(
     for name in chosen:
         if name not in available():
             raise Unusable(f"--executor: there is no {name} here, but {', '.join(available())}")
-    sources = _sources(paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()])
+    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
+    sources = [source for _, source in sources_below(roots)]
     tried: list[Trial] = []
     unread: list[Unread] = []
     with progress_bar("trying routines") as bar:
@@ -88,30 +89,9 @@ def real_code(
                 tried.append(one)
     record = _record(chosen, len(sources), tried, unread)
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     _print(record)
     return FINDINGS if record["differences"] else FINE
-
-
-def _sources(roots: Sequence[Path]) -> "list[Source]":
-    from grammar.source import Source
-    from recovery.decode import decode
-    from recovery.ingest import Found, IngestError, Skipped, discover, read
-
-    if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
-    found = []
-    try:
-        for one in discover(roots):
-            data = read(one) if isinstance(one, Found) else one
-            text = data.reason if isinstance(data, Skipped) else decode(data)
-            if not isinstance(text, str):
-                found.append(Source(text.text, one.path))
-    except IngestError as error:
-        raise Unusable(str(error)) from error
-    return found
 
 
 def _record(

@@ -1,6 +1,5 @@
 """`krl bench vm`: how fast the executors compute, beside Lua."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,6 +11,7 @@ from rich.table import Table
 
 from krl.door import FINE, Unusable
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 __all__ = ["bench_vm"]
 
@@ -54,9 +54,7 @@ def bench_vm(
         raise Unusable(str(error)) from error
     record = {"bench": "vm", **record}
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     _print(record)
     return FINE
 

@@ -1,6 +1,5 @@
 """`krl fuzz`: random programs on several executors, whose traces must be equal."""
 
-import json
 import os
 import time
 from pathlib import Path
@@ -11,6 +10,7 @@ from rich.console import Console
 
 from krl.door import FINDINGS, FINE, Unusable
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 if TYPE_CHECKING:
     from conformance.differential.campaign import Finding, Findings
@@ -64,9 +64,7 @@ def fuzz(
         raise Unusable(str(error)) from error
     record = record_of(found, time.perf_counter() - begun)
     if json_file is not None:
-        json_file.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        json_file.write_text(text + "\n", encoding="utf-8", newline="\n")
+        write_json(record, json_file, indent=1)
     _tell(found, record["seconds"])
     return FINDINGS if found.findings else FINE
 
