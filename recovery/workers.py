@@ -196,7 +196,7 @@ def _cluster(address: str) -> Iterator[_Crew]:
     try:
         connect: Callable[..., Any] = Client
         client = connect(address, timeout="5s", set_as_default=False)
-    except (OSError, TimeoutError, ValueError, ImportError) as error:
+    except Exception as error:  # also whatever Dask makes of a server that is no scheduler
         raise WorkersError(f"no Dask scheduler answers at {address}") from error
     with _silent("distributed.client", "distributed.utils"):
         try:

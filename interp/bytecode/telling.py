@@ -106,8 +106,10 @@ class Names:
             int(step) if step.isdigit() else step for step in _STEP.findall(match[1].upper())
         ]
         place = self._variable(str(root))
-        if place is None or place[1] is None:
-            return None if place is None else (place[0], None)
+        if place is None:
+            return None
+        if place[1] is None:
+            return None if steps else (place[0], None)
         part = offset_of(place[0], steps)
         if part is None:
             return None
@@ -128,12 +130,23 @@ class Names:
     def _variable(self, name: str) -> tuple[Type, int | None] | None:
         slot = self._slot(name)
         if slot is not None:
-            return self.referred(slot)
+            return None if self._has_gone(slot) else self.referred(slot)
         number = self._number(name)
         if number is None:
             return None
         variable = self._program.data[number]
         return self._program.types[variable.type], self._program.addresses[number]
+
+    def _has_gone(self, slot: Slot) -> bool:
+        """Whether an action is to reach a variable by it whose routine has ended.
+
+        A view that was left out leads nowhere either, but it has sizes.
+        """
+        is_direct = isinstance(slot.variable, Local) or slot.variable.mode is Mode.IN
+        return (
+            not is_direct
+            and self._state.cells[self._state.fp + slot.offset + slot.cells - 1] is None
+        )
 
     def _slot(self, name: str) -> Slot | None:
         """The parameter or local of a name."""

@@ -241,7 +241,7 @@ class TreeExecutor:
         if active.interrupted is None:
             self._run.depth -= 1
             self._run.cells -= active.frame.cells
-            active.frame.variables.clear()
+            active.frame.forget()
 
     def _ended(self, active: _Active) -> Request:
         """An action has ended, or the program."""

@@ -7,6 +7,7 @@ Everything is a generator, as any variable may be one of the world's, and any ca
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -244,7 +245,7 @@ class Expressions:
         if not ends:
             return Remote((symbol.key,), BOOL)  # connected to nothing
         if symbol.last is None:
-            return ends[0]
+            return replace(ends[0], is_indexed=False)
         return Remote((*ends[0].path, "TO", ends[-1].path[-1]), INT)
 
     def read(self, place: Place) -> Steps[Value | None]:

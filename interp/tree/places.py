@@ -65,10 +65,14 @@ class Local:
 
 @dataclass(frozen=True, slots=True)
 class Remote:
-    """A system variable or a part of one, which is asked for and told."""
+    """A system variable or a part of one, which is asked for and told.
+
+    ``is_indexed`` where the program has worked out an index in the path.
+    """
 
     path: Path
     type: Type
+    is_indexed: bool = False
 
 
 Place = Local | Remote
@@ -120,7 +124,7 @@ def member(base: Place, name: str) -> Place:
     key = name.upper()
     if isinstance(base, Remote):
         known = base.type.member(key) if isinstance(base.type, Structure) else None
-        return Remote((*base.path, key), known or UNKNOWN)
+        return Remote((*base.path, key), known or UNKNOWN, base.is_indexed)
     whole = base.get()
     if not isinstance(whole, StructureValue):
         raise (
@@ -135,9 +139,8 @@ def element(base: Place, indices: Sequence[int]) -> Place:
     path = (*base.path, *indices)
     if isinstance(base, Remote):
         is_whole = isinstance(base.type, Array) and len(base.type.sizes) == len(indices)
-        return Remote(
-            path, base.type.element if is_whole and isinstance(base.type, Array) else UNKNOWN
-        )
+        left = base.type.element if is_whole and isinstance(base.type, Array) else UNKNOWN
+        return Remote(path, left, is_indexed=True)
     whole = base.get()
     if not isinstance(whole, ArrayValue):
         raise fault("uninitialised") if whole is None else LinkError("an index of what is no array")

@@ -20,7 +20,7 @@ from interp.events import Sink, wanting
 from interp.faults import BudgetExhausted, LinkError
 from interp.program import CheckedProgram, Limits, Routine, Unit
 from interp.requests import At, Code, Request, Slice
-from interp.tree.places import Local, Place
+from interp.tree.places import Local, Place, Remote
 from interp.variables import cells_of_routine
 
 __all__ = ["Call", "Frame", "Guard", "Handed", "Run", "Steps", "at_once"]
@@ -43,8 +43,7 @@ Steps = Generator[Request | Call, Any, _T]
 class Frame:
     """A routine that runs, or an action or condition in the frame it was made in.
 
-    ``variables`` are parameters and local data; they are forgotten when the routine ends, so that
-    an action that outlives it finds nothing. ``line`` is that of the statement that began last.
+    ``variables`` are parameters and local data. ``line`` is that of the statement that began last.
     """
 
     unit: Unit
@@ -55,6 +54,15 @@ class Frame:
     line: int
     cells: int = 0
     has_begun: bool = False
+
+    def forget(self) -> None:
+        """The routine ends, so that an action that outlives it does not find its variables.
+
+        Parameters that stand for a system variable do so still, if no index was worked out for it.
+        """
+        for symbol, place in list(self.variables.items()):
+            if not isinstance(place, Remote) or place.is_indexed:
+                del self.variables[symbol]
 
     def for_code(self, line: int) -> Frame:
         """A frame for a piece of this routine that is run apart."""

@@ -17,15 +17,15 @@ from interp.faults import Fault
 from interp.native import AVAILABLE
 from interp.program import load
 from interp.rendering import to_json
-from interp.requests import End, Fail, MoveSpline
+from interp.requests import Code, DeclareInterrupt, End, Fail, MoveSpline, SwitchInterrupt
 from interp.stub import StubWorld
 from interp.tree import TreeExecutor
 
 Maker = Callable[[Sink | None], Executor]
 
 
-def _run(main: str, **others: str) -> Observed:
-    """What all executors ask and tell; ``others`` are files, ``lib_dat`` being ``lib.dat``."""
+def _makers(main: str, **others: str) -> list[Maker]:
+    """Every executor of a program; ``others`` are files, ``lib_dat`` being ``lib.dat``."""
     sources = [Source(main, "main.src")]
     sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
     program = load(sources, "main.src")
@@ -38,6 +38,12 @@ def _run(main: str, **others: str) -> Observed:
         from interp.native.machine import Machine as Native
 
         makers.append(lambda sink: Native(verified, "MAIN", sink=sink))
+    return makers
+
+
+def _run(main: str, **others: str) -> Observed:
+    """What all executors ask and tell."""
+    makers = _makers(main, **others)
     tree, *machines = [observe(make, StubWorld(), most=500) for make in makers]
     for machine in machines:
         assert None is difference(tree, machine)
@@ -104,3 +110,61 @@ def test_positions_of_a_spline_are_those_of_when_they_were_evaluated(before: str
     written = str(to_json(asked.values[0][1]))
     assert "11.0" not in written
     assert "1.0" in written
+
+
+_OUTLIVED = """DEF main()
+  INT N
+  SIGNAL COUPLER $OUT[3]
+  N=1
+  declare(N,$OUT[N],COUPLER,{{X 1.0}})
+END
+DEF declare(VALUE:OUT,INDEXED:OUT,SIGNALLED:OUT,PLACE:OUT)
+  INT VALUE,OWN
+  BOOL INDEXED,SIGNALLED
+  FRAME PLACE
+  OWN=1
+  GLOBAL INTERRUPT DECL 1 WHEN {0} DO SYNC()
+  INTERRUPT ON 1
+END
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "while_it_runs", "afterwards"),
+    [
+        ('VARSTATE("OWN")==#INITIALIZED', True, False),
+        ('VARSTATE("OWN")==#UNKNOWN', False, True),
+        ('VARSTATE("VALUE")==#UNKNOWN', False, True),
+        ('VARSTATE("PLACE.X")==#UNKNOWN', False, True),
+        ("OWN==1", True, "uninitialised"),
+        ("VALUE==1", True, "uninitialised"),
+        ("PLACE.X==1.0", True, "uninitialised"),
+        ("INDEXED", True, "uninitialised"),
+        ("SIGNALLED", True, True),
+    ],
+)
+def test_conditions_that_outlive_their_routine_find_no_variables(
+    condition: str, while_it_runs: bool, afterwards: bool | str
+) -> None:
+    """A signal is found, as its index did not have to be worked out; unconfirmed [INT-04]."""
+    for make in _makers(_OUTLIVED.format(condition)):
+        executor, world = make(None), StubWorld()
+        seen: list[bool | str] = []
+        codes: list[Code] = []
+        request = executor.advance()
+        while not isinstance(request, End):
+            if isinstance(request, DeclareInterrupt):
+                codes.append(request.condition)
+            elif isinstance(request, SwitchInterrupt):
+                seen.append(_evaluated(executor, codes[0]))
+            request = executor.advance(world.reply(request))
+        seen.append(_evaluated(executor, codes[0]))
+        assert [while_it_runs, afterwards] == seen
+
+
+def _evaluated(executor: Executor, condition: Code) -> bool | str:
+    """The value of a condition while all outputs are TRUE, or the fault that it ends with."""
+    try:
+        return bool(executor.evaluate(condition, lambda _path: True))
+    except Fault as error:
+        return error.slug
