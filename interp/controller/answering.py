@@ -53,7 +53,7 @@ class Answering(Entering):
 
     def __init__(self, core: ControlCore, setup: Setup) -> None:
         super().__init__(core, setup)
-        self.routines = Routines(self)
+        self.routines = Routines(self, self.when_reached)
 
     def answer(self, task: Task, request: Request) -> Any:
         """The reply to a request, a `Fault`, or a `Blocked`."""

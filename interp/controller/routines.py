@@ -7,17 +7,18 @@ advance run is data (`grammar.predefined`) [ADV-04, ADV-07].
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from grammar.predefined import System
 from grammar.types import INT, Enumeration
 from interp.controller.channels import Waiting
+from interp.controller.entering import Entering
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.motions import target_of
 from interp.controller.positions import axes_value, pose_value
 from interp.controller.tasks import Blocked, Task
 from interp.faults import Fault, fault
-from interp.requests import Invoke, Path, Value
+from interp.requests import Invoke, Path, Request, Value
 from interp.robot.frames import Pose
 from interp.robot.kinematics import Arm as Kinematics
 from interp.robot.targets import solve, turn_of
@@ -32,12 +33,11 @@ from interp.values import (
     text_of,
 )
 
-if TYPE_CHECKING:
-    from interp.controller.answering import Answering
-
 __all__ = ["Routines"]
 
 Arguments = Sequence[Value | None]
+#: Does something when the main run has come to where the advance run is.
+Wait = Callable[[Task, Request, Callable[[], Any]], Any]
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 #: Variables whose size a profile tells.
 _SIZES: Final = {
@@ -58,8 +58,9 @@ def _word(type_name: str, name: str) -> EnumValue:
 class Routines:
     """Carries them out for a controller."""
 
-    def __init__(self, controller: Answering) -> None:
+    def __init__(self, controller: Entering, when_reached: Wait) -> None:
         self._controller = controller
+        self._when_reached = when_reached
         self._functions = System.load(controller.profile.release).functions
         self._newest = System.load().functions
 
@@ -70,7 +71,7 @@ class Routines:
             raise own_fault("unsupported")
         entry = self._functions.get(request.name) or self._newest[request.name]
         if entry.stops or self._holds_up(request):
-            return self._controller.when_reached(task, request, lambda: rule(self, task, request))
+            return self._when_reached(task, request, lambda: rule(self, task, request))
         return rule(self, task, request)
 
     @staticmethod

@@ -14,7 +14,6 @@ module          what it is
 from interp.debugging.client import (
     Backward,
     Breakpoint,
-    Client,
     Command,
     Frame,
     Go,
@@ -23,7 +22,7 @@ from interp.debugging.client import (
     Stop,
     Watch,
 )
-from interp.debugging.debugger import Debugger
+from interp.debugging.debugger import Client, Debugger
 
 __all__ = [
     "Backward",

@@ -6,20 +6,15 @@ virtual time stands still meanwhile, so an adapter for an editor can wait there 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from interp.requests import At
 from interp.values import Value
 
-if TYPE_CHECKING:
-    from interp.debugging.debugger import Debugger
-
 __all__ = [
     "Backward",
     "Breakpoint",
-    "Client",
     "Command",
     "Frame",
     "Go",
@@ -118,6 +113,3 @@ class Backward:
 
 
 Command = Go | Step | Select | Backward
-
-#: Called where a program stops; may look around in the debugger, and set what it likes there.
-Client = Callable[["Debugger", Stop], Command]

@@ -17,7 +17,6 @@ from interp.debugging.backward import Record
 from interp.debugging.client import (
     Backward,
     Breakpoint,
-    Client,
     Command,
     Frame,
     Select,
@@ -34,10 +33,12 @@ from interp.inspection import Inspectable
 from interp.program import CheckedProgram, Limits
 from interp.requests import At, Code, End, Fail, Move, MoveSpline, Path, Request, Slice, Value
 
-__all__ = ["Debugger", "Make"]
+__all__ = ["Client", "Debugger", "Make"]
 
 #: Makes the executor inside from the limits and the sink it is to have.
 Make = Callable[[Limits, Sink], Inspectable]
+#: Called where a program stops; may look around in the debugger, and set what it likes there.
+Client = Callable[["Debugger", Stop], Command]
 
 
 @dataclass(slots=True)
