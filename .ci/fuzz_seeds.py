@@ -9,7 +9,7 @@ from pathlib import Path
 from grammar.source import Source
 from interp.bytecode.assembler import assemble
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.image import write_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.program import Program
 from interp.bytecode.verify import verify
 from interp.faults import LinkError

@@ -83,11 +83,18 @@ def first_divergence(
     """The first difference of two runs; ``None`` where they are the same."""
     pairs = zip_longest(left.events, right.events)
     for place, (one, other) in enumerate(pairs):
-        if one != other:
+        if one != other or not _same_types(one, other):
             return _divergence(names, left.events, right.events, place)
     if left.ending != right.ending or not _same_path(left.path, right.path):
         return _divergence(names, left.events, right.events, len(left.events))
     return None
+
+
+def _same_types(one: Event | None, other: Event | None) -> bool:
+    """Whether equal events give values of one type: 1, 1.0 and TRUE are equal in Python only."""
+    if one is None or other is None:
+        return one is other
+    return type(one.fields.get("value")) is type(other.fields.get("value"))
 
 
 def _same_path(left: PathRecord | None, right: PathRecord | None) -> bool:

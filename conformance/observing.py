@@ -46,6 +46,7 @@ __all__ = [
     "missing",
     "observe",
     "observe_with",
+    "prepared",
 ]
 
 #: Who reads and checks cases: there is one front end.
@@ -158,7 +159,7 @@ def _run(
     robot: MakeRobot | None = None,
 ) -> Observation:
     """Run it; a program that cannot begin is a fault without a line."""
-    program = _prepared(case)
+    program = prepared(case)
     if isinstance(program, LinkError):
         return _refused(program)
     if executor is not None:
@@ -202,7 +203,7 @@ def _profile(name: str) -> Profile:
 
 
 @lru_cache(maxsize=16)
-def _prepared(case: Case) -> Prepared | LinkError:
+def prepared(case: Case) -> Prepared | LinkError:
     """A case checked and compiled once for all executors and robots that run it."""
     try:
         return Prepared(load(case.sources, case.main, strict=False))

@@ -25,9 +25,10 @@ __all__ = ["record_of"]
 
 #: Events that are about the cell and not about each statement: these are kept for every case.
 _STATEMENTS: Final = frozenset({"line", "assign", "branch", "call", "return"})
-#: So many events and points of a path are kept at most.
+#: So many events and points of a path are kept at most, fewer points where all is well.
 _MOST_EVENTS: Final = 400
 _MOST_POINTS: Final = 300
+_POINTS_SHOWN: Final = 150
 
 
 def record_of(
@@ -132,13 +133,26 @@ def _case(one: CaseResult) -> dict[str, Any]:
         "io": list(case.io),
         "verdict": one.verdict,
         "files": [{"name": each.path, "text": each.text} for each in case.sources],
-        "results": [
-            _result(case, result, is_first=not at) for at, result in enumerate(one.results)
-        ],
+        "results": _results(one),
     }
 
 
-def _result(case: Case, result: Result, *, is_first: bool) -> dict[str, Any]:
+def _results(one: CaseResult) -> list[dict[str, Any]]:
+    """All of them; where the path is what a case is about, the first that has one keeps it."""
+    is_about_path = any(each.needs != "none" for each in one.case.expectations)
+    found = []
+    for at, result in enumerate(one.results):
+        told = _result(result, is_first=not at)
+        seen = result.observation
+        if is_about_path and seen is not None and seen.path is not None and len(seen.path.times):
+            told.setdefault("path", _path(seen.path, _POINTS_SHOWN))
+            told["path"]["analytic"] = _analytic(one.case)
+            is_about_path = False
+        found.append(told)
+    return found
+
+
+def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
     found: dict[str, Any] = {
         "executor": result.executor,
         "robot": result.robot,
@@ -160,8 +174,6 @@ def _result(case: Case, result: Result, *, is_first: bool) -> dict[str, Any]:
     if result.observation is not None:
         is_whole = is_first or result.verdict == "fail"
         found |= _seen(result.observation, is_whole=is_whole)
-        if is_first and "path" in found:
-            found["path"]["analytic"] = _analytic(case)
     return found
 
 
@@ -202,9 +214,9 @@ def _analytic(case: Case) -> list[list[float]]:
     return found
 
 
-def _path(path: PathRecord) -> dict[str, Any]:
+def _path(path: PathRecord, most: int = _MOST_POINTS) -> dict[str, Any]:
     """Points of a path, every n-th where there are many."""
-    every = max(1, -(-len(path.times) // _MOST_POINTS))
+    every = max(1, -(-len(path.times) // most))
     told: dict[str, Any] = {
         "t": path.times[::every].tolist(),
         "axes": path.axes[::every].round(5).tolist(),

@@ -107,7 +107,7 @@ class Core(dict[int, "Core"]):
     absorbed: dict[int, Core]
     pushes: dict[int, tuple[Core, tuple[int, ...]]]
 
-    __hash__ = object.__hash__  # type: ignore[assignment]
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a dict has none
     __eq__ = object.__eq__
 
 

@@ -5,13 +5,26 @@ Places in a rule are addresses (`grammar.addresses`).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
-from grammar.addresses import Address, element_at, sequence_at, sequences, spelled
+from grammar.addresses import Address, element_at, sequence_at, sequences
 from grammar.g4 import read_rule
-from grammar.model import Alternative, Element, Grammar, GrammarError, Group, Repeat, Rule
+from grammar.model import Alternative, Element, Grammar, GrammarError, Rule
+from grammar.rewriting import (
+    commented,
+    replaced,
+    widened,
+    with_alternative,
+    with_insertion,
+    with_optional,
+    with_preamble,
+    with_rule,
+    with_token,
+    without_alternative,
+    without_element,
+    without_rule,
+)
 
 __all__ = [
     "AddAlternative",
@@ -160,17 +173,17 @@ def apply(grammar: Grammar, edits: Sequence[Edit]) -> Grammar:
 def _apply(grammar: Grammar, edit: Edit) -> Grammar:
     match edit:
         case AddToken(name=name):
-            return _add_token(grammar, name)
+            return with_token(grammar, name)
         case AddRule(after=after, text=text, comment=comment):
-            grown = _add_rule(grammar, _rule(grammar, after), text)
+            grown = with_rule(grammar, _rule(grammar, after), text)
             added = grown.rules[grammar.rules.index(grammar.by_name[after]) + 1]
-            return _commented(grown, added, comment) if comment else grown
+            return commented(grown, added, comment) if comment else grown
         case Comment(rule=name, text=text):
-            return _commented(grammar, _rule(grammar, name), text)
+            return commented(grammar, _rule(grammar, name), text)
         case Preamble(text=text):
-            return _with_preamble(grammar, text)
+            return with_preamble(grammar, text)
         case RemoveRule(rule=name):
-            return _remove_rule(grammar, _rule(grammar, name))
+            return without_rule(grammar, _rule(grammar, name))
         case _:
             rule = _rule(grammar, edit.rule)
             return grammar.with_rule(read_rule(_new_text(rule, edit)))
@@ -186,149 +199,19 @@ def _rule(grammar: Grammar, name: str) -> Rule:
 def _new_text(rule: Rule, edit: EditOfRule) -> str:
     match edit:
         case AddAlternative(text=text):
-            return _with_alternative(rule, text)
+            return with_alternative(rule, text)
         case RemoveAlternative(alternative=number):
-            return _without_alternative(rule, number)
+            return without_alternative(rule, number)
         case Insert(at=at, text=text):
-            return _with_insertion(rule, at, text)
+            return with_insertion(rule, at, text)
         case Widen(at=at, text=text):
-            element = element_at(rule, at)
-            old = rule.source_of(element)
-            new = f"{old[:-1]} | {text})" if isinstance(element, Group) else f"({old} | {text})"
-            if isinstance(element, Repeat):
-                inner, suffix = rule.source_of(element.item), element.operator
-                new = (
-                    f"{inner[:-1]} | {text}){suffix}"
-                    if isinstance(element.item, Group)
-                    else f"({inner} | {text}){suffix}"
-                )
-            return _spliced(rule, element.span, new)
+            return widened(rule, at, text)
         case MakeOptional(at=at, count=count):
-            return _with_optional(rule, at, count)
+            return with_optional(rule, at, count)
         case Replace(at=at, text=text, count=count):
-            last = element_at(rule, (*at[:-1], at[-1] + count - 1))
-            return _spliced(rule, (element_at(rule, at).span[0], last.span[1]), text)
+            return replaced(rule, at, count, text)
         case RemoveElement(at=at):
-            start, end = element_at(rule, at).span
-            while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " \r\n)":
-                start -= 1
-            if rule.text[start - 1] == "(" and rule.text[end] == " ":
-                end += 1
-            return rule.text[:start] + rule.text[end:]
-
-
-def _with_optional(rule: Rule, at: Address, count: int) -> str:
-    first = element_at(rule, at)
-    last = element_at(rule, (*at[:-1], at[-1] + count - 1))
-    old = rule.text[first.span[0] : last.span[1]]
-    if count == 1 and isinstance(first, Repeat):
-        new = old[:-1] + "*" if first.operator == "+" else old
-    elif count == 1:
-        new = f"{old}?"
-    else:
-        new = f"({old})?"
-    return _spliced(rule, (first.span[0], last.span[1]), new)
-
-
-def _with_insertion(rule: Rule, at: Address, text: str) -> str:
-    sequence = sequence_at(rule, at[:-1])
-    elements, number = sequence.elements, at[-1]
-    if not 1 <= number <= len(elements) + 1:
-        raise GrammarError(f"rule {rule.name} has no place {spelled(at)}")
-    if not elements:
-        raise GrammarError(f"rule {rule.name}: an empty alternative at {spelled(at)}")
-    if number <= len(elements):
-        start = elements[number - 1].span[0]
-        return rule.text[:start] + f"{text} " + rule.text[start:]
-    end = elements[-1].span[1]
-    return rule.text[:end] + f" {text}" + rule.text[end:]
-
-
-def _with_alternative(rule: Rule, text: str) -> str:
-    body, semicolon = rule.text[:-1].rstrip(), rule.text[-1]
-    gap = rule.text[len(body) : -1]
-    indent = "\n    " if "\n" in rule.text else " "
-    return f"{body}{indent}| {text}{gap}{semicolon}"
-
-
-def _without_alternative(rule: Rule, number: int) -> str:
-    if not 1 <= number <= len(rule.alternatives) or len(rule.alternatives) == 1:
-        raise GrammarError(f"rule {rule.name} cannot lose alternative {number}")
-    start, end = rule.alternatives[number - 1].span
-    if start == end:
-        raise GrammarError(f"rule {rule.name}: alternative {number} is empty")
-    if number > 1:
-        start = rule.text.rindex("|", 0, start)
-        start -= len(rule.text[:start]) - len(rule.text[:start].rstrip())
-        return rule.text[:start] + rule.text[end:]
-    following = rule.text.index("|", end)
-    return rule.text[:start] + rule.text[following + 1 :].lstrip()
-
-
-def _spliced(rule: Rule, span: tuple[int, int], text: str) -> str:
-    return rule.text[: span[0]] + text + rule.text[span[1] :]
-
-
-def _add_rule(grammar: Grammar, after: Rule, text: str) -> Grammar:
-    rule = read_rule(text)
-    if rule.name in grammar.by_name:
-        raise GrammarError(f"rule {rule.name} exists already")
-    index = grammar.rules.index(after) + 1
-    rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
-    gaps = (*grammar.gaps[:index], "\n\n", *grammar.gaps[index:])
-    return replace(grammar, rules=rules, gaps=gaps)
-
-
-def _add_token(grammar: Grammar, name: str) -> Grammar:
-    if name in grammar.by_name:
-        raise GrammarError(f"token {name} exists already")
-    keywords = [
-        i for i, rule in enumerate(grammar.rules) if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
-    ]
-    if not keywords:
-        raise GrammarError("the grammar has no keywords yet")
-    before = [i for i in keywords if _in_order(grammar.rules[i].name) < _in_order(name)]
-    rule = read_rule(f"{name} : '{name}' ;")
-    index = before[-1] + 1 if before else keywords[0]
-    rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
-    gap = index if before else index + 1
-    gaps = (*grammar.gaps[:gap], "\n", *grammar.gaps[gap:])
-    return replace(grammar, rules=rules, gaps=gaps)
-
-
-def _in_order(name: str) -> str:
-    """Words before longer words: C_PTP stands before CHAR."""
-    return name.replace("_", " ")
-
-
-def _commented(grammar: Grammar, rule: Rule, text: str) -> Grammar:
-    """The comment of a rule is what stands between it and the blank line above it."""
-    index = grammar.rules.index(rule)
-    above, blank, _ = grammar.gaps[index].rpartition("\n\n")
-    if not blank:
-        raise GrammarError(f"rule {rule.name} has no blank line above it, so no comment of its own")
-    lines = "".join(f"// {line}".rstrip() + "\n" for line in text.splitlines())
-    gaps = (*grammar.gaps[:index], above + blank + lines, *grammar.gaps[index + 1 :])
-    return replace(grammar, gaps=gaps)
-
-
-def _with_preamble(grammar: Grammar, text: str) -> Grammar:
-    found = re.match(r"\s*/\*.*?\*/\s*", grammar.gaps[0], re.DOTALL)
-    rest = grammar.gaps[0][found.end() :] if found else grammar.gaps[0]
-    if "*/" in text:
-        raise GrammarError("a preamble cannot hold the end of a comment")
-    lines = "".join(f" * {line}".rstrip() + "\n" for line in text.splitlines())
-    return replace(grammar, gaps=(f"/*\n{lines} */\n{rest}", *grammar.gaps[1:]))
-
-
-def _remove_rule(grammar: Grammar, rule: Rule) -> Grammar:
-    index = grammar.rules.index(rule)
-    joined = grammar.gaps[index].rstrip("\n ") + grammar.gaps[index + 1]
-    return replace(
-        grammar,
-        rules=(*grammar.rules[:index], *grammar.rules[index + 1 :]),
-        gaps=(*grammar.gaps[:index], joined, *grammar.gaps[index + 2 :]),
-    )
+            return without_element(rule, at)
 
 
 # ------------------------------------------------------------------------- edits as data
@@ -378,7 +261,7 @@ def from_data(data: Mapping[str, object]) -> Edit:
             raise GrammarError(f"edit {data['edit']}: {known.name} is not as it should be")
         values[known.name] = tuple(value) if isinstance(value, list) else value
     try:
-        return cls(**values)  # type: ignore[arg-type]
+        return cls(**values)  # type: ignore[arg-type]  # as looked at above
     except TypeError:
         raise GrammarError(f"edit {data['edit']}: something is missing") from None
 

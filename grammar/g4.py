@@ -70,7 +70,8 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
     for node in rest:
         assert isinstance(node, Tree)
         if node.data == "options":
-            options = tuple((str(o.children[0]), str(o.children[1])) for o in node.children)  # type: ignore[union-attr]
+            given = [o.children for o in node.children if isinstance(o, Tree)]
+            options = tuple((str(name), str(value)) for name, value in given)
             continue
         start = node.meta.start_pos
         gaps.append(text[end:start])
@@ -178,10 +179,11 @@ def _element(node: Tree[Token], offset: int) -> Element:
         case _:
             item, suffix = node.children
             assert isinstance(item, Tree)
-            operator = str(suffix)
-            if operator not in ("?", "*", "+"):
-                raise GrammarError(f"non-greedy {operator!r} is not of our style")
-            return Repeat(_element(item, offset), operator, span)  # type: ignore[arg-type]
+            match str(suffix):
+                case "?" | "*" | "+" as operator:
+                    return Repeat(_element(item, offset), operator, span)
+                case other:
+                    raise GrammarError(f"non-greedy {other!r} is not of our style")
 
 
 _ESCAPES = {"n": "\n", "r": "\r", "t": "\t", "b": "\b", "f": "\f"}

@@ -25,7 +25,7 @@ class Spot(dict[int, "Spot | None"]):
     def __init__(self, state: State) -> None:
         self.state = state
 
-    __hash__ = object.__hash__  # type: ignore[assignment]
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a dict has none
     __eq__ = object.__eq__
 
 

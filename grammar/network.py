@@ -103,7 +103,7 @@ class Reach(dict[int, Sequence[_Way]]):
             self._sites = found
         return self._sites
 
-    __hash__ = object.__hash__  # type: ignore[assignment]
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a dict has none
     __eq__ = object.__eq__
 
 

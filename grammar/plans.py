@@ -1,8 +1,9 @@
 """Plans: how the nodes of a line are made, worked out once for each `Outline`.
 
 Lines that are built alike share an outline, and differ only in the texts of their tokens. So the
-rules of `grammar.linerules` do not make nodes. They draft a plan, a list of steps: which node, over
-which tokens, from which values. `Plan.run` then makes the nodes of one line: a call for each.
+rules of `grammar.linerules` and `grammar.expressionrules` do not make nodes. They draft a plan, a
+list of steps: which node, over which tokens, from which values. `Plan.run` then makes the nodes of
+one line: a call for each.
 
 A plan works on a list of values. It begins with the texts of the tokens, then come constants, then
 the result of each step in order. Drafting goes through the outline without recursion, so depth of
@@ -19,7 +20,21 @@ from typing import Any, NamedTuple
 from grammar.ast import Span
 from grammar.tree import Outline
 
-__all__ = ["MAX_DEPTH", "Draft", "Part", "Plan", "Rule", "TooDeep", "Value", "draft"]
+__all__ = [
+    "MAX_DEPTH",
+    "Draft",
+    "Part",
+    "Plan",
+    "Rule",
+    "TooDeep",
+    "Value",
+    "after",
+    "draft",
+    "has",
+    "separated",
+    "value_of",
+    "values_of",
+]
 
 #: How deep nodes may lie within a line. Whoever walks an expression may rely on it and recurse.
 MAX_DEPTH = 200
@@ -198,3 +213,40 @@ def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
         return itemgetter(*slots)
     only = slots[0] if slots else 0
     return itemgetter(slice(only, only + len(slots)))
+
+
+# -------------------------------------------------------------------------- choices from the parts
+
+
+def value_of(parts: Sequence[Part], symbol: str) -> Value:
+    """What the first part of this kind came to; ``None`` where there is none."""
+    return next((part.value for part in parts if part.symbol == symbol), None)
+
+
+def values_of(parts: Sequence[Part], symbol: str) -> tuple[Value, ...]:
+    """What all parts of this kind came to, in their order."""
+    return tuple(part.value for part in parts if part.symbol == symbol)
+
+
+def has(parts: Sequence[Part], symbol: str) -> bool:
+    """Whether there is a part of this kind."""
+    return any(part.symbol == symbol for part in parts)
+
+
+def after(parts: Sequence[Part], symbol: str) -> Value:
+    """What the part two after a keyword came to, an equals sign between; ``None`` without it."""
+    for place, part in enumerate(parts):
+        if part.symbol == symbol:
+            return parts[place + 2].value
+    return None
+
+
+def separated(parts: Sequence[Part]) -> tuple[Value, ...]:
+    """What commas separate, ``None`` for what is left out."""
+    items: list[Value] = [None]
+    for part in parts:
+        if part.symbol == "COMMA":
+            items.append(None)
+        else:
+            items[-1] = part.value
+    return tuple(items)

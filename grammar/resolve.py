@@ -21,7 +21,7 @@ from grammar.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reas
 from grammar.symbols import Kind, Space, TypeSymbol
 from grammar.uses import PLANS
 
-__all__ = ["Resolution", "Unknown", "Use", "resolve", "unknown_in"]
+__all__ = ["Resolution", "Use", "resolve"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,30 +53,6 @@ class Resolution:
         """What a name means, if that is known."""
         answer = self.answers.get(name)
         return answer if isinstance(answer, Found) else None
-
-
-@dataclass(frozen=True, slots=True)
-class Unknown:
-    """A name that nothing in a project declares: how often it is used, and where first."""
-
-    space: Space
-    key: str
-    count: int
-    first: Use
-
-
-def unknown_in(resolutions: Iterable[Resolution]) -> list[Unknown]:
-    """What is unknown in the files of one project, each name once, the most used first.
-
-    Labels and members are not among it: no other file could bring them.
-    """
-    uses: dict[tuple[Space, str], list[Use]] = {}
-    for resolution in resolutions:
-        for use in resolution.open_uses:
-            if use.space is not None and use.space is not Space.LABEL:
-                uses.setdefault((use.space, use.name.key), []).append(use)
-    found = [Unknown(space, key, len(some), some[0]) for (space, key), some in uses.items()]
-    return sorted(found, key=lambda unknown: (-unknown.count, unknown.key))
 
 
 def resolve(project: Project, module: Module) -> Resolution:

@@ -20,7 +20,6 @@ from grammar.model import (
     Literal,
     Reference,
     Repeat,
-    walk,
 )
 from grammar.wellformed import shortest_length, shortest_lengths
 
@@ -247,15 +246,3 @@ class Speller:
                 out.append(" ")
             out.append("\n" if sample.strip() == "" else sample)
         return "".join(out)
-
-
-def tokens_in(grammar: Grammar, rule: str) -> frozenset[str]:
-    """Names of the tokens that a rule writes itself."""
-    found = set()
-    for alternative in grammar.by_name[rule].alternatives:
-        for element in walk(alternative):
-            if isinstance(element, Literal) or (
-                isinstance(element, Reference) and element.is_token
-            ):
-                found.add(grammar.token_of(element))
-    return frozenset(found)

@@ -1,29 +1,58 @@
-"""Where a command's record goes: checked before the work, written whole or not at all."""
+"""Where a command writes: checked before the work, written whole or not at all."""
 
+import contextlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from krl.door import Unusable
 
-__all__ = ["check_targets", "write_json"]
+__all__ = ["check_files", "check_targets", "whole", "write_json"]
 
 
 def check_targets(out: Path, json_file: Path | None) -> None:
-    """Raise `Unusable` where the folder is no folder or the file is one."""
+    """Raise `Unusable` where the folder is no folder or the file cannot be one."""
     if out.exists() and not out.is_dir():
         raise Unusable(f"{out}: not a folder")
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
+    check_files(json_file)
+
+
+def check_files(*targets: Path | None) -> None:
+    """Raise `Unusable` where something cannot be a file: it is a folder, or below a file."""
+    for target in targets:
+        if target is None:
+            continue
+        if target.is_dir():
+            raise Unusable(f"{target}: a folder, not a file")
+        above = next((folder for folder in target.parents if folder.exists()), None)
+        if above is not None and not above.is_dir():
+            raise Unusable(f"{target}: {above} is not a folder")
+
+
+@contextlib.contextmanager
+def whole(target: Path) -> Iterator[Path]:
+    """The file in which to write what ``target`` is to be, once the block has ended well.
+
+    It lies beside it. A device or a pipe, as /dev/stdout, is itself that file: it is not replaced.
+    Folders above are made. Raises `OSError`.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    part = target.with_name(target.name + ".part")
+    try:
+        yield part
+        part.replace(target)
+    finally:
+        with contextlib.suppress(OSError):  # there may be none, or a folder of somebody else
+            part.unlink()
 
 
 def write_json(record: Mapping[str, Any], target: Path, indent: int | None = None) -> None:
     """Write ``record`` whole or not at all, on one line or with so many blanks a level."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    scratch = target.with_name(target.name + ".part")
-    # half of a character, which names of files may hold, is an escape of JSON then
-    with scratch.open("w", encoding="utf-8", newline="\n", errors="backslashreplace") as stream:
-        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
-        stream.write(text + "\n")
-    scratch.replace(target)
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
+    with whole(target) as file:
+        # half of a character, which names of files may hold, is an escape of JSON then
+        file.write_text(text + "\n", encoding="utf-8", newline="\n", errors="backslashreplace")

@@ -101,6 +101,11 @@ class Phraser:
         found = self.readers.rules_for((kind,)) - self.readers.careless
         return any(rule in self._wider[reader] for reader in found)
 
+    def is_read_by(self, word: str, rule: str) -> bool:
+        """Whether a word is a keyword that a rule reads by itself."""
+        kind = self.recognizer.lexer.kind_of.get(word)
+        return kind is not None and word != rule and rule in self.readers.rules_for((kind,))
+
     def is_unused(self, rule: str) -> bool:
         """Whether nothing calls a rule."""
         return not self._uses[rule]

@@ -11,26 +11,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
-from grammar.failures import Context, FailureFinder
+from grammar.failures import FailureFinder
 from grammar.lexer import EOF
 from grammar.paths import Paths
 from grammar.recognizer import Recognizer, State
 from grammar.sentences import Sentences
 from recovery.candidates import Line
+from recovery.same_failure import LONGEST_GAP, SameFailure, Way, kinds_in, line_at, way_of
 from recovery.shrink import shrunk, without_loops, without_stretches
-from recovery.spelling import FRAME, Spelling, Token
+from recovery.spelling import Spelling, Token
 
 __all__ = ["Reducer", "Reproducer"]
 
 # How many of the configurations a line was read from are looked at.
 _MOST_CONFIGURATIONS = 12
-# How many tokens at a failure may have to go for the rest of the line to be read.
-_LONGEST_GAP = 64
-# A bound on the work for one reproducer, in tokens read: about a second.
-_MOST_READ = 3_000_000
-_COST_OF_A_TEST = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,22 +66,22 @@ class Reducer:
         for wider in (None,) if mended is None else (mended, None):
             # what only follows from the failure is put up with where it cannot be helped
             for may_follow in (False, True):
-                test = _Test(self._finder, self._spelling, way, wider, may_follow)
+                test = SameFailure(self._finder, self._spelling, way, wider, may_follow)
                 for programs in self._programs(line, tokens, wider):
                     found = [self._smallest(p, test) for p in programs if test.passes(p.whole)]
                     if found:
                         return self._reproducer(test, min(found, key=len))
         return None
 
-    def _way(self, line: Line) -> _Way:
+    def _way(self, line: Line) -> Way:
         form, meant = line.form, dict(line.keywords)
         before = self.recognizer.restore(form.before)
         state, _ = self.recognizer.run(before, form.kinds[: form.index])
         context = self._finder.context(state)
         words = [meant.get(i) for i in range(len(form.kinds))]
-        return _way(self.recognizer, form.kinds, words, form.index, context)
+        return way_of(self.recognizer, form.kinds, words, form.index, context)
 
-    def _smallest(self, program: _Program, test: _Test) -> list[Token]:
+    def _smallest(self, program: _Program, test: SameFailure) -> list[Token]:
         """The program with as few tokens as the test lets it have."""
         line = shrunk(
             program.line,
@@ -95,7 +90,7 @@ class Reducer:
         )
         return without_stretches(program.before + line + program.after, test.passes)
 
-    def _reproducer(self, test: _Test, tokens: list[Token]) -> Reproducer:
+    def _reproducer(self, test: SameFailure, tokens: list[Token]) -> Reproducer:
         text = self._spelling.text(tokens, test.wider)
         assert text is not None  # the test has seen it
         failure = self._finder.find(text)[0]
@@ -107,7 +102,7 @@ class Reducer:
         recognizer = self.recognizer
         _, index = recognizer.run(recognizer.start, kinds)
         assert index is not None
-        first, _ = _line_at(recognizer, kinds, index)
+        first, _ = line_at(recognizer, kinds, index)
         before, _ = recognizer.run(recognizer.start, kinds[:first])
         frame = len(self._places.get(before, kinds[:first]))
         frame += len(self._paths.completion(recognizer.frames(before)))
@@ -154,8 +149,8 @@ class Reducer:
         kinds = [token.kind for token in line]
         states = _states(self.recognizer, start, kinds)
         if wider is not None:
-            outset, _ = wider.run(wider.start, _kinds_in(wider, before))
-            more = _states(wider, outset, _kinds_in(wider, line))
+            outset, _ = wider.run(wider.start, kinds_in(wider, before))
+            more = _states(wider, outset, kinds_in(wider, line))
             return [without_loops(line, list(zip(_places(states), _places(more), strict=True)))]
         # what comes behind a failure is all one, but a line that can be read on shows more
         found = [without_loops(line, _places(states))]
@@ -174,7 +169,7 @@ class Reducer:
         state, index = self.recognizer.run(start, kinds)
         if index is None:  # what fails is the end of the file
             return _Broken(len(kinds), state, 0, start)
-        for gap in range(1, min(len(kinds) - index, _LONGEST_GAP + 1)):
+        for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
             end, failed = self.recognizer.run(state, kinds[index + gap :])
             if failed is None:
                 return _Broken(index, state, gap, end)
@@ -251,16 +246,16 @@ def _readable(
     Where that fails too, further on than the line did, the tokens there are left out, or else the
     rest of the line.
     """
-    start, failed = wider.run(wider.start, _kinds_in(wider, before))
+    start, failed = wider.run(wider.start, kinds_in(wider, before))
     if failed is not None:
         return None
-    kinds = _kinds_in(wider, line)
+    kinds = kinds_in(wider, line)
     state, failed = wider.run(start, kinds)
     if failed is None:
         return line, state
     if failed <= index:
         return None
-    for gap in range(1, min(len(kinds) - failed, _LONGEST_GAP + 1)):
+    for gap in range(1, min(len(kinds) - failed, LONGEST_GAP + 1)):
         end, left = wider.run(state, kinds[failed + gap :])
         if left is None:
             return line[:failed] + line[failed + gap :], end
@@ -284,120 +279,3 @@ def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
     Deep tails may be equal and not identical, which costs a loop: comparing them costs more.
     """
     return [None if s is None else (id(s.core), id(s.tail)) for s in states]
-
-
-def _kinds_in(recognizer: Recognizer, tokens: list[Token]) -> list[int]:
-    """Kinds of the tokens where names that are meant as keywords may be keywords."""
-    kind_of = recognizer.lexer.kind_of
-    return [t.kind if t.meant is None else kind_of.get(t.meant, t.kind) for t in tokens]
-
-
-# ------------------------------------------------------------------------- the same failure
-
-
-class _Way(NamedTuple):
-    """What makes two failures alike: the offending token and what the grammar was doing.
-
-    ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
-    it, by the name before it and by the first of the line. ``opening`` is the first token's kind
-    where the line could have ended: then the statement as a whole is what does not go on.
-    """
-
-    kind: int
-    meant: str | None
-    before: str | None
-    lead: str | None
-    opening: int | None
-    rule: str
-    expected: tuple[str, ...]
-
-
-def _way(
-    recognizer: Recognizer,
-    kinds: Sequence[int],
-    meant: Sequence[str | None],
-    index: int,
-    context: Context,
-) -> _Way:
-    """How the line of these tokens fails at ``index``."""
-    line_kind = recognizer.line_kind
-    could_end = line_kind > 0 and recognizer.lexer.display[line_kind] in context.expected
-    return _Way(
-        kinds[index],
-        meant[index],
-        meant[index - 1] if index else None,
-        meant[0],
-        kinds[0] if could_end or not index else None,
-        context.rule,
-        context.expected,
-    )
-
-
-def _line_at(recognizer: Recognizer, kinds: Sequence[int], index: int) -> tuple[int, int]:
-    """Where the line with that token begins and ends; the end of the file is one of its own."""
-    last, line_kind = len(kinds) - 1, recognizer.line_kind
-    if index == last:
-        return last, len(kinds)
-    first = next((i + 1 for i in range(index - 1, -1, -1) if kinds[i] == line_kind), 0)
-    end = next((i + 1 for i in range(index, last) if kinds[i] == line_kind), last)
-    return first, end
-
-
-class _Test:
-    """Whether a program fails in a given way, and only so."""
-
-    def __init__(
-        self,
-        finder: FailureFinder,
-        spelling: Spelling,
-        way: _Way,
-        wider: Recognizer | None,
-        may_follow: bool,
-    ) -> None:
-        self.recognizer = finder.recognizer
-        self.wider = wider
-        self._finder = finder
-        self._spelling = spelling
-        self._way = way
-        self._may_follow = may_follow
-        self._left = _MOST_READ
-
-    def passes(self, tokens: list[Token]) -> bool:
-        """Whether the program passes; never once the work allowed has been done."""
-        self._left -= len(tokens) + _COST_OF_A_TEST
-        if self._left < 0:
-            return False
-        recognizer, wider = self.recognizer, self.wider
-        kinds = [*(t.kind for t in tokens), EOF]
-        state, index = recognizer.run(recognizer.start, kinds)
-        if index is None or kinds[index] != self._way.kind:
-            return False
-        first, end = _line_at(recognizer, kinds, index)
-        meant = [*(t.meant for t in tokens[first:end]), None]
-        context = self._finder.context(state)
-        if _way(recognizer, kinds[first:end], meant, index - first, context) != self._way:
-            return False
-        if any(t.name == FRAME and t.kind != recognizer.line_kind for t in tokens[index + 1 : end]):
-            return False  # the next line is one of its own
-        if wider is not None:
-            if wider.run(wider.start, [*_kinds_in(wider, tokens), EOF])[1] is not None:
-                return False
-        elif not self._may_follow and not self._is_right_without(kinds, first, index, end):
-            return False
-        return self._fails_once(tokens)
-
-    def _is_right_without(self, kinds: list[int], first: int, index: int, end: int) -> bool:
-        """Whether it is a program without the failing line, or without tokens at the failure."""
-        cuts = [(first, end), (max(0, first - 1), end)]
-        cuts += [(index, index + gap) for gap in range(1, min(end - index, _LONGEST_GAP + 1))]
-        run, start = self.recognizer.run, self.recognizer.start
-        return any(run(start, kinds[:i] + kinds[j:])[1] is None for i, j in cuts)
-
-    def _fails_once(self, tokens: list[Token]) -> bool:
-        text = self._spelling.text(tokens, self.wider)
-        if text is None:
-            return False
-        failures = self._finder.find(text)
-        return len(failures) == 1 or (
-            self._may_follow and all(failure.follows for failure in failures[1:])
-        )

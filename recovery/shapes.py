@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from grammar.failures import Context, Form
 from grammar.lexer import ERROR, Lexer
@@ -39,22 +39,26 @@ class Shape:
 
     ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
     plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
-    ``bracket`` the bracket that is open before it.
+    ``bracket`` the bracket that is open before it, and ``is_first`` whether it comes right behind
+    that: this is told, but alone it tells no kinds apart.
     """
 
     rule: str
     lead: str
     bracket: str
     offender: str
+    is_first: bool = field(default=False, compare=False)
 
     @property
     def title(self) -> str:
-        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … ,``, ``SWITCH …``."""
+        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``."""
         parts = [self.lead] if self.lead else []
         if self.bracket:
             parts += [_ELLIPSIS, self.bracket]
         if self.offender == self.lead:
             return f"{self.lead} {_ELLIPSIS}"
+        if self.bracket and self.is_first:
+            return " ".join((*parts, self.offender))
         if not parts or parts[-1] != _ELLIPSIS:
             parts.append(_ELLIPSIS)
         return " ".join((*parts, self.offender))
@@ -101,6 +105,8 @@ class Shaper:
                 beside[word] += 1
                 files[word].add(digest)
                 sides = [s for s in (-1, 1) if self._is_operand_at(form.kinds, place + s)]
+                if not sides and self._begins_an_operand(form.kinds, place + 1):
+                    sides = [1] if place == 0 else []
                 alone[word] += not sides
                 if place == 0 and sides:
                     led[word].add(digest)
@@ -152,6 +158,9 @@ class Shaper:
     def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:
         return 0 <= place < len(kinds) and self._is_operand(kinds[place])
 
+    def _begins_an_operand(self, kinds: tuple[int, ...], place: int) -> bool:
+        return place < len(kinds) and self._display(kinds[place]) in _BEGINS_OPERAND
+
     def _is_operand(self, kind: int | None) -> bool:
         if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
             return False
@@ -162,11 +171,15 @@ class Shaper:
         return kind > 0 and self.lexer.display[kind] == text
 
     def keywords(self, failed: Failed, form: Form) -> tuple[tuple[int, str], ...]:
-        """Would-be keywords on a failing line, with their places."""
+        """Would-be keywords on a failing line, with their places.
+
+        One that is known from other lines is one too where no name could come.
+        """
         return tuple(
             (place, word)
             for place, word in self._names(failed, form)
-            if word in self._keywords and self._stands_out(form, place, word)
+            if word in self._keywords
+            and (place == form.index or self._stands_out(form, place, word))
         )
 
     def shape(self, failed: Failed, form: Form, context: Context) -> Shape:
@@ -179,7 +192,9 @@ class Shaper:
         offender = meant.get(index) or self._display(kinds[index])
         if 0 in meant and index == 1:
             offender = lead  # the line fails after its first word because of that word
-        return Shape(context.rule, lead, self._open_bracket(kinds[:index]), offender)
+        bracket = self._open_bracket(kinds[:index])
+        is_first = index > 0 and self._display(kinds[index - 1]) == bracket
+        return Shape(context.rule, lead, bracket, offender, is_first)
 
     def _display(self, kind: int) -> str:
         if kind == ERROR:

@@ -7,6 +7,7 @@ and a task that kills whoever is given it is found, since it is then done with n
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import logging
 import multiprocessing
@@ -14,7 +15,13 @@ import platform
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
 from contextlib import contextmanager
 from functools import cache
 from importlib import resources
@@ -30,6 +37,8 @@ _Ts = TypeVarTuple("_Ts")
 _PACKAGES: Final = ("grammar", "interp", "recovery", "conformance")
 #: Seconds after which it is asked whether anybody is left who could bring a result.
 _PATIENCE: Final = 20.0
+#: Seconds that a scheduler may take to greet us.
+_GREETING: Final = 5.0
 _SOURCES: Final = (".py", ".g4", ".lark", ".tsv", ".toml", ".dat", ".xml")
 
 
@@ -194,6 +203,8 @@ def _cluster(address: str) -> Iterator[_Crew]:
         text = f"a scheduler needs {error.name}: pip install 'krl-workbench[cluster]'"
         raise WorkersError(text) from error
     try:
+        with ThreadPoolExecutor(1) as beside:  # here a notebook may have a loop of its own
+            beside.submit(asyncio.run, _greet(address)).result()
         connect: Callable[..., Any] = Client
         client = connect(address, timeout="5s", set_as_default=False)
     except Exception as error:  # also whatever Dask makes of a server that is no scheduler
@@ -203,6 +214,18 @@ def _cluster(address: str) -> Iterator[_Crew]:
             yield _Cluster(client, address)
         finally:
             client.close()
+
+
+async def _greet(address: str) -> None:
+    """Greet a scheduler: a client of Dask waits for ever for a server that says nothing."""
+    from distributed import Security
+    from distributed.comm.core import connect
+
+    security: Callable[..., Any] = Security
+    meet_with: Callable[..., Any] = connect
+    secured = security().get_connection_args("client")  # as a client finds it configured
+    greeted = await asyncio.wait_for(meet_with(address, **secured), _GREETING)
+    await greeted.close()
 
 
 @contextmanager

@@ -12,18 +12,19 @@ from typing import Any, Final
 
 from reports.fields import Record, count, nested, number, records, text
 from reports.plain import shown
-from reports.spelling import Figure, percent, share
+from reports.spelling import Figure, counted, percent, share
 
 __all__ = ["Bar", "Claim", "ClaimsView", "Curve", "LeftOut", "claims_view"]
 
 #: The commands that make each record, by its name in a night.
 _COMMANDS: Final[Mapping[str, str]] = {
     "growth": "krl growth --json growth.json",
-    "recover": "krl recover --grammar grammar/preliminary.g4 --json recover.json",
+    "recover": "krl recover --json recover.json",
     "bench-vm": "krl bench vm --json bench-vm.json",
     "bench-arm": "krl bench arm --json bench-arm.json",
     "bench-conform": "krl bench conform --json bench-conform.json",
     "conform": "krl conform --json conform.json",
+    "conform-arm": "krl conform motion --executor native --robot mujoco --json conform-arm.json",
 }
 _MOST_BARS: Final = 12
 _WIDTH: Final = 860
@@ -109,7 +110,7 @@ def claims_view(found: Mapping[str, Any]) -> ClaimsView:
     return ClaimsView(
         figures=tuple(_figures(told)),
         claims=claims,
-        left_out=tuple(_left_out(told["conform"])),
+        left_out=tuple(_left_out(told["conform"], told["conform-arm"])),
         left_out_command="" if told["conform"] else _COMMANDS["conform"],
     )
 
@@ -191,14 +192,16 @@ def _curve(values: Sequence[float]) -> Curve:
 def _clusters(record: Record) -> Claim:
     title = "Failures are few causes"
     paper = "Parse errors were looked at one by one, and each led to a construct that was missing."
-    failures, clusters = count(record, "failures"), records(record, "clusters")
+    clusters = records(nested(record, "start"), "clusters") or records(record, "clusters")
     if not record:
         return _absent("clusters", title, paper, "recover")
+    failures = sum(count(one, "failures") for one in clusters)
     if not clusters:
         found = "No failure is left under the grammar in force: there is nothing to group."
         return Claim("clusters", title, paper, found, command=_COMMANDS["recover"])
+    where = "Under the restrictive start " if nested(record, "start") else ""
     found = (
-        f"{failures:,} failures have {len(clusters):,} causes; the first "
+        f"{where}{failures:,} failures have {counted(len(clusters), 'cause')}; the first "
         f"{min(_MOST_BARS, len(clusters))} in the order of mending are shown. A cause is what one "
         "edit of the grammar mends, and that edit has been tried."
     )
@@ -300,23 +303,31 @@ def _sensitivity(record: Record) -> Claim:
         return _absent("worth", title, paper, "bench-conform")
     killed = count(record, "killed")
     aim = number(record, "aim")
+    failing = count(record, "failing")
     found = (
         f"{planted:,} faults were planted, one at a time, into the controller, the arm and the "
-        f"machine; cases noticed {killed:,} of them, {percent(killed, planted)}."
+        f"machine. Cases noticed {killed:,} of them, {percent(killed, planted)}; {failing:,} of "
+        f"these turn the night red, the others change the verdict of a case whose rule is not sure."
     )
+    if number(record, "cases_per_s"):
+        found += (
+            f" {count(record, 'cases'):,} cases run at {number(record, 'cases_per_s'):,.0f} a "
+            f"second, with the {shown(text(record, 'executor'), 20)} interpreter and no robot."
+        )
     bars = tuple(
         Bar(
             shown(text(one, "group"), 60),
             (
                 f"{count(one, 'mutants'):,}",
                 f"{count(one, 'killed'):,}",
+                f"{count(one, 'failing'):,}",
                 percent(count(one, "killed"), count(one, "mutants")),
             ),
             share(count(one, "killed"), count(one, "mutants")),
         )
         for one in records(record, "groups")
     )
-    headings = ("faults in", "planted", "found", "share")
+    headings = ("faults in", "planted", "found", "by a failure", "share")
     return Claim("worth", title, paper, found, killed >= aim * planted, headings, bars)
 
 
@@ -342,11 +353,14 @@ _SHOWN: Final = (
 )
 
 
-def _left_out(record: Record) -> Iterable[LeftOut]:
-    cases = {text(one, "name"): one for one in records(record, "cases")}
+def _left_out(record: Record, arm: Record) -> Iterable[LeftOut]:
+    """What each case came to; ``arm`` is the record of a run on the simulated arm."""
+    cases, moved = (
+        {text(one, "name"): one for one in records(found, "cases")} for found in (record, arm)
+    )
     for what, paper, name, executor, robot in _SHOWN:
-        case = cases.get(name, {})
-        verdict = _verdict(case, executor, robot) if record else ""
+        case = (moved if robot else cases).get(name, {}) or cases.get(name, {})
+        verdict = _verdict(case, executor, robot) if record or arm else ""
         yield LeftOut(what, paper, name, shown(text(case, "title"), 200), verdict)
 
 

@@ -46,9 +46,10 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class ConformView:
-    """What the template shows; all texts are fit to be printed."""
+    """What the template shows, fit to be printed. ``fault`` is one that was planted."""
 
     headline: str
+    fault: str
     is_green: bool
     made: str
     figures: tuple[Figure, ...]
@@ -67,6 +68,7 @@ def conform_view(record: Mapping[str, Any]) -> ConformView:
     headline = f"{counted(failed, 'case')} of {total:,} failed" if failed else "No case failed"
     return ConformView(
         headline=headline if total else "No case was run",
+        fault=shown(text(record, "fault"), 200),
         is_green=bool(total) and not failed,
         made=shown(moment(text(record, "generated")), 60),
         figures=tuple(_figures(record)),

@@ -8,13 +8,13 @@ import hashlib
 import json
 import math
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from reports.fields import Record, count, nested, number, records, text
 
-__all__ = ["append_night", "changes", "night_of", "read_nights"]
+__all__ = ["append_night", "changes", "known_before", "night_of", "read_nights"]
 
 Json = dict[str, Any]
 
@@ -25,6 +25,11 @@ _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
 _MOST_TOLD = 40
+#: What a bench says of itself that is no result: how much it did, and with what.
+_SIZES = frozenset(
+    "aim bytes cases cycle_us failures files held_out inverse_poses killed motions mutants parsed"
+    " failing programs rounds seed shown thinking_us".split()
+)
 
 
 def read_nights(file: Path) -> list[Json]:
@@ -53,6 +58,24 @@ def append_night(file: Path, night: Mapping[str, Any]) -> None:
         draft.unlink(missing_ok=True)
 
 
+def known_before(nights: Sequence[Json]) -> Json | None:
+    """What is known from nights together, the last of them first; ``None`` where there are none.
+
+    A night that did some steps only does not hide what those before it told. ``of`` says by its
+    date which night each part is of.
+    """
+    if not nights:
+        return None
+    known: Json = {"of": {}, "bench": {}}
+    for night in nights:
+        date = text(night, "date")
+        parts = {name: part for name, part in night.items() if isinstance(part, dict) and part}
+        bench = {**known["bench"], **parts.pop("bench", {})}
+        of = {**known["of"], **dict.fromkeys(parts, date)}
+        known = {**known, **parts, "date": date, "bench": bench, "of": of}
+    return known
+
+
 def _night(line: str) -> Json | None:
     """The night of a line; ``None`` where it is damaged or has numbers that are not finite."""
     try:
@@ -75,40 +98,61 @@ def _is_of(line: str, night: Mapping[str, Any]) -> bool:
 
 
 def night_of(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:
-    """The line of a night: from the records of its steps by name, and how each step went."""
-    recover, growth, conform = (made.get(name, {}) for name in ("recover", "growth", "conform"))
-    fuzz = made.get("fuzz", {})
+    """The line of a night: from the records of its steps by name, and how each step went.
+
+    What a step would have told is left out where it has no record: nothing is known of it then.
+    """
+    night: Json = {"date": date, "steps": dict(steps)}
+    for name, section in (
+        ("recover", _surveyed),
+        ("growth", _grown),
+        ("conform", _judged),
+        ("fuzz", _fuzzed),
+    ):
+        if name in made:
+            night[name] = section(made[name])
+    night["bench"] = {
+        f"{name.removeprefix('bench-')}.{figure}": value
+        for name, record in sorted(made.items())
+        if name.startswith("bench-")
+        for figure, value in _figures(record)
+    }
+    return night
+
+
+def _surveyed(record: Record) -> Json:
     return {
-        "date": date,
-        "steps": dict(steps),
-        "recover": {
-            "files": count(recover, "files"),
-            "parsed": count(recover, "parsed"),
-            "clusters": {text(c, "id"): text(c, "title") for c in records(recover, "clusters")},
-        },
-        "growth": {
-            "steps": count(growth, "steps"),
-            "files": count(growth, "files"),
-            "parsed": max((count(step, "parsed") for step in records(growth, "steps")), default=0),
-        },
-        "conform": {
-            "verdicts": dict(nested(conform, "verdicts")),
-            "seconds": number(conform, "seconds"),
-            "hard": count(nested(conform, "coverage"), "hard"),
-            "hard_covered": count(nested(conform, "coverage"), "hard_covered"),
-            "cases": {text(c, "name"): _short(c) for c in records(conform, "cases")},
-        },
-        "fuzz": {
-            "programs": count(fuzz, "programs"),
-            "seed": count(fuzz, "seed"),
-            "divergences": count(fuzz, "divergences"),
-        },
-        "bench": {
-            f"{name.removeprefix('bench-')}.{figure}": value
-            for name, record in sorted(made.items())
-            if name.startswith("bench-")
-            for figure, value in _figures(record)
-        },
+        "files": count(record, "files"),
+        "parsed": count(record, "parsed"),
+        "clusters": {text(c, "id"): text(c, "title") for c in records(record, "clusters")},
+    }
+
+
+def _grown(record: Record) -> Json:
+    steps = records(record, "steps")
+    return {
+        "steps": max(0, len(steps) - 1),
+        "files": count(record, "files"),
+        "parsed": max((count(step, "parsed") for step in steps), default=0),
+    }
+
+
+def _judged(record: Record) -> Json:
+    coverage = nested(record, "coverage")
+    return {
+        "verdicts": dict(nested(record, "verdicts")),
+        "seconds": number(record, "seconds"),
+        "hard": count(coverage, "hard"),
+        "hard_covered": count(coverage, "hard_covered"),
+        "cases": {text(c, "name"): _short(c) for c in records(record, "cases")},
+    }
+
+
+def _fuzzed(record: Record) -> Json:
+    return {
+        "programs": count(record, "programs"),
+        "seed": count(record, "seed"),
+        "divergences": len(records(record, "differences")),
     }
 
 
@@ -135,7 +179,8 @@ def _timing(case: Record) -> Iterator[tuple[str, int]]:
 def _figures(record: Record) -> Iterator[tuple[str, float]]:
     """The figures of a bench that are ratios or speeds: those that stand at its top level."""
     for name, value in record.items():
-        if isinstance(value, int | float) and not isinstance(value, bool) and "second" not in name:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if is_number and "second" not in name and name not in _SIZES:
             yield name, round(number(record, name), 6)
 
 
@@ -148,18 +193,29 @@ def changes(
     """What changed since the night before, a sentence each; nothing where nothing did.
 
     ``old`` and ``new`` are the records of the judge of both nights, where they are still there:
-    they tell what a shift in time was.
+    they tell what a shift in time was. Of a first night it is told what is wrong. What one of the
+    nights knows nothing of, since its step has no record, has not changed.
     """
     if before is None:
-        return ["this is the first night"]
-    return [
-        *_steps(before, now),
-        *_survey(nested(before, "recover"), nested(now, "recover")),
-        *_verdicts(nested(before, "conform"), nested(now, "conform")),
-        *_shifts(nested(before, "conform"), nested(now, "conform"), old, new),
-        *_fuzz(nested(before, "fuzz"), nested(now, "fuzz")),
-        *_speeds(nested(before, "bench"), nested(now, "bench")),
-    ]
+        return ["this is the first night", *_steps({}, now), *_wrong(now)]
+    told = [*_steps(before, now)]
+    if before.get("recover") and now.get("recover"):
+        told += _survey(nested(before, "recover"), nested(now, "recover"))
+    if before.get("conform") and now.get("conform"):
+        told += _verdicts(nested(before, "conform"), nested(now, "conform"))
+        told += _shifts(nested(before, "conform"), nested(now, "conform"), old, new)
+    if before.get("fuzz") and now.get("fuzz"):
+        told += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
+    return [*told, *_speeds(nested(before, "bench"), nested(now, "bench"))]
+
+
+def _wrong(now: Record) -> Iterator[str]:
+    """What would be new failures, had there been a night before."""
+    for name, (verdict, _) in _by_case(nested(now, "conform")).items():
+        if verdict == "fail":
+            yield f"new failure: {name}"
+    if divergences := count(nested(now, "fuzz"), "divergences"):
+        yield f"fuzz: {divergences:,} divergence{'s' if divergences > 1 else ''}"
 
 
 def _steps(before: Record, now: Record) -> Iterator[str]:
@@ -235,12 +291,24 @@ def _details(old: Record, new: Record, names: set[str]) -> dict[str, str]:
 
 
 def _fuzz(before: Record, now: Record) -> Iterator[str]:
-    if count(now, "divergences") != count(before, "divergences"):
-        yield f"fuzz: divergences {count(before, 'divergences')} → {count(now, 'divergences')}"
+    was, became = count(before, "divergences"), count(now, "divergences")
+    if was != became:
+        yield f"{'fixed: ' if became < was else ''}fuzz: divergences {was:,} → {became:,}"
 
 
 #: Figures of which less is better; of all others more is.
-_COSTS = ("_per_mb", "_us", "_ms", "cost", "clusters_per_cause", "false_accept", "_tokens")
+_COSTS = (
+    "_per_mb",
+    "_us",
+    "_ms",
+    "cost",
+    "clusters_per_cause",
+    "false_accept",
+    "_tokens",
+    "linear",
+    "memory_growth",
+    "simulated_s",
+)
 
 
 def _speeds(before: Record, now: Record) -> Iterator[str]:

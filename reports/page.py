@@ -18,10 +18,13 @@ __all__ = ["render", "write_page"]
 def write_page(page: str, target: Path) -> Path:
     """Write the file ``target`` whole or not at all, and return its path.
 
-    It is written beside its place and then moved there. Raises OSError when its folder cannot be
-    made or written.
+    It is written beside its place and then moved there; a device or a pipe is written to itself.
+    Raises OSError when its folder cannot be made or written.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
+    if target.exists() and not target.is_file():
+        target.write_text(page, encoding="utf-8", newline="\n")
+        return target
     draft = target.with_name(f".{target.name}-{secrets.token_hex(8)}.tmp")
     try:
         draft.write_text(page, encoding="utf-8", newline="\n")

@@ -14,8 +14,8 @@ A fault is found by a case that passes without it and does not pass with it. Cha
 could see from outside are no faults and are left out.
 """
 
-from conformance.sensitivity.bench import measure
+from conformance.sensitivity.bench import measure, speed_of
 from conformance.sensitivity.planting import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 
-__all__ = ["Fault", "Verdict", "measure", "try_faults"]
+__all__ = ["Fault", "Verdict", "measure", "speed_of", "try_faults"]

@@ -13,39 +13,45 @@ from conformance.sensitivity.planting import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 from conformance.verdicts import KnownFailures
 
-__all__ = ["AIM", "measure", "record_of"]
+__all__ = ["AIM", "measure", "record_of", "speed_of"]
 
 #: The share of faults that has to be found for a green night to mean something.
 AIM: Final = 0.95
 _EXECUTOR: Final = "tree"
 
 
-def measure(
-    cases: Sequence[Case],
-    faults: Sequence[Fault],
-    jobs: int = 1,
-    on_done: Callable[[int], None] = lambda _count: None,
+def speed_of(
+    cases: Sequence[Case], on_done: Callable[[int], None] = lambda _count: None
 ) -> dict[str, Any]:
-    """Time all cases once, on one executor without a robot and in one process; then try the faults.
+    """Run all cases once, on one executor without a robot and in one process: cases a second.
 
-    ``on_done`` is told how many faults were judged since it was told last.
+    ``on_done`` is told of each case.
     """
     known = KnownFailures.load()
     begun = time.perf_counter()
     for case in cases:
         run_case(case, [Setup(_EXECUTOR, "none")], known)
-    cases_took = time.perf_counter() - begun
-    begun = time.perf_counter()
-    verdicts = try_faults(faults, cases, jobs, on_done)
+        on_done(1)
+    took = time.perf_counter() - begun
     return {
-        **record_of(verdicts),
-        "seconds": round(time.perf_counter() - begun, 3),
         "executor": _EXECUTOR,
         "robot": "none",
         "cases": len(cases),
-        "cases_seconds": round(cases_took, 3),
-        "cases_per_s": round(len(cases) / cases_took, 1) if cases_took > 0 else 0.0,
+        "cases_seconds": round(took, 3),
+        "cases_per_s": round(len(cases) / took, 1) if took > 0 else 0.0,
     }
+
+
+def measure(
+    faults: Sequence[Fault],
+    cases: Sequence[Case],
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> dict[str, Any]:
+    """Try the faults; ``on_done`` is told of each when it was judged."""
+    begun = time.perf_counter()
+    verdicts = try_faults(faults, cases, jobs, on_done)
+    return {**record_of(verdicts), "seconds": round(time.perf_counter() - begun, 3)}
 
 
 def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
@@ -81,8 +87,10 @@ def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
 def _counts(verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """``failing`` are those that turn a night red, the others only change a verdict."""
     killed = sum(one.case is not None for one in verdicts)
+    failing = sum(one.verdict == "fail" for one in verdicts)
     return {
         "killed": killed,
-        "failing": sum(one.verdict == "fail" for one in verdicts),
+        "failing": failing,
         "share": round(killed / len(verdicts), 4) if verdicts else 0.0,
+        "failing_share": round(failing / len(verdicts), 4) if verdicts else 0.0,
     }

@@ -26,7 +26,7 @@ def faults() -> tuple[Fault, ...]:
     """All of them."""
     groups: tuple[tuple[str, tuple[str, ...], tuple[tuple[str, Plant], ...]], ...] = (
         ("interrupts", _SUITES, _INTERRUPTS),
-        ("BRAKE and RESUME", _SUITES, _BRAKING),
+        ("BRAKE and RESUME", (*_SUITES, "spline"), _BRAKING),
         ("triggers", ("trigger", "spline"), _TRIGGERS),
     )
     return tuple(

@@ -1,30 +1,31 @@
-"""Cases against faults: each case runs with every fault that is not found yet and that it may find.
+"""Faults against cases: each fault is tried on the cases that may find it, until one has.
 
-So a case is read, checked and compiled once. Cases of rules that may fail come first: a fault that
-they find turns the night red, one that only others find shows as a verdict that has changed.
+Cases of rules that may fail come first: a fault that they find turns the night red, one that only
+others find shows as a verdict that has changed. A machine that parts from the tree interpreter has
+failed whatever the rule, as it has in every night. What a case does without any fault is seen once
+a process and kept; a case that cannot notice a fault, since its programs lack the instruction, is
+not run with it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from functools import lru_cache
-from multiprocessing import get_context
+from functools import cache
 from typing import Any, Final
 
 from conformance.case import Case
 from conformance.comparison import first_divergence
 from conformance.observation import Observation
-from conformance.observing import Setup
+from conformance.observing import Setup, prepared
 from conformance.runner import run_case
 from conformance.sensitivity import ahead, interrupting, machine, path, timing
 from conformance.sensitivity.planting import Fault, on, several
 from conformance.verdicts import KnownFailures
 from interp.controller.controller import Controller
-from interp.executors import Prepared
+from interp.faults import LinkError
 from interp.robot.core import ControlCore
-from recovery.orphans import end_with_parent
+from recovery.workers import in_order
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
 
@@ -46,7 +47,7 @@ class Verdict:
     runs: int
 
 
-@lru_cache(maxsize=1)
+@cache
 def all_faults() -> tuple[Fault, ...]:
     """Every fault there is, group by group."""
     return (
@@ -66,107 +67,86 @@ def try_faults(
 ) -> list[Verdict]:
     """What becomes of each fault, in their order; the same whatever ``jobs`` is.
 
-    With more than one job the faults have to be among `all_faults`. ``on_done`` is told how many
-    faults were judged since it was told last.
+    With more than one job the faults have to be among `all_faults`. ``on_done`` is told of each
+    fault when it was judged.
     """
     running = [case for case in cases if case.phase == "run"]
-    ordered = sorted(running, key=lambda case: (not case.may_fail, case.name))
+    ordered = tuple(sorted(running, key=lambda case: (not case.may_fail, case.name)))
+    verdicts: list[Verdict] = []
+    for found in _verdicts(faults, ordered, jobs):
+        verdicts.append(found)
+        on_done(1)
+    return verdicts
+
+
+def _verdicts(faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int) -> Iterator[Verdict]:
     if jobs <= 1:
-        found = _Trial(faults).judge(ordered)
-        on_done(len(faults))
-        return found
+        return (_judge(one, cases) for one in faults)
     known = {id(one): number for number, one in enumerate(all_faults())}
-    numbers = [known[id(one)] for one in faults]
-    shares = [range(first, len(numbers), jobs) for first in range(jobs)]
-    judged: dict[int, Verdict] = {}
-    with ProcessPoolExecutor(jobs, get_context("spawn"), end_with_parent) as pool:
-        tasks = [pool.submit(_judged, [numbers[one] for one in share], ordered) for share in shares]
-        for share, task in zip(shares, tasks, strict=True):
-            judged.update(zip(share, task.result(), strict=True))
-            on_done(len(share))
-    return [judged[number] for number in range(len(numbers))]
+    tasks = ((known[id(one)], _of_suites(one, cases)) for one in faults)
+    return in_order(_judge_known, tasks, jobs=jobs)
 
 
-def _judged(numbers: Sequence[int], cases: Sequence[Case]) -> list[Verdict]:
-    known = all_faults()
-    return _Trial([known[number] for number in numbers]).judge(cases)
+def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:
+    return tuple(case for case in cases if not fault.suites or case.suite in fault.suites)
 
 
-class _Trial:
-    """Faults that are not found yet."""
+def _judge_known(number: int, cases: tuple[Case, ...]) -> Verdict:
+    """Functions are not sent from process to process: a fault is known by its number there."""
+    return _judge(all_faults()[number], cases)
 
-    def __init__(self, faults: Sequence[Fault]) -> None:
-        self._faults = faults
-        self._runs = [0] * len(faults)
-        self._found: dict[int, tuple[str, str]] = {}
 
-    def judge(self, cases: Sequence[Case]) -> list[Verdict]:
-        """Run the cases until each fault is found, or there are none left."""
-        for case in cases:
-            if len(self._found) == len(self._faults):
-                break
-            self._try(case)
-        verdicts = []
-        for number, one in enumerate(self._faults):
-            name, verdict = self._found.get(number, (None, ""))
-            verdicts.append(Verdict(one.group, one.words, name, verdict, self._runs[number]))
-        return verdicts
-
-    def _try(self, case: Case) -> None:
-        usual: dict[tuple[str, str], _Usual | None] = {}
-        for number, fault in enumerate(self._faults):
-            if number in self._found or (fault.suites and case.suite not in fault.suites):
-                continue
-            setup = Setup(fault.executor, fault.robot)
-            key = (fault.executor, fault.robot)
-            if key not in usual:
-                usual[key] = _usual(case, setup)
-            before = usual[key]
-            if before is None or (fault.op and fault.op not in before.ops):
-                continue
-            self._runs[number] += 1
-            verdict = _with(fault, case, setup, before)
-            if verdict:
-                self._found[number] = case.name, verdict
+def _judge(fault: Fault, cases: Sequence[Case]) -> Verdict:
+    runs = 0
+    setup = Setup(fault.executor, fault.robot)
+    for case in _of_suites(fault, cases):
+        if fault.op and fault.op not in _instructions(case):
+            continue
+        usual = _usual(case, setup)
+        if usual is None:
+            continue
+        runs += 1
+        verdict = _with(fault, case, setup, usual.seen)
+        if verdict:
+            return Verdict(fault.group, fault.words, case.name, verdict, runs)
+    return Verdict(fault.group, fault.words, None, "", runs)
 
 
 @dataclass(frozen=True, slots=True)
 class _Usual:
-    """A case without any fault: what was seen, and the instructions it has on a machine."""
+    """A case without any fault; ``seen`` is kept where a machine will be compared with it."""
 
-    seen: Observation
-    ops: frozenset[str]
+    seen: Observation | None
 
 
+@cache
+def _instructions(case: Case) -> frozenset[str]:
+    """The instructions that a case has on a machine; none where it cannot be compiled."""
+    program = prepared(case)
+    try:
+        return frozenset() if isinstance(program, LinkError) else machine.instructions(program)
+    except LinkError:
+        return frozenset()
+
+
+@cache
 def _usual(case: Case, setup: Setup) -> _Usual | None:
     """``None`` for a case that does not pass as it is: it cannot find anything."""
-    ops: set[str] = set()
-
-    def make(right: Any) -> Any:
-        def executor(self: Prepared, name: str, *given: Any) -> Any:
-            if name == "vm":
-                ops.update(machine.instructions(self))
-            return right(self, name, *given)
-
-        return executor
-
-    with on(Prepared, "executor", make)():
-        (result,) = run_case(case, [setup], KnownFailures()).results
+    (result,) = run_case(case, [setup], KnownFailures()).results
     if result.verdict != "pass" or result.observation is None:
         return None
-    return _Usual(result.observation, frozenset(ops))
+    return _Usual(None if setup.executor == "tree" else result.observation)
 
 
-def _with(fault: Fault, case: Case, setup: Setup, before: _Usual) -> str:
+def _with(fault: Fault, case: Case, setup: Setup, before: Observation | None) -> str:
     """The verdict on a case with a fault where it is no longer ``pass``, else an empty text."""
     with several(fault.plant, *_ending())():
         (result,) = run_case(case, [setup], KnownFailures()).results
-    if result.verdict != "pass":
-        return result.verdict
-    if setup.executor == "tree" or result.observation is None:
-        return ""
-    names = ("right", "wrong")
-    return "fail" if first_divergence(names, before.seen, result.observation) else ""
+    if before is not None and result.observation is not None:
+        names = ("right", "wrong")
+        if first_divergence(names, before, result.observation):
+            return "fail"
+    return "" if result.verdict == "pass" else result.verdict
 
 
 def _ending() -> Iterator[Callable[[], Any]]:

@@ -293,7 +293,7 @@ class Program:
     @cached_property
     def image(self) -> bytes:
         """The program as bytes, made once for all machines that run it."""
-        from interp.bytecode.image import write_image  # which reads and writes programs
+        from interp.bytecode.image_writer import write_image  # which reads and writes programs
 
         return write_image(self)
 

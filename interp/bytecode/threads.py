@@ -3,7 +3,7 @@
 A code object is made ready from its last instruction to its first, so that each knows the one
 behind it; where it goes elsewhere it looks its target up. This is faster in Python than one loop
 that asks for every opcode, and keeps every instruction a few lines of its own: they stand in
-`interp.bytecode.control`, `moving` and `computing`.
+`interp.bytecode.control`, `moving`, `arrays` and `computing`.
 
 Nothing of this looks at what `interp.bytecode.verify` has made sure of.
 """
@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.arrays import Arrays
 from interp.bytecode.computing import Computing
 from interp.bytecode.control import Control
 from interp.bytecode.kit import Here, Hooks, Kit, Rule
@@ -40,6 +41,7 @@ class Threads:
         self._rules: Mapping[Op, Rule] = {
             **Control(kit).rules(),
             **Moving(kit).rules(),
+            **Arrays(kit).rules(),
             **Computing(kit).rules(),
         }
 

@@ -25,13 +25,14 @@ from interp.debugging.client import (
     Watch,
 )
 from interp.debugging.conditions import evaluated, parsed, root_of
+from interp.debugging.open_routines import OpenRoutines
 from interp.debugging.selection import reason_against
-from interp.events import Kind, Sink
+from interp.events import Sink
 from interp.executor import Executor, Reader
 from interp.faults import Fault, LinkError, RuntimeFailure
 from interp.inspection import Inspectable
 from interp.program import CheckedProgram, Limits
-from interp.requests import At, Code, End, Fail, Move, MoveSpline, Path, Request, Slice, Value
+from interp.requests import At, Code, End, Fail, Move, MoveSpline, Request, Slice, Value
 
 __all__ = ["Client", "Debugger", "Make"]
 
@@ -77,7 +78,7 @@ class Debugger:
         read: Reader | None = None,
     ) -> None:
         self._limits = limits or Limits()
-        self._sink = _Calls(sink, program.start().name)
+        self._sink = OpenRoutines(sink, program.start().name)
         self._inner = make(replace(self._limits, per_slice=0), self._sink)
         self._program = program
         self._client = client
@@ -340,64 +341,6 @@ class Debugger:
         if isinstance(request, Fail):
             raise LinkError("the statement that was selected cannot begin")
         self._reason = Stop("selected", self._at)
-
-
-#: What it has to know itself.
-_OWN: frozenset[Kind] = frozenset({"call"})
-
-
-class _Calls:
-    """A sink that knows which routines are open, and passes on what the other one wants."""
-
-    def __init__(self, sink: Sink | None, first: str) -> None:
-        self._sink = sink
-        self.kinds: frozenset[Kind] = _OWN if sink is None else _OWN | sink.kinds
-        #: By depth: the name, where it was called, and the number of the activation.
-        self._open: list[tuple[str, At, int]] = [(first, At("", 0, 0), 0)]
-        self._serials = 0
-
-    def line(self, at: At) -> None:
-        """A statement begins."""
-        if self._sink is not None:
-            self._sink.line(at)
-
-    def assign(self, at: At, path: Path, value: Value | None) -> None:
-        """A variable was assigned."""
-        if self._sink is not None:
-            self._sink.assign(at, path, value)
-
-    def call(self, at: At, name: str) -> None:
-        """A routine is called."""
-        self._serials += 1
-        self._open[at.depth + 1 :] = [(name, at, self._serials)]
-        if self._sink is not None and "call" in self._sink.kinds:
-            self._sink.call(at, name)
-
-    def leave(self, at: At, name: str) -> None:
-        """A routine has ended."""
-        if self._sink is not None:
-            self._sink.leave(at, name)
-
-    def branch(self, at: At, way: int) -> None:
-        """A way was taken."""
-        if self._sink is not None:
-            self._sink.branch(at, way)
-
-    def frames(self, at: At) -> tuple[Frame, ...]:
-        """What is open when the program is at a place."""
-        found: list[Frame] = []
-        for name, called, _ in reversed(self._open[: at.depth + 1]):
-            found.append(Frame(name, at))
-            at = called
-        return tuple(found)
-
-    def serial(self, depth: int) -> int:
-        """The number of the activation at a depth."""
-        return self._open[min(depth, len(self._open) - 1)][2]
-
-    def is_open(self, serial: int, depth: int) -> bool:
-        """Whether an activation has not ended, when the program is so deep."""
-        return any(one[2] == serial for one in self._open[: depth + 1])
 
 
 def _is_of(wanted: str, file: str) -> bool:

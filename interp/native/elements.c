@@ -27,7 +27,6 @@ void krl_load(struct translator *at)
     krl_push_result(at);
 }
 
-/* The value on top goes into a register. */
 void krl_store_local(struct translator *at, int32_t place)
 {
     int32_t top = at->height - 1;
@@ -133,7 +132,6 @@ static int32_t known_place(const struct translator *at, const struct krl_array *
     return place * array->width;
 }
 
-/* An element of an array in the frame or the data lists. */
 void krl_element(struct translator *at, int is_local, int32_t base, int32_t type)
 {
     struct krl_array array = krl_array_of(at, base, type);
@@ -228,7 +226,6 @@ void krl_view(struct translator *at, const struct krl_type *type)
         krl_push_constant(at, KRL_TAG_INT, type->sizes[i]);
 }
 
-/* A step that takes so many places of the stack, all in place. */
 struct krl_step *krl_consume(struct translator *at, enum krl_step_op op, int32_t count)
 {
     krl_settle_all(at);
@@ -237,4 +234,3 @@ struct krl_step *krl_consume(struct translator *at, enum krl_step_op op, int32_t
     step->a = krl_place_of(at, at->height);
     return step;
 }
-

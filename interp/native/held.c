@@ -62,9 +62,8 @@ struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t
 
 /* ---------------------------------------------------------------------------- elements */
 
-/* The step that reaches an element; `a` is the register that gets or has the value or address. */
 struct krl_step *krl_reach(struct translator *at, enum access access, const struct held *element,
-                              int32_t a)
+                           int32_t a)
 {
     static const uint16_t steps[3][3][2] = {
         {{KRL_STEP_INDEX_DATA, KRL_STEP_INDEX_LOCAL},
@@ -94,7 +93,6 @@ struct krl_step *krl_reach(struct translator *at, enum access access, const stru
 
 /* ---------------------------------------------------------------------------- settling */
 
-/* Puts what lies there into its place. */
 void krl_settle(struct translator *at, int32_t number)
 {
     struct held *held = &at->stack[number];
@@ -132,7 +130,6 @@ void krl_settle_to(struct translator *at, int32_t height)
         krl_settle(at, number);
 }
 
-/* Puts what can fault into its place, up to a height. */
 void krl_secure(struct translator *at, int32_t height)
 {
     for (int32_t number = 0; number < height; number++)
@@ -145,7 +142,6 @@ int krl_is_constant(const struct translator *at, int32_t number)
     return at->stack[number].kind == CONSTANT;
 }
 
-/* The register that has what lies there. */
 int32_t krl_operand(struct translator *at, int32_t number)
 {
     if (at->stack[number].kind == VARIABLE)
@@ -170,7 +166,6 @@ void krl_push_places(struct translator *at, int32_t count)
         krl_push(at, (struct held){IN_PLACE, 0, 0, 0, 0, 0});
 }
 
-/* The last step gives the value of the place that is put on the stack now. */
 void krl_push_result(struct translator *at)
 {
     if (!at->is_wrong)
@@ -179,13 +174,11 @@ void krl_push_result(struct translator *at)
     at->result = at->count - 1;
 }
 
-/* Whether the last step has put there what lies there. */
 int krl_is_fresh(const struct translator *at, int32_t number)
 {
     return at->result >= 0 && at->result == at->count - 1 && at->steps[at->result].a == krl_place_of(at, number);
 }
 
-/* Puts all that lies on the stack into its place. */
 void krl_settle_all(struct translator *at)
 {
     krl_settle_to(at, at->height);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int told,
-             struct krl_refusal *why)
+                   struct krl_refusal *why)
 {
     memset(machine, 0, sizeof *machine);
     machine->told = told;

@@ -120,9 +120,11 @@ struct krl_stopped {
 /* What a step for Python is about: an instruction, or the end of a call or the call it is part of. */
 enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 
+/* ---------------------------------------------------------------------------- machine.c */
+
 /* Loads an image. 0 where it is refused. */
 int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int told,
-             struct krl_refusal *why);
+                   struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 
 /* Gives a machine its memory, so much that nothing is allotted later: its own, with the data lists as
@@ -143,16 +145,20 @@ int krl_open(struct krl_machine *machine, int32_t code);
 /* Forgets the frame that runs and goes back to the one before. */
 void krl_close(struct krl_machine *machine);
 
+/* ---------------------------------------------------------------------------- run.c */
+
 /* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
 
-/* ---------------------------------------------------------------------------- its parts */
+/* Puts handlers into steps. */
+void krl_thread(struct krl_step *steps, int32_t count);
+
+/* ---------------------------------------------------------------------------- translate.c */
 
 /* Translates all code objects. */
 int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
 
-/* Puts handlers into steps. */
-void krl_thread(struct krl_step *steps, int32_t count);
+/* ---------------------------------------------------------------------------- functions.c */
 
 /* Functions give a fault's code or KRL_FINE. */
 enum { KRL_FINE = -1 };
@@ -166,6 +172,8 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
 /* `target` gets the pose left:right, or the inverse, in `size` cells; they may be the same. */
 int krl_compose(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
 int krl_invert(krl_cell *target, const krl_cell *pose, int32_t size);
+
+/* ---------------------------------------------------------------------------- texts.c */
 
 enum krl_text_function {
     KRL_STRLEN, KRL_STRDECLLEN, KRL_STRCLEAR, KRL_STRADD, KRL_STRCOPY, KRL_STRCOMP, KRL_STRFIND,

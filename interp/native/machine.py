@@ -15,7 +15,7 @@ from typing import Any, cast
 
 from interp.bytecode import vm
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.image import write_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.program import Program
 from interp.bytecode.services import Services
 from interp.bytecode.state import Completion, Operation, State

@@ -54,6 +54,12 @@ struct krl_handed {
     int32_t dimensions;
 };
 
+/* How many cells it has on the stack. */
+static inline int32_t krl_stack_cells(const struct krl_handed *handed)
+{
+    return 1 + handed->dimensions;
+}
+
 /* A part of a call of a predefined function, as far as this machine carries it out itself. */
 enum krl_part_kind { KRL_PART_INPUT, KRL_PART_CHANGED, KRL_PART_STRING, KRL_PART_CHOICE, KRL_PART_OTHER };
 
@@ -88,6 +94,13 @@ struct krl_instruction {
     uint32_t op;
     int32_t operands[4]; /* targets are places of instructions, not of words */
 };
+
+/* Whether an instruction of this kind never goes on to the next one. */
+static inline int krl_is_end(uint32_t op)
+{
+    return op == KRL_JUMP || op == KRL_RETURN || op == KRL_RETURN_VALUE || op == KRL_FAIL ||
+           op == KRL_UNLINKED;
+}
 
 struct krl_code {
     enum krl_code_kind kind;
@@ -140,6 +153,17 @@ struct krl_refusal {
     char text[120];
 };
 
+/* ---------------------------------------------------------------------------- program.c */
+
+/* Memory of zeros that is freed with the program, or NULL. */
+void *krl_allot(struct krl_program *program, size_t count, size_t size);
+void krl_free_program(struct krl_program *program);
+
+/* Notes the reason and gives 0. */
+int krl_refuse(struct krl_refusal *why, const char *reason);
+
+/* ---------------------------------------------------------------------------- image.c */
+
 /* Reads an image. It copies what it needs. 0 where the image is refused; then nothing is left. */
 int krl_read_image(struct krl_program *program, const uint8_t *image, size_t length,
                    struct krl_refusal *why);
@@ -147,16 +171,7 @@ int krl_read_image(struct krl_program *program, const uint8_t *image, size_t len
 /* The CRC-32 that an image has of what follows its header. */
 uint32_t krl_checksum(const uint8_t *bytes, size_t length);
 
-/* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
-int krl_verify(struct krl_program *program, struct krl_refusal *why);
-
-void krl_free_program(struct krl_program *program);
-
-/* Memory of zeros that is freed with the program, or NULL. */
-void *krl_allot(struct krl_program *program, size_t count, size_t size);
-
-/* Notes the reason and gives 0. */
-int krl_refuse(struct krl_refusal *why, const char *reason);
+/* ---------------------------------------------------------------------------- types.c */
 
 /* The type that a cell of a type has: a scalar or an enumeration. */
 int32_t krl_kind_at(const struct krl_program *program, int32_t type, int32_t offset);
@@ -176,10 +191,9 @@ const struct krl_variable *krl_data_at(const struct krl_program *program, int32_
 /* The parameter or local that has a cell of the frame, or NULL. */
 const struct krl_slot *krl_slot_at(const struct krl_code *code, int32_t offset);
 
-/* How many cells an argument has on the stack. */
-static inline int32_t krl_stack_cells(const struct krl_handed *handed)
-{
-    return 1 + handed->dimensions;
-}
+/* ---------------------------------------------------------------------------- verify.c */
+
+/* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
+int krl_verify(struct krl_program *program, struct krl_refusal *why);
 
 #endif

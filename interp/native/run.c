@@ -1,106 +1,11 @@
 /* The interpreter: what each step does.
  *
- * Where the compiler has labels as values, each step goes straight to the next one; else, or with
- * KRL_SWITCH, there is one switch. Each step is there twice: as it is, and with the beginning of a
- * statement before it.
+ * It is one long function: only within one can steps go straight to one another and keep what they
+ * all use in registers. steps.h tells what their operands are. What they are written with stands in
+ * dispatch.h, what they do with arrays in blocks.h.
  */
-#include "machine.h"
-#include "steps.h"
-
-#if defined(__GNUC__) && !defined(KRL_SWITCH)
-#define KRL_THREADED 1
-#define UNLIKELY(condition) __builtin_expect(!!(condition), 0)
-#else
-#define KRL_THREADED 0
-#define UNLIKELY(condition) (condition)
-#endif
-
-/* ---------------------------------------------------------------------------- arithmetic */
-
-#if KRL_THREADED
-#define adds(a, b, result) __builtin_add_overflow(a, b, result)
-#define subtracts(a, b, result) __builtin_sub_overflow(a, b, result)
-#define multiplies(a, b, result) __builtin_mul_overflow(a, b, result)
-#else
-static int fits(int64_t wide, int32_t *result)
-{
-    *result = (int32_t)wide;
-    return wide != *result;
-}
-#define adds(a, b, result) fits((int64_t)(a) + (b), result)
-#define subtracts(a, b, result) fits((int64_t)(a) - (b), result)
-#define multiplies(a, b, result) fits((int64_t)(a) * (b), result)
-#endif
-
-/* The nearest INT, halves away from zero; not 0 where there is none. The sum with a half is that of
- * doubles: that of singles would round. */
-static int rounds(float number, int32_t *result)
-{
-    double wide = number >= 0 ? (double)number + 0.5 : (double)number - 0.5;
-    if (wide >= 2147483648.0 || wide <= -2147483649.0)
-        return 1;
-    *result = (int32_t)wide; /* towards zero */
-    return 0;
-}
-
-/* ---------------------------------------------------------------------------- arrays */
-
-/* The place of the element that indices lead to, or -1. They have been looked at: all have values. */
-static int32_t flat(const int32_t *sizes, int32_t dimensions, const krl_cell *indices)
-{
-    int32_t place = 0;
-    for (int32_t i = 0; i < dimensions; i++) {
-        int32_t index = krl_int_in(indices[i]);
-        if (index < 1 || index > sizes[i])
-            return -1;
-        place = place * sizes[i] + index - 1;
-    }
-    return place;
-}
-
-/* The sizes of a view, which lie behind its address. */
-static void view_sizes(const krl_cell *view, int32_t dimensions, int32_t *sizes)
-{
-    for (int32_t i = 0; i < dimensions; i++)
-        sizes[i] = krl_int_in(view[1 + i]);
-}
-
-static void copy(krl_cell *target, const krl_cell *source, int32_t count)
-{
-    memmove(target, source, (size_t)count * sizeof *target);
-}
-
-static void blank(krl_cell *target, int32_t count)
-{
-    memset(target, 0, (size_t)count * sizeof *target);
-}
-
-/* As interp.values.fill does it with arrays; gives a fault. */
-static int fill_array(krl_cell *cells, const krl_cell *target, const krl_cell *source, int32_t width,
-                      int32_t dimensions)
-{
-    int32_t length = width, given = width;
-    for (int32_t i = 1; i <= dimensions; i++) {
-        length *= krl_int_in(target[i]);
-        given *= krl_int_in(source[i]);
-        if (dimensions > 1 && target[i] != source[i])
-            return KRL_FAULT_INADMISSIBLE;
-    }
-    int32_t count = given < length ? given : length;
-    krl_cell *to = cells + krl_int_in(target[0]);
-    copy(to, cells + krl_int_in(source[0]), count);
-    blank(to + count, length - count);
-    return KRL_FINE;
-}
-
-static void set_text(krl_cell *target, int32_t length, const struct krl_letters *text)
-{
-    int32_t count = text->count < length ? text->count : length;
-    copy(target, text->cells, count);
-    blank(target + count, length - count);
-}
-
-/* ---------------------------------------------------------------------------- calls */
+#include "blocks.h"
+#include "dispatch.h"
 
 /* Puts arguments, of which structures are references, into a frame, and takes the rest's values away. */
 static void receive(struct krl_machine *machine, const struct krl_routine *callee, krl_cell *frame,
@@ -112,216 +17,11 @@ static void receive(struct krl_machine *machine, const struct krl_routine *calle
         int is_copied = slot->handed.mode == KRL_BY_VALUE &&
                         !krl_is_plain(&machine->program, slot->handed.type);
         const krl_cell *given = is_copied ? machine->cells + krl_int_in(*arguments) : arguments;
-        copy(frame + slot->offset, given, slot->cells);
+        krl_copy_cells(frame + slot->offset, given, slot->cells);
         arguments += krl_stack_cells(&slot->handed);
     }
-    blank(frame + callee->received, callee->frame - callee->received);
+    krl_blank_cells(frame + callee->received, callee->frame - callee->received);
 }
-
-/* ---------------------------------------------------------------------------- the loop */
-
-#define REGISTER(number) fp[number]
-#define A REGISTER(pc->a)
-#define B REGISTER(pc->b)
-#define C REGISTER(pc->c)
-#define D REGISTER(pc->d)
-
-#define FAULT(name)                                                                                \
-    do {                                                                                           \
-        fault = KRL_FAULT_##name;                                                                  \
-        goto failed;                                                                               \
-    } while (0)
-#define FAULT_IF(condition, name)                                                                  \
-    do {                                                                                           \
-        if (UNLIKELY(condition))                                                                   \
-            goto name;                                                                             \
-    } while (0)
-/* What is read may have no value, unless it is known to come from another step. */
-#define READ(name, cell)                                                                           \
-    krl_cell name = (cell);                                                                        \
-    FAULT_IF(name == KRL_NOTHING, uninitialised)
-
-#define BEGIN_STATEMENT()                                                                          \
-    do {                                                                                           \
-        if (UNLIKELY(left <= 1))                                                                   \
-            goto wait;                                                                             \
-        left--;                                                                                    \
-        statement = pc->statement;                                                                 \
-    } while (0)
-
-#if KRL_THREADED
-#define STEP(name)                                                                                 \
-    begin_##name : BEGIN_STATEMENT();                                                              \
-    do_##name:
-#define GO() goto *pc->handler
-#else
-#define STEP(name)                                                                                 \
-    case 2 * KRL_STEP_##name + 1:                                                                  \
-        BEGIN_STATEMENT();                                                                         \
-        /* fall through */                                                                         \
-    case 2 * KRL_STEP_##name:
-#define GO() goto dispatch
-#endif
-#define NEXT()                                                                                     \
-    do {                                                                                           \
-        pc++;                                                                                      \
-        GO();                                                                                      \
-    } while (0)
-#define JUMP()                                                                                     \
-    do {                                                                                           \
-        pc = (const struct krl_step *)((const char *)pc + pc->d);                                  \
-        GO();                                                                                      \
-    } while (0)
-
-#define REAL_RESULT(expression)                                                                    \
-    do {                                                                                           \
-        float result = (expression);                                                               \
-        FAULT_IF(!krl_is_finite(result), overflow);                                                \
-        A = krl_of_real(result);                                                                   \
-        NEXT();                                                                                    \
-    } while (0)
-#define INT_RESULT(operation, left_operand, right_operand)                                         \
-    do {                                                                                           \
-        int32_t result;                                                                            \
-        FAULT_IF(operation(left_operand, right_operand, &result), overflow);                       \
-        A = krl_of_int(result);                                                                    \
-        NEXT();                                                                                    \
-    } while (0)
-
-#define INT_STEP(name, operation)                                                                  \
-    STEP(name)                                                                                     \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        INT_RESULT(operation, krl_int_in(b), krl_int_in(c));                                       \
-    }
-#define INT_STEP_K(name, operation)                                                                \
-    STEP(name)                                                                                     \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        INT_RESULT(operation, krl_int_in(b), pc->c);                                               \
-    }
-#define REAL_STEP(name, operator)                                                                  \
-    STEP(name##_REAL)                                                                              \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        REAL_RESULT(krl_real_in(b) operator krl_real_in(c));                                       \
-    }                                                                                              \
-    STEP(name##_REAL_K)                                                                            \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        REAL_RESULT(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                    \
-    }
-#define RELATION_STEPS(name, operator)                                                             \
-    STEP(name##_INT)                                                                               \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        A = krl_of_bool(krl_int_in(b) operator krl_int_in(c));                                     \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(name##_INT_K)                                                                             \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        A = krl_of_bool(krl_int_in(b) operator pc->c);                                             \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(name##_REAL)                                                                              \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        A = krl_of_bool(krl_real_in(b) operator krl_real_in(c));                                   \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(name##_REAL_K)                                                                            \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        A = krl_of_bool(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_INT)                                                                      \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        if (krl_int_in(b) operator krl_int_in(c))                                                  \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_INT_K)                                                                    \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        if (krl_int_in(b) operator pc->c)                                                          \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_REAL)                                                                     \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        if (krl_real_in(b) operator krl_real_in(c))                                                \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_REAL_K)                                                                   \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        if (krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c))                             \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }
-/* Two operands that are looked at as numbers of 32 bits; both BOOL, or both INT. */
-#define BIT_STEP(name, make, operator)                                                             \
-    STEP(name)                                                                                     \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        A = make(krl_int_in(b) operator krl_int_in(c));                                            \
-        NEXT();                                                                                    \
-    }
-
-/* The element at an address: its address, its value, or the place for one. */
-#define ACCESS_STEPS(suffix, base, find)                                                           \
-    STEP(INDEX_##suffix)                                                                           \
-    {                                                                                              \
-        find;                                                                                      \
-        A = krl_of_int((int32_t)((base) + place - cells));                                         \
-        NEXT();                                                                                    \
-    }
-#define ELEMENT_STEPS(get, put, base, find)                                                        \
-    STEP(get)                                                                                      \
-    {                                                                                              \
-        find;                                                                                      \
-        READ(found, (base)[place]);                                                                \
-        A = found;                                                                                 \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(put)                                                                                      \
-    {                                                                                              \
-        find;                                                                                      \
-        READ(value, A);                                                                            \
-        (base)[place] = value;                                                                     \
-        NEXT();                                                                                    \
-    }
-/* Indices count from 1; as numbers without sign, 0 and negative ones are too large. */
-#define FIND_ONE                                                                                   \
-    READ(index, B);                                                                                \
-    uint32_t number = (uint32_t)index - 1;                                                         \
-    FAULT_IF(number >= (uint32_t)pc->d, index_);                                                   \
-    int32_t place = pc->c + (int32_t)number
-#define FIND_WIDE                                                                                  \
-    const struct krl_array *array = &machine->arrays[pc->c];                                       \
-    READ(index, B);                                                                                \
-    uint32_t number = (uint32_t)index - 1;                                                         \
-    FAULT_IF(number >= (uint32_t)array->sizes[0], index_);                                         \
-    int32_t place = array->base + (int32_t)number * array->width
-#define FIND_TWO                                                                                   \
-    const struct krl_array *array = &machine->arrays[pc->c];                                       \
-    READ(index, B);                                                                                \
-    READ(other, D);                                                                                \
-    uint32_t number = (uint32_t)index - 1, behind = (uint32_t)other - 1;                           \
-    FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], index_);  \
-    int32_t place = array->base + ((int32_t)number * array->sizes[1] + (int32_t)behind) * array->width
 
 static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, int is_begun,
                                     const void *const **handlers)
@@ -375,50 +75,10 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
             JUMP();
         NEXT();
     }
-    STEP(FOR_UP)
-    {
-        READ(counter, A);
-        READ(limit, B);
-        int32_t result;
-        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), overflow);
-        A = krl_of_int(result);
-        if (result <= krl_int_in(limit))
-            JUMP();
-        NEXT();
-    }
-    STEP(FOR_DOWN)
-    {
-        READ(counter, A);
-        READ(limit, B);
-        int32_t result;
-        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), overflow);
-        A = krl_of_int(result);
-        if (result >= krl_int_in(limit))
-            JUMP();
-        NEXT();
-    }
-    STEP(FOR_DATA_UP)
-    {
-        READ(counter, cells[pc->a]);
-        READ(limit, B);
-        int32_t result;
-        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), overflow);
-        cells[pc->a] = krl_of_int(result);
-        if (result <= krl_int_in(limit))
-            JUMP();
-        NEXT();
-    }
-    STEP(FOR_DATA_DOWN)
-    {
-        READ(counter, cells[pc->a]);
-        READ(limit, B);
-        int32_t result;
-        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), overflow);
-        cells[pc->a] = krl_of_int(result);
-        if (result >= krl_int_in(limit))
-            JUMP();
-        NEXT();
-    }
+    FOR_STEP(FOR_UP, A, <=)
+    FOR_STEP(FOR_DOWN, A, >=)
+    FOR_STEP(FOR_DATA_UP, cells[pc->a], <=)
+    FOR_STEP(FOR_DATA_DOWN, cells[pc->a], >=)
 #define RELATION_STEPS_(name, operator) RELATION_STEPS(name, operator)
     KRL_COMPARISONS(RELATION_STEPS_)
 
@@ -519,7 +179,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     STEP(INDEX_ANY)
     {
         const struct krl_array *array = &machine->arrays[pc->c];
-        int32_t place = flat(array->sizes, array->dimensions, &B);
+        int32_t place = krl_flat_place(array->sizes, array->dimensions, &B);
         FAULT_IF(place < 0, index_);
         int32_t base = pc->tag == 0   ? krl_int_in(A)
                        : pc->tag == 1 ? (int32_t)(fp - cells) + array->base
@@ -540,8 +200,8 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     {
         int32_t sizes[KRL_MOST_DIMENSIONS];
         READ(base, C);
-        view_sizes(&C, pc->tag, sizes);
-        int32_t place = flat(sizes, pc->tag, &A);
+        krl_view_sizes(&C, pc->tag, sizes);
+        int32_t place = krl_flat_place(sizes, pc->tag, &A);
         FAULT_IF(place < 0, index_);
         A = krl_of_int(krl_int_in(base) + place * pc->d);
         NEXT();
@@ -549,7 +209,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     STEP(ROW)
     {
         const struct krl_array *array = &machine->arrays[pc->c];
-        int32_t place = flat(array->sizes, pc->b, &A + 1), width = array->width;
+        int32_t place = krl_flat_place(array->sizes, pc->b, &A + 1), width = array->width;
         FAULT_IF(place < 0, index_);
         for (int32_t i = pc->b; i < array->dimensions; i++)
             width *= array->sizes[i];
@@ -562,10 +222,10 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     {
         int32_t sizes[KRL_MOST_DIMENSIONS], width = pc->d;
         READ(base, C);
-        view_sizes(&C, pc->tag, sizes);
+        krl_view_sizes(&C, pc->tag, sizes);
         for (int32_t i = pc->b; i < pc->tag; i++)
             width *= sizes[i];
-        int32_t place = flat(sizes, pc->b, &A);
+        int32_t place = krl_flat_place(sizes, pc->b, &A);
         FAULT_IF(place < 0, index_);
         A = krl_of_int(krl_int_in(base) + place * width);
         for (int32_t i = pc->b; i < pc->tag; i++)
@@ -577,25 +237,25 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     STEP(COPY)
     {
         machine->last = krl_int_in(A);
-        copy(cells + krl_int_in(A), cells + krl_int_in(B), pc->c);
+        krl_copy_cells(cells + krl_int_in(A), cells + krl_int_in(B), pc->c);
         NEXT();
     }
     STEP(CLEAR)
     {
-        blank(cells + krl_int_in(A), pc->c);
+        krl_blank_cells(cells + krl_int_in(A), pc->c);
         NEXT();
     }
     STEP(FILL_POSE)
     {
         krl_cell *target = cells + krl_int_in(A);
         machine->last = krl_int_in(A);
-        copy(target, cells + krl_int_in(B), pc->d);
-        blank(target + pc->d, pc->c - pc->d);
+        krl_copy_cells(target, cells + krl_int_in(B), pc->d);
+        krl_blank_cells(target + pc->d, pc->c - pc->d);
         NEXT();
     }
     STEP(FILL_ARRAY)
     {
-        fault = fill_array(cells, &A, &B, pc->c, pc->d);
+        fault = krl_fill_array(cells, &A, &B, pc->c, pc->d);
         if (UNLIKELY(fault != KRL_FINE))
             goto failed;
         machine->last = krl_int_in(A);
@@ -607,14 +267,14 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
         for (int32_t i = 1; i <= pc->tag; i++)
             length *= krl_int_in((&A)[i]);
         FAULT_IF(length > pc->c, stack);
-        copy(&B, cells + krl_int_in(A), length);
+        krl_copy_cells(&B, cells + krl_int_in(A), length);
         A = krl_of_int((int32_t)(&B - cells));
         NEXT();
     }
     STEP(SET_TEXT)
     {
         machine->last = krl_int_in(A);
-        set_text(cells + krl_int_in(A), krl_int_in((&A)[1]), &machine->program.texts[pc->b]);
+        krl_set_text(cells + krl_int_in(A), krl_int_in((&A)[1]), &machine->program.texts[pc->b]);
         NEXT();
     }
     STEP(COMPOSE)
@@ -750,48 +410,20 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     /* ---- calls */
     STEP(CALL)
     {
-        const struct krl_routine *callee = &machine->routines[pc->b];
-        int32_t extent = machine->extent + pc->c;
-        FAULT_IF(machine->open >= machine->most_calls || callee->frame > KRL_MAX_CELLS - extent, stack);
-        struct krl_call *call = &machine->calls[machine->open++];
-        call->step = (int32_t)(pc + 1 - machine->steps);
-        call->code = machine->code;
-        call->fp = (int32_t)(fp - cells);
-        call->extent = machine->extent;
-        call->statement = statement;
-        call->serial = machine->serial;
+        OPEN_CALL();
         fp = &A;
         call->result = (int32_t)(fp - cells);
         for (int32_t i = callee->received; i < callee->frame; i++)
             fp[i] = KRL_NOTHING;
-        machine->code = pc->b;
-        machine->extent = extent;
-        machine->serial = callee->is_owner ? ++machine->serials : 0;
-        statement = -1;
-        pc = callee->entry;
-        GO();
+        ENTER();
     }
     STEP(CALL_COPY)
     {
-        const struct krl_routine *callee = &machine->routines[pc->b];
-        int32_t extent = machine->extent + pc->c;
-        FAULT_IF(machine->open >= machine->most_calls || callee->frame > KRL_MAX_CELLS - extent, stack);
-        struct krl_call *call = &machine->calls[machine->open++];
-        call->step = (int32_t)(pc + 1 - machine->steps);
-        call->code = machine->code;
-        call->fp = (int32_t)(fp - cells);
-        call->extent = machine->extent;
-        call->statement = statement;
-        call->serial = machine->serial;
+        OPEN_CALL();
         call->result = (int32_t)(&A - cells);
         receive(machine, callee, fp + pc->d, &A);
         fp += pc->d;
-        machine->code = pc->b;
-        machine->extent = extent;
-        machine->serial = callee->is_owner ? ++machine->serials : 0;
-        statement = -1;
-        pc = callee->entry;
-        GO();
+        ENTER();
     }
     STEP(CHECK_CALL)
     {

@@ -6,7 +6,9 @@ module          what it is
 `executor`      the port: the stack of routines, interrupts, RESUME
 `statements`    control flow and all statements that are no motion
 `motions`       statements that only ask the world: motions, triggers, interrupts, cyclic signals
-`expressions`   values, variables, calls
+`calls`         calls of routines and of what the controller brings along
+`expressions`   values of literals, operators, aggregates
+`designators`   variables, members, elements, and access to them
 `places`        where values are: in the program or in the world
 `names`         variables by a text that names them
 `memory`        the data lists and what they begin with

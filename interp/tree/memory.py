@@ -15,7 +15,7 @@ from grammar.scopes import Found
 from grammar.symbols import Symbol
 from interp.faults import LinkError
 from interp.program import CheckedProgram, Unit
-from interp.tree.expressions import Expressions
+from interp.tree.calls import Calls
 from interp.tree.places import Local, Place, fresh
 from interp.tree.run import Frame, Run, at_once
 from interp.values import Value, copied
@@ -96,7 +96,7 @@ def _initialise(run: Run, unit: Unit, content: ast.DataList) -> None:
                 raise LinkError(f"{unit.module.path}:{line}: {error}") from None
 
 
-class _DataList(Expressions):
+class _DataList(Calls):
     """The values of a data list."""
 
     def declared(self, found: Found, signals: int = 0) -> Place:

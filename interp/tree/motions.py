@@ -23,7 +23,7 @@ from interp.requests import (
     SwitchInterrupt,
     SwitchSignal,
 )
-from interp.tree.expressions import Expressions
+from interp.tree.calls import Calls
 from interp.tree.places import Remote, of_type
 from interp.tree.run import Steps
 from interp.values import Value, copied, text_of
@@ -31,7 +31,7 @@ from interp.values import Value, copied, text_of
 __all__ = ["Motions"]
 
 
-class Motions(Expressions):
+class Motions(Calls):
     """The statements that ask the world to do something."""
 
     # ----------------------------------------------------------------------- motions

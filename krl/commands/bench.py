@@ -1,11 +1,9 @@
 """`krl bench`: how good and how fast the tools themselves are."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
-from rich import box
 from rich.console import Console
 from rich.table import Table
 
@@ -17,12 +15,13 @@ from krl.commands.bench_programs import programs
 from krl.commands.bench_real_code import real_code
 from krl.commands.bench_vm import bench_vm
 from krl.door import FINE, Unusable
+from krl.figures import figures
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["app"]
 
-_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
 _MB = 1_000_000
 _LARGEST = 2_000
 
@@ -43,16 +42,8 @@ def _bench() -> None:
 
 @app.command("recover")
 def recover(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives to read; default: the programs in corpus/.",
-        ),
-    ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
     sizes: Annotated[
         str,
         typer.Option(
@@ -70,10 +61,9 @@ def recover(
     from recovery.ingest import IngestError
     from recovery.speed import measure, steps
 
+    check_files(json_file)
     wanted = _sizes(sizes)
-    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
-    if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    roots = programs_or_ours(paths)
     try:
         grammar = read_file(GRAMMAR)
         with progress_bar("measuring", steps(wanted)) as advance:
@@ -89,16 +79,8 @@ def recover(
 
 @app.command("check")
 def check(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives to check; default: the programs in corpus/.",
-        ),
-    ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
     sizes: Annotated[
         str,
         typer.Option(
@@ -111,10 +93,9 @@ def check(
     from recovery.check_speed import measure_check, steps
     from recovery.ingest import IngestError
 
+    check_files(json_file)
     wanted = _sizes(sizes)
-    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
-    if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    roots = programs_or_ours(paths)
     try:
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure_check(roots, sizes=wanted, on_step=advance)
@@ -148,7 +129,7 @@ def _print_speed(record: Mapping[str, Any]) -> None:
         f"{record['failures']:,} failures; Python {record['python']}",
         soft_wrap=True,
     )
-    console.print(_figures(record))
+    console.print(_speeds(record))
     console.print(_shares(record))
     console.print(_beside_antlr(record["antlr"]))
     if record["scaling"]:
@@ -168,7 +149,7 @@ def _print_check(record: Mapping[str, Any]) -> None:
         soft_wrap=True,
     )
     console.print(
-        _table(
+        figures(
             ("figure", "", "aim"),
             [
                 ("first check", f"{record['s_per_mb']:.2f} s/MB", "6 s/MB"),
@@ -188,7 +169,9 @@ def _print_check(record: Mapping[str, Any]) -> None:
             )
             for entry in record["scaling"]
         ]
-        console.print(_table(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows))
+        console.print(
+            figures(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows)
+        )
         growth = record["memory_growth_mb"]
         more = "" if growth is None else f", {growth:+,.0f} MB of memory"
         console.print(
@@ -198,7 +181,7 @@ def _print_check(record: Mapping[str, Any]) -> None:
 
 
 def _shares(record: Mapping[str, Any]) -> Table:
-    return _table(
+    return figures(
         ("where the time goes", "seconds", "share"),
         [
             (phase["name"], f"{phase['seconds']:.3f}", f"{100 * phase['share']:.1f} %")
@@ -207,9 +190,9 @@ def _shares(record: Mapping[str, Any]) -> Table:
     )
 
 
-def _figures(record: Mapping[str, Any]) -> Table:
+def _speeds(record: Mapping[str, Any]) -> Table:
     ratio = record["ratio_vs_antlr_python"]
-    return _table(
+    return figures(
         ("figure", "", "aim"),
         [
             ("all failures, cold", _rate(record["bytes_per_s"]), "2 MB/s"),
@@ -236,7 +219,7 @@ def _beside_antlr(antlr: Mapping[str, Any]) -> Table:
                 _times(side["ratio"]),
             )
         )
-    return _table(("beside ANTLR, MB/s", "files", "MB", "tokens", "ANTLR", "ours", ""), rows)
+    return figures(("beside ANTLR, MB/s", "files", "MB", "tokens", "ANTLR", "ours", ""), rows)
 
 
 def _scaling(record: Mapping[str, Any]) -> Table:
@@ -251,22 +234,13 @@ def _scaling(record: Mapping[str, Any]) -> Table:
         )
         for entry in record["scaling"]
     ]
-    return _table(("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"), rows)
+    return figures(("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"), rows)
 
 
 def _growth(record: Mapping[str, Any]) -> str:
     growth = record["memory_growth_mb"]
     more = "" if growth is None else f", {growth:+,.0f} MB of memory"
     return f"The last against the first: {record['linear']:.2f} times the speed{more}"
-
-
-def _table(columns: Sequence[str], rows: Sequence[tuple[str, ...]]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for place, heading in enumerate(columns):
-        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
-    for row in rows:
-        table.add_row(*row)
-    return table
 
 
 def _rate(bytes_per_s: float) -> str:

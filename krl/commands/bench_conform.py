@@ -2,48 +2,39 @@
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
 from krl.door import FINE, Unusable
+from krl.extras import expected_extras
+from krl.figures import figures
+from krl.options import JobsOption, JsonOption
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["conform"]
 
 
 def conform(
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
     group: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="Only faults of this group; may be repeated."),
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
+    jobs: JobsOption = None,
 ) -> int:
     """Plant faults into the controller, the arm and the machine in Python; see which cases notice.
 
     A fault is found by a case that passes without it and not with it. Cases a second are those of
     all cases, with the tree interpreter and no robot, in one process.
     """
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
-    try:
+    check_files(json_file)
+    with expected_extras():
         from conformance.case import CaseError, find_cases
-        from conformance.sensitivity import measure
+        from conformance.sensitivity import measure, speed_of
         from conformance.sensitivity.trial import all_faults
-    except ModuleNotFoundError as error:
-        raise Unusable(
-            f"this needs {error.name}, which is not installed: pip install 'krl-workbench[arm]'"
-        ) from error
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in groups:
@@ -53,8 +44,11 @@ def conform(
         cases = find_cases()
     except CaseError as error:
         raise Unusable(str(error)) from error
+    with progress_bar("timing cases", len(cases)) as bar:
+        speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
-        record = {"bench": "conform", **measure(cases, faults, jobs or os.cpu_count() or 1, bar)}
+        found = measure(faults, cases, jobs or os.cpu_count() or 1, bar)
+    record = {"bench": "conform", **found, **speed}
     if json_file is not None:
         write_json(record, json_file)
     _print(record)
@@ -63,14 +57,11 @@ def conform(
 
 def _print(record: Mapping[str, Any]) -> None:
     console = Console(highlight=False)
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    table.add_column("faults in")
-    for heading in ("planted", "found", "by a failure", "share"):
-        table.add_column(heading, justify="right")
+    table = figures(("faults in", "planted", "found", "by a failure", "share"))
     every = {"group": "all", **record}
     for row in (*record["groups"], every):
-        figures = (row["mutants"], row["killed"], row["failing"])
-        table.add_row(row["group"], *(f"{one:,}" for one in figures), f"{row['share']:.1%}")
+        counts = (row["mutants"], row["killed"], row["failing"])
+        table.add_row(row["group"], *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
     console.print(table)
     console.print(
         f"{record['cases_per_s']:,.1f} cases a second ({record['cases']:,} cases, "

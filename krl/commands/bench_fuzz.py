@@ -1,30 +1,26 @@
 """`krl bench fuzz`: how many planted faults `krl fuzz` finds."""
 
 import os
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from krl.door import FINE, Unusable
+from krl.door import FINE
+from krl.options import JobsOption, JsonOption
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["fuzz"]
 
 
 def fuzz(
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
     programs: Annotated[
         int, typer.Option(min=1, metavar="N", help="Each mutant meets so many programs at most.")
     ] = 1_000,
     seed: Annotated[int, typer.Option(metavar="N", help="Chooses the programs.")] = 1,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
+    jobs: JobsOption = None,
 ) -> int:
     """Plant faults into the machine in Python, one at a time, and see whether programs find them.
 
@@ -34,8 +30,7 @@ def fuzz(
     from conformance.differential.hunt import hunt, record_of
     from conformance.differential.mutants import mutants
 
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
+    check_files(json_file)
     with progress_bar("hunting mutants", len(mutants())) as bar:
         verdicts = hunt(programs, seed, jobs or os.cpu_count() or 1, bar)
     record = record_of(verdicts, programs, seed)

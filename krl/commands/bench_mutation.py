@@ -1,18 +1,17 @@
 """`krl bench mutation`: how well the search for causes finds its way back."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
 from krl.door import FINE, Unusable
+from krl.figures import figures
+from krl.options import JobsOption, JsonOption
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["mutation"]
 
@@ -40,9 +39,7 @@ def mutation(
         list[Path] | None,
         typer.Argument(metavar="[PATH]...", help="Programs; default: those in corpus/programs."),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
     grammar: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
     ] = None,
@@ -60,9 +57,7 @@ def mutation(
     ] = 6,
     runs: Annotated[int, typer.Option(min=1, metavar="N", help="How often it is worked out.")] = 10,
     seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
+    jobs: JobsOption = None,
 ) -> int:
     """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
     from grammar import GrammarError, read_file
@@ -73,6 +68,7 @@ def mutation(
     from recovery.specimens import choose, material_for
     from recovery.stability import rankings, same_ranking
 
+    check_files(json_file)
     try:
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], load(negatives), seed)
@@ -98,24 +94,13 @@ def mutation(
         write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
-        _table(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
+        figures(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
     )
     shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
-    rows = [
-        (kind, *(_plain(figures[n]) for n in shown)) for kind, figures in record["by_kind"].items()
-    ]
-    console.print(_table(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
+    rows = [(kind, *(_plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
+    console.print(figures(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
     return FINE
 
 
 def _plain(value: float | None) -> str:
     return "–" if value is None else f"{value:g}"
-
-
-def _table(columns: Sequence[str], rows: Sequence[tuple[str, ...]]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for place, heading in enumerate(columns):
-        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
-    for row in rows:
-        table.add_row(*row)
-    return table

@@ -13,9 +13,10 @@ from rich.table import Table
 
 from krl.commands.run import Executor, Robot
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.programs import sources_below
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
     from grammar.source import Source
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["programs"]
 
-_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
 _RESULTS = {
     "end": "to its end",
     "halt": "to a HALT",
@@ -38,13 +38,7 @@ _RESULTS = {
 
 
 def programs(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives; default: the programs in corpus/.",
-        ),
-    ] = None,
+    paths: ProgramsArgument = None,
     executor: Annotated[
         Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
     ] = None,
@@ -63,9 +57,7 @@ def programs(
     max_time: Annotated[
         float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
     ] = 600.0,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
@@ -78,8 +70,9 @@ def programs(
     from interp.main_programs import main_programs, run_main, survey_profile
     from interp.session import Setup
 
+    check_files(json_file)
     origins: dict[str, list[Source]] = {}
-    for origin, source in sources_below(paths or [d for d in _DEFAULT_CORPUS if d.is_dir()]):
+    for origin, source in sources_below(programs_or_ours(paths)):
         origins.setdefault(origin, []).append(source)
     setup = Setup(
         executor=executor.value if executor is not None else available()[-1],

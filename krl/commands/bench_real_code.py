@@ -3,25 +3,23 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.figures import figures
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.programs import sources_below
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
     from interp.trials import Trial, Unread
 
 __all__ = ["real_code"]
 
-_DEFAULT_CORPUS = (Path("corpus", "programs"), Path("corpus", "open"))
 _MOST_REASONS = 8
 _STAGES = (
     ("errors", "the checker finds an error"),
@@ -41,13 +39,7 @@ _ENDINGS = (
 
 
 def real_code(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives; default: the programs in corpus/.",
-        ),
-    ] = None,
+    paths: ProgramsArgument = None,
     executors: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,9 +50,7 @@ def real_code(
     statements: Annotated[
         int, typer.Option(min=1, metavar="N", help="Statements that a routine may run.")
     ] = 3_000,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
 ) -> int:
     """Try every routine of real programs: does it link, compile, verify, run, and alike everywhere?
 
@@ -71,11 +61,12 @@ def real_code(
     from interp.executors import available
     from interp.trials import Effort, Trial, Unread, trials
 
+    check_files(json_file)
     chosen = list(dict.fromkeys(executors or available()))
     for name in chosen:
         if name not in available():
             raise Unusable(f"--executor: there is no {name} here, but {', '.join(available())}")
-    roots = paths or [folder for folder in _DEFAULT_CORPUS if folder.is_dir()]
+    roots = programs_or_ours(paths)
     sources = [source for _, source in sources_below(roots)]
     tried: list[Trial] = []
     unread: list[Unread] = []
@@ -130,7 +121,7 @@ def _print(record: Mapping[str, Any]) -> None:
         f"{record['routines']:,} routines",
         soft_wrap=True,
     )
-    shares = _table("of the routines", "", "")
+    shares = figures(("of the routines", "", ""))
     for name, words in (
         ("checked", "check without an error"),
         ("links", "of these name nothing that no file has"),
@@ -141,7 +132,7 @@ def _print(record: Mapping[str, Any]) -> None:
         of = record["routines"] if name in ("checked", "ran") else record["checked"]
         shares.add_row(words, f"{record[name]:,}", _share(record[name], of))
     console.print(shares)
-    ran = _table("of those that ran", *record["executors"])
+    ran = figures(("of those that ran", *record["executors"]))
     for ending, words in _ENDINGS:
         counts = [record["endings"][name].get(ending, 0) for name in record["executors"]]
         if any(counts):
@@ -179,10 +170,3 @@ def _most(counts: Counter[str]) -> Iterator[str]:
 
 def _share(count: int, of: int) -> str:
     return f"{count / of:.1%}" if of else "–"
-
-
-def _table(*columns: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for number, column in enumerate(columns):
-        table.add_column(column, justify="left" if number == 0 else "right")
-    return table

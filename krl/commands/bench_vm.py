@@ -1,7 +1,6 @@
 """`krl bench vm`: how fast the executors compute, beside Lua."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -10,8 +9,10 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.door import FINE, Unusable
+from krl.figures import figures
+from krl.options import JsonOption
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["bench_vm"]
 
@@ -32,9 +33,7 @@ def bench_vm(
     rounds: Annotated[
         int, typer.Option(min=1, max=100, metavar="N", help="The best of so many runs counts.")
     ] = 3,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
 ) -> int:
     """Measure the executors: KRL kernels on each of them and in Lua 5.4, and what a request costs.
 
@@ -43,6 +42,7 @@ def bench_vm(
     from interp.kernels import KERNELS
     from interp.speed import MeasurementError, measure_executors, steps
 
+    check_files(json_file)
     names = [name.strip() for name in kernels.split(",") if name.strip()] or list(KERNELS)
     unknown = [name for name in names if name not in KERNELS]
     if unknown:
@@ -64,10 +64,7 @@ def _print(record: Mapping[str, Any]) -> None:
     lua = record["lua"] or "no Lua 5.4 here"
     missing = "" if record["native"] else "; the machine in C was not built"
     console.print(f"Python {record['python']}, {lua}{missing}", soft_wrap=True)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("ns", no_wrap=True)
-    for heading in (*_HEADINGS.values(), "C/tree", "C/Lua"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = figures(("ns", *_HEADINGS.values(), "C/tree", "C/Lua"))
     for row in record["kernels"]:
         ns = row["ns"]
         table.add_row(

@@ -15,7 +15,9 @@ from rich.console import Console
 from rich.text import Text
 
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.options import JobsOption
 from krl.progress import progress_bar
+from krl.writing import check_files, whole
 
 if TYPE_CHECKING:
     from grammar.diagnostics import Diagnostic
@@ -64,9 +66,7 @@ def check(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
+    jobs: JobsOption = None,
     cache: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Where to keep findings; default: the user's cache."),
@@ -84,8 +84,7 @@ def check(
     from recovery.checkup import Wishes, checkup
     from recovery.ingest import IngestError
 
-    if out is not None and out.is_dir():
-        raise Unusable(f"{out}: a folder, not a file")
+    check_files(out)
     try:
         selection = Selection.of(select or (), ignore or ())
     except ValueError as error:
@@ -156,10 +155,8 @@ def _write(kept: "list[Diagnostic]", found: "Checkup", format_: Format, out: Pat
     if out is None:
         typer.echo(written, nl=False)
         return
-    out.parent.mkdir(parents=True, exist_ok=True)
-    scratch = out.with_name(f"{out.name}.part")
-    scratch.write_text(written, encoding="utf-8", newline="\n")
-    scratch.replace(out)
+    with whole(out) as file:
+        file.write_text(written, encoding="utf-8", newline="\n")
 
 
 def _written(

@@ -4,14 +4,16 @@ import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import metadata
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from krl.door import FINDINGS, FINE, Unusable, one_line, shown
+from krl.extras import expected_extras, need
+from krl.options import JobsOption, JsonOption
 from krl.progress import progress_bar
+from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
     from conformance.case import Case
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["conform"]
 
 _SHOWN = 20
-_NEEDED = frozenset({"numpy", "scipy", "py_opw_kinematics", "ruckig"})
 
 
 def conform(
@@ -40,9 +41,7 @@ def conform(
         list[str] | None,
         typer.Option(metavar="NAME", help="none, kinematic or mujoco; may be repeated."),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
+    json_file: JsonOption = None,
     junit: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write JUnit XML here.")
     ] = None,
@@ -60,10 +59,15 @@ def conform(
             help="Change so many cases and generated programs in ways that nobody may notice.",
         ),
     ] = None,
-    list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    fault: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WORDS",
+            help="Plant a fault with these words in its name, and see which cases notice it.",
+        ),
     ] = None,
+    list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
+    jobs: JobsOption = None,
     scheduler: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the cases."),
@@ -75,14 +79,9 @@ def conform(
     on a controller; conformance/CASES.md tells how to make one.
     """
     words = select or []
-    for target in filter(None, (json_file, junit)):
-        if target.is_dir():
-            raise Unusable(f"{target}: a folder, not a file")
-    if junit is not None and find_spec("junitparser") is None:
-        raise Unusable(
-            "--junit needs junitparser, which is not installed: "
-            "pip install 'krl-workbench[records]'"
-        )
+    check_files(json_file, junit)
+    if junit is not None:
+        need("junitparser")
     with _expected_errors():
         if lint:
             return _lint(words)
@@ -90,9 +89,19 @@ def conform(
             from krl.commands.conform_laws import check_laws
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
-        return _conform(
-            words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
-        )
+        if fault is None or list_ or words[:1] == ["import"]:
+            return _conform(
+                words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
+            )
+        from krl.commands.conform_fault import planted
+
+        if scheduler is not None or jobs not in (None, 1):
+            raise Unusable("--fault is planted into this process: leave --jobs and --scheduler out")
+        with planted(fault) as name:
+            typer.echo(one_line(f"planted: {name}"))
+            return _conform(
+                words, executor, robot, json_file, junit, html, 1, None, list_=False, fault=name
+            )
 
 
 @contextmanager
@@ -101,16 +110,10 @@ def _expected_errors() -> Iterator[None]:
     from recovery.workers import WorkersError
 
     try:
-        yield
+        with expected_extras():
+            yield
     except WorkersError as error:
         raise Unusable(str(error)) from error
-    except ModuleNotFoundError as error:
-        name = (error.name or "").partition(".")[0]
-        if name not in _NEEDED:
-            raise
-        raise Unusable(
-            f"this needs {name}, which is not installed: pip install 'krl-workbench[arm]'"
-        ) from error
 
 
 def _conform(
@@ -124,6 +127,7 @@ def _conform(
     scheduler: str | None,
     *,
     list_: bool,
+    fault: str = "",
 ) -> int:
     if words[:1] == ["import"]:
         return _import(words[1:], json_file)
@@ -135,7 +139,7 @@ def _conform(
     begun = time.perf_counter()
     results = _run(cases, executors, robots, jobs, scheduler)
     seconds = time.perf_counter() - begun
-    _write(results, executors, robots, seconds, json_file, junit, html)
+    _write(results, executors, robots, seconds, json_file, junit, html, fault)
     _tell(results, seconds)
     failed = any(one.verdict == "fail" for one in results)
     return FINDINGS if failed else FINE
@@ -143,8 +147,6 @@ def _conform(
 
 def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
     """The cases, with what a recording needs to know of them."""
-    from krl.writing import write_json
-
     for case in cases:
         typer.echo(shown(f"{case.name:42} {','.join(case.rules):22} {case.title}"))
     if json_file is not None:
@@ -224,13 +226,15 @@ def _write(
     json_file: Path | None,
     junit: Path | None,
     html: Path | None,
+    fault: str,
 ) -> None:
     from conformance.record import record_of
-    from krl.writing import write_json
 
     version = metadata.version("krl-workbench")
     if json_file is not None or html is not None:
         record = record_of(results, executors, robots, version=version, seconds=seconds)
+        if fault:
+            record["fault"] = fault
         if json_file is not None:
             write_json(record, json_file)
         if html is not None:
@@ -267,18 +271,20 @@ def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
 
 
 def _tell_failure(one: "CaseResult") -> None:
+    """Who failed and why; those who failed alike are told once."""
     typer.echo(shown(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]"))
-    for result in one.results:
-        if result.verdict != "fail":
-            continue
-        typer.echo(one_line(f"  {result.executor}/{result.robot}: {result.reason}"))
-        if result.divergence is not None:
-            found = result.divergence
+    failed = [result for result in one.results if result.verdict == "fail"]
+    for reason in dict.fromkeys(result.reason for result in failed):
+        alike = [result for result in failed if result.reason == reason]
+        names = ", ".join(f"{result.executor}/{result.robot}" for result in alike)
+        typer.echo(f"  {one_line(f'{names}: {reason}')}")
+        found = next((result.divergence for result in alike if result.divergence), None)
+        if found is not None:
             line = one.case.line(found.file, found.line)
             typer.echo(shown(f"    {found.file}:{found.line}: {line}"))
             for side in (found.left, found.right):
                 values = ", ".join(f"{name}={value}" for name, value in side.variables.items())
-                typer.echo(one_line(f"    {side.name}: {values or 'no variables yet'}"))
+                typer.echo(f"    {one_line(f'{side.name}: ' + (values or 'no variables yet'))}")
 
 
 def _lint(words: Iterable[str]) -> int:
@@ -301,7 +307,6 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     from conformance.case import CaseError, find_cases
     from conformance.record import record_of
     from conformance.recording import Recording, RecordingError, answers, judge_recording
-    from krl.writing import write_json
 
     if len(words) != 1:
         raise Unusable("krl conform import takes one file")

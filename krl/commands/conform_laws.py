@@ -9,6 +9,7 @@ import typer
 
 from krl.door import FINDINGS, FINE, one_line
 from krl.progress import progress_bar
+from krl.writing import write_json
 
 if TYPE_CHECKING:
     from conformance.case import Case
@@ -27,7 +28,6 @@ def check_laws(
 ) -> int:
     """Try every law, tell how each stands, and write the record; 1 where one was broken."""
     from conformance.metamorphic import laws, record_of, try_laws
-    from krl.writing import write_json
 
     seed = 1
     with progress_bar("trying laws", len(laws())) as bar:

@@ -8,7 +8,7 @@ import typer
 from krl.commands import construct_accept, construct_oracle
 from krl.constructs import LEDGER, PRELIMINARY, expected_errors, print_table, there
 from krl.door import FINE, Unusable, one_line
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 __all__ = ["app"]
 
@@ -33,8 +33,7 @@ def show_all(
     from recovery.oracle import reason_to_ask
     from recovery.overview import row_of
 
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
+    check_files(json_file)
     with expected_errors():
         ledger = Ledger.read(there(LEDGER))
     rows = [

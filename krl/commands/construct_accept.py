@@ -17,6 +17,7 @@ from krl.constructs import (
     there,
 )
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.options import JobsOrOneOption
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
@@ -41,10 +42,6 @@ _Paths = Annotated[
         "default: corpus/open, where krl corpus fetch puts them.",
     ),
 ]
-_Jobs = Annotated[
-    int | None,
-    typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
-]
 
 
 def weigh(
@@ -52,7 +49,7 @@ def weigh(
         list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
     ],
     corpus: _Paths = None,
-    jobs: _Jobs = None,
+    jobs: JobsOrOneOption = None,
     keep: Annotated[
         bool, typer.Option("--keep", help="Write evidence and state into the files.")
     ] = False,
@@ -81,7 +78,7 @@ def accept(
         list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
     ],
     corpus: _Paths = None,
-    jobs: _Jobs = None,
+    jobs: JobsOrOneOption = None,
 ) -> int:
     """Take constructs into the grammar, all of them or none.
 

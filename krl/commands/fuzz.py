@@ -2,15 +2,15 @@
 
 import os
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
 from krl.door import FINDINGS, FINE, Unusable
+from krl.options import JobsOption, JsonOption
 from krl.progress import progress_bar
-from krl.writing import write_json
+from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
     from conformance.differential.campaign import Finding, Findings
@@ -32,12 +32,8 @@ def fuzz(
             help="tree, vm or native; may be repeated; the first is the reference; default: all.",
         ),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
-    ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
-    ] = None,
+    json_file: JsonOption = None,
+    jobs: JobsOption = None,
     scheduler: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the programs."),
@@ -53,8 +49,7 @@ def fuzz(
     from conformance.differential.campaign import record_of
     from recovery.workers import WorkersError
 
-    if json_file is not None and json_file.is_dir():
-        raise Unusable(f"{json_file}: a folder, not a file")
+    check_files(json_file)
     names = _chosen(executor or [])
     begun = time.perf_counter()
     try:

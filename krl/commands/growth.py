@@ -14,6 +14,7 @@ from rich.text import Text
 
 from krl.constructs import expected_errors
 from krl.door import FINE, Unusable, one_line
+from krl.options import JobsOrOneOption, JsonTooOption
 from krl.progress import progress_bar
 from krl.terminal import share
 from krl.writing import check_targets, write_json
@@ -37,13 +38,8 @@ def growth(
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Where index.html and growth.json go.")
     ] = _DEFAULT_OUT,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
-    ] = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
-    ] = None,
+    json_file: JsonTooOption = None,
+    jobs: JobsOrOneOption = None,
     constructs: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="The ledger; default: that of the grammar in force."),

@@ -7,6 +7,7 @@ from typing import Annotated, BinaryIO, cast
 import typer
 
 from krl.door import FINE, Unusable
+from krl.extras import expected_extras
 
 __all__ = ["lsp"]
 
@@ -24,15 +25,8 @@ def lsp(
     Speaks the Language Server Protocol; docs/editors.md says how to set an editor up.
     """
     logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.CRITICAL)
-    try:
+    with expected_extras():
         from krl.language.server import server
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in {"pygls", "lsprotocol"}:
-            raise
-        raise Unusable(
-            f"the server needs {error.name}, which is not installed: "
-            "pip install 'krl-workbench[lsp]'"
-        ) from error
     server().start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)))
     return FINE
 

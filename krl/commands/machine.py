@@ -7,6 +7,7 @@ import typer
 
 from krl.door import FINDINGS, FINE, Unusable, one_line
 from krl.programs import load_program
+from krl.writing import check_files, whole
 
 if TYPE_CHECKING:
     from interp.bytecode.program import Program
@@ -84,7 +85,7 @@ def disassemble_image(
 ) -> None:
     """Print an image as the text that `krl asm` makes it from."""
     from interp.bytecode.disassembler import disassemble
-    from interp.bytecode.image import ImageError, read_image
+    from interp.bytecode.image_reader import ImageError, read_image
     from interp.bytecode.verify import VerificationError, verify
 
     try:
@@ -97,19 +98,16 @@ def disassemble_image(
 
 def write_image_of(program: "Program", source: Path, target: Path) -> None:
     """Verify a program and write its image, whole or not at all."""
-    from interp.bytecode.image import write_image
+    from interp.bytecode.image_writer import write_image
     from interp.bytecode.verify import VerificationError, verify
 
     try:
         verify(program)
     except VerificationError as error:
         raise Unusable(f"{source}: {error}") from error
-    if target.is_dir():
-        raise Unusable(f"{target}: a folder, not a file")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    scratch = target.with_name(target.name + ".part")
-    scratch.write_bytes(write_image(program))
-    scratch.replace(target)
+    check_files(target)
+    with whole(target) as image:
+        image.write_bytes(write_image(program))
 
 
 def _read(file: Path) -> bytes:

@@ -1,13 +1,20 @@
 """`krl nightly`: everything once, into one dated folder, and what changed since the last night."""
 
+import os
+import re
+import shutil
+import signal
 import subprocess
 import sys
 import time
+from codecs import getincrementaldecoder
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from threading import Thread, current_thread, main_thread
+from typing import IO, Annotated, Any
 
 import typer
 
@@ -19,7 +26,10 @@ __all__ = ["nightly"]
 _DEFAULT_OUT = Path("reports", "out", "nightly")
 _DEFAULT_HISTORY = Path("reports", "history.jsonl")
 #: Programs that the fuzzer runs in an hour's night; other lengths have their share.
-_PROGRAMS = 20_000
+_PROGRAMS = 12_000
+#: What moves the cursor and colours text on a terminal.
+_CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+_TAIL = 4_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +66,11 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then tell what changed since last night.
 
     A night that was broken off goes on where it was: steps whose record is there are not done
-    again. Exit status 1 where a step failed or a case did.
+    again. On a terminal each step shows how far it is. Exit status 1 where a step failed or a case
+    did.
     """
     from reports import write_claims_page, write_night_page
-    from reports.history import append_night, changes, night_of, read_nights
+    from reports.history import append_night, changes, known_before, night_of, read_nights
 
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
@@ -70,16 +81,21 @@ def nightly(
     if not steps:
         raise Unusable(f"there is no step {', '.join(only or ())}")
     made: dict[str, Any] = {}
-    went: dict[str, dict[str, Any]] = {}
-    for step, status, seconds in _performed(steps, folder, minutes):
-        went[step.name] = {"status": status, "seconds": round(seconds, 1), "page": step.page}
+    went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
+    for step, how, seconds in _performed(steps, folder, minutes):
+        before = went.pop(step.name, None)
+        if seconds or not isinstance(before, dict) or "failed" in how:
+            before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
+        went[step.name] = before
+        write_json(went, folder / "steps.json")
         record = _record(folder, step.name)
         if record is not None:
             made[step.name] = record
     nights = [one for one in read_nights(history) if one.get("date") != name]
-    last = nights[-1] if nights else None
+    last = known_before(nights)
     night = night_of(name, made, went)
-    before = None if last is None else _record(out / str(last.get("date", "")), "conform")
+    judged = "" if last is None else str(last["of"].get("conform", ""))
+    before = _record(out / judged, "conform") if judged else None
     told = changes(last, night, before, made.get("conform"))
     append_night(history, night)
     write_json({**night, "changes": told}, folder / "night.json")
@@ -91,8 +107,11 @@ def nightly(
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
     failed = any(one["status"] not in ("ok", "findings") for one in went.values())
-    verdicts = night["conform"]["verdicts"]
-    return FINDINGS if failed or verdicts.get("fail") or night["fuzz"]["divergences"] else FINE
+    wrong = (
+        night.get("conform", {}).get("verdicts", {}).get("fail"),
+        night.get("fuzz", {}).get("divergences"),
+    )
+    return FINDINGS if failed or any(wrong) else FINE
 
 
 def _is_in(step: _Step, only: list[str] | None) -> bool:
@@ -111,9 +130,9 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     arm = ("motion", "blending", "program", "--executor", "native", "--robot", "mujoco")
     yield _Step("conform-arm", ("conform", *arm), 0.15)
     yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
-    yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.3)
+    yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.35)
     yield _Step(
-        "recover", ("recover", *given, "--out", str(folder / "recover")), 0.2, "recover/index.html"
+        "recover", ("recover", *given, "--out", str(folder / "recover")), 0.3, "recover/index.html"
     )
     yield _Step(
         "growth", ("growth", *given, "--out", str(folder / "growth")), 0.15, "growth/index.html"
@@ -130,38 +149,105 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
 def _performed(
     steps: list[_Step], folder: Path, minutes: float
 ) -> Iterator[tuple[_Step, str, float]]:
-    """Each step with how it went: ok, findings, failed with its last line, or cut off."""
+    """Each step with how it went: ok, findings, failed with its last line, or cut off.
+
+    A step that is done already took no time.
+    """
     begun = time.monotonic()
-    for step in steps:
+    for number, step in enumerate(steps, 1):
         began = time.monotonic()
         target = folder / f"{step.name}.json"
         if target.is_file():
             is_whole = _record(folder, step.name) is not None
             yield step, "ok" if is_whole else f"failed: {target.name} there is damaged", 0.0
             continue
-        typer.echo(f"{(began - begun) / 60:5.1f} min  {step.name}", err=True)
         left = 60 * minutes - (began - begun)
-        most = min(60 * minutes * step.share, left)
+        most = max(min(60 * minutes * step.share, left), 1)
+        _say(began - begun, f"{step.name} ({number} of {len(steps)}, at most {most / 60:.0f} min)")
+        _recall(folder, step.name)
         command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
-        try:
-            done = subprocess.run(
-                command,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                text=True,
-                encoding="utf-8",
-                errors="replace",
-                timeout=max(most, 1),
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            yield step, f"cut off after {most / 60:.0f} minutes", time.monotonic() - began
-            continue
-        status = {FINE: "ok", FINDINGS: "findings"}.get(done.returncode)
-        if status is None or not target.is_file():
-            said = done.stderr.strip().splitlines()
-            status = f"failed: {said[-1] if said else f'status {done.returncode}'}"
-        yield step, one_line(status), time.monotonic() - began
+        returned, last = _watched(command, most)
+        status = {FINE: "ok", FINDINGS: "findings", None: f"cut off after {most / 60:.0f} minutes"}
+        how = status.get(returned, "")
+        if not how or (returned is not None and not target.is_file()):
+            how = f"failed: {last or f'status {returned}'}"
+        ended = time.monotonic()
+        _say(ended - begun, f"{step.name}: {one_line(how)}, {(ended - began) / 60:.1f} min")
+        yield step, one_line(how), ended - began
+
+
+def _say(seconds: float, told: str) -> None:
+    typer.echo(f"{seconds / 60:5.1f} min  {told}", err=True)
+
+
+def _recall(folder: Path, name: str) -> None:
+    """Let a step have the results that the last night kept; they are found by digest only."""
+    kept = Path(name, "cache", "results.sqlite")
+    nights = sorted(folder.parent.glob(f"*/{kept.as_posix()}"), key=lambda one: one.stat().st_mtime)
+    if nights and not (folder / kept).exists():
+        (folder / kept).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(nights[-1], folder / kept)
+
+
+def _watched(command: list[str], seconds: float) -> tuple[int | None, str]:
+    """Run a command so long at most: its status, ``None`` where it was cut off, and its last line.
+
+    On a terminal what it tells of its progress is shown; elsewhere it tells none.
+    """
+    is_seen = sys.stderr.isatty()
+    size = shutil.get_terminal_size()
+    terminal = {"FORCE_COLOR": "1", "COLUMNS": str(size.columns), "LINES": str(size.lines)}
+    process = subprocess.Popen(
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        env={**os.environ, **(terminal if is_seen else {})},
+    )
+    assert process.stderr is not None, "it is a pipe"
+    said: list[str] = []
+    reader = Thread(target=_pass_on, args=(process.stderr, said, is_seen), daemon=True)
+    reader.start()
+    returned: int | None = None
+    try:
+        with _termination_raises():
+            returned = process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        process.kill()
+        process.wait()
+    reader.join(5)  # its workers end with it, and the pipe with them
+    lines = [line.strip() for line in re.split(r"[\r\n]", _CONTROL.sub("", "".join(said)))]
+    return returned, next((line for line in reversed(lines) if line), "")
+
+
+@contextmanager
+def _termination_raises() -> Iterator[None]:
+    """Whoever ends the night ends the step that it is in, and not the night alone."""
+    if current_thread() is not main_thread():  # nobody else may say what a signal does
+        yield
+        return
+
+    def end(number: int, _frame: object) -> None:
+        raise SystemExit(128 + number)
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _pass_on(stream: IO[bytes], said: list[str], is_seen: bool) -> None:
+    """Keep the last of what a command says, and show all of it on a terminal."""
+    decoder = getincrementaldecoder("utf-8")("replace")
+    with stream:
+        while chunk := os.read(stream.fileno(), 65_536):
+            text = decoder.decode(chunk)
+            said[:] = ["".join([*said, text])[-_TAIL:]]
+            if is_seen:
+                sys.stderr.write(text)
+                sys.stderr.flush()
 
 
 def _record(folder: Path, name: str) -> dict[str, Any] | None:

@@ -10,6 +10,7 @@ import typer
 
 from krl.constructs import expected_errors
 from krl.door import FINDINGS, FINE, Unusable
+from krl.options import JobsOrOneOption, JsonTooOption
 from krl.progress import progress_bar
 from krl.terminal import print_survey
 from krl.writing import check_targets, write_json
@@ -42,13 +43,8 @@ def recover(
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Where index.html and survey.json go.")
     ] = _DEFAULT_OUT,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
-    ] = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
-    ] = None,
+    json_file: JsonTooOption = None,
+    jobs: JobsOrOneOption = None,
     scheduler: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers read the files."),

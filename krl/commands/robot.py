@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.door import FINE, Unusable
+from krl.extras import expected_extras
 
 if TYPE_CHECKING:
     from interp.robot.frames import Pose
@@ -20,7 +21,6 @@ __all__ = ["app"]
 app = typer.Typer(help="Ask what an arm does, by its machine data.")
 
 _COMPONENTS = "xyzabc"
-_NEEDED = {"numpy", "scipy", "py_opw_kinematics"}
 _DIGITS = 9  # of a degree; more would be noise
 _LARGEST_INT = 2**31 - 1  # of KRL
 
@@ -93,18 +93,12 @@ def _arm(path: Path) -> "Arm":
         machine = read_machine(source.text, str(path))
     except (DataListError, MachineDataError) as error:
         raise Unusable(str(error)) from error
-    try:
+    with expected_extras():
         from interp.robot.kinematics import Arm
-
+    try:
         return Arm(machine)
     except MachineDataError as error:
         raise Unusable(f"{path}: {error}") from error
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in _NEEDED:
-            raise
-        raise Unusable(
-            f"the arm needs {error.name}, which is not installed: pip install 'krl-workbench[arm]'"
-        ) from error
 
 
 def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.extras import expected_extras
 from krl.programs import load_program
 from krl.progress import progress_bar
+from krl.writing import check_files, whole
 
 if TYPE_CHECKING:
     from interp.controller.trace import TraceEvent
@@ -21,17 +23,6 @@ if TYPE_CHECKING:
     from interp.session import Run, Setup
 
 __all__ = ["run"]
-
-_NEEDED = {
-    "numpy": "arm",
-    "scipy": "arm",
-    "py_opw_kinematics": "arm",
-    "ruckig": "arm",
-    "mujoco": "arm",
-    "pandas": "records",
-    "pyarrow": "records",
-}
-
 
 _MOST_TOLD = 3
 
@@ -159,17 +150,10 @@ def _expected_errors() -> Iterator[None]:
     from interp.faults import RuntimeFailure
 
     try:
-        yield
+        with expected_extras():
+            yield
     except RuntimeFailure as error:
         raise Unusable(str(error)) from error
-    except ModuleNotFoundError as error:
-        name = (error.name or "").partition(".")[0]
-        if name not in _NEEDED:
-            raise
-        raise Unusable(
-            f"this needs {name}, which is not installed: "
-            f"pip install 'krl-workbench[{_NEEDED[name]}]'"
-        ) from error
 
 
 def _text(file: Path) -> str:
@@ -187,9 +171,7 @@ def _check_targets(
     trace: Path | None, path: Path | None, html: Path | None, video: Path | None, robot: Robot
 ) -> None:
     """Say now what would only fail after the run."""
-    for target in (trace, path, html, video):
-        if target is not None and target.is_dir():
-            raise Unusable(f"{target}: a folder, not a file")
+    check_files(trace, path, html, video)
     if path is not None and path.suffix.lower() not in (".parquet", ".csv"):
         raise Unusable(f"--path: {path} ends neither in .parquet nor in .csv")
     if path is not None and robot is Robot.NONE:
@@ -235,14 +217,8 @@ def _tracing(file: Path | None) -> Iterator[TextIO | None]:
     if file is None:
         yield None
         return
-    file.parent.mkdir(parents=True, exist_ok=True)
-    part = file.with_name(file.name + ".part")
-    try:
-        with part.open("w", encoding="utf-8", newline="\n") as stream:
-            yield stream
-        part.replace(file)
-    finally:
-        part.unlink(missing_ok=True)
+    with whole(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
+        yield stream
 
 
 def _write(
@@ -280,13 +256,11 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
     import pandas as pd
 
     table = pd.DataFrame(dict(columns))
-    target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(target.name + ".part")
-    if target.suffix.lower() == ".csv":
-        table.to_csv(part, index=False, lineterminator="\n")
-    else:
-        table.to_parquet(part, index=False)
-    part.replace(target)
+    with whole(target) as part:
+        if target.suffix.lower() == ".csv":
+            table.to_csv(part, index=False, lineterminator="\n")
+        else:
+            table.to_parquet(part, index=False)
 
 
 def _record(done: "Run", program: "CheckedProgram", setup: "Setup") -> dict[str, Any]:

@@ -18,7 +18,7 @@ function caseSource(one, result) {
     const cut = text.search(/;[@>]/);
     const words = cut < 0 ? [text || " "] : [text.slice(0, cut), el("span", text[cut + 1] === ">" ? "expect" : "front", text.slice(cut))];
     const line = el("span", "tx", words);
-    for (const check of unmet) line.append(el("span", "seen", `  ← seen: ${check.actual || "nothing"}`));
+    for (const check of unmet) line.append(el("span", "seen", `↑ seen: ${check.actual || "nothing"}`));
     return el("div", `l${state}${here}`, el("span", "no", String(n + 1)), line);
   }))));
 }
@@ -46,12 +46,13 @@ function eventList(result) {
 
 /** The sheet of a case, and what has to be drawn once it is in the page. */
 function caseSheet(one) {
-  const failing = one.results.find((result) => result.verdict === "fail") ?? one.results[0];
+  const failing = one.results.find((result) => result.verdict === "fail")
+    ?? one.results.find((result) => result.verdict !== "skipped") ?? one.results[0];
   const full = one.results.find((result) => result.events.length) ?? failing;
   const drawn = [full ? timing(full.events) : null, overlay(one.results, failing?.checks ?? [])].filter((found) => found !== null);
   const rules = one.rules.map((id) => {
     const rule = page.rules[id];
-    return el("p", "rule-text", el("b", "", id), rule ? ` ${rule.statement} ` : " ", rule ? el("span", "dim", `(tier ${rule.tier}${rule.mayFail ? "" : ", may not fail a case"}; ${rule.source})`) : null);
+    return el("p", "rule-text", el("b", "", id), rule ? ` ${rule.statement} ` : " ", rule ? el("span", "dim", `(tier ${rule.tier}${rule.mayFail ? "" : ", may not fail a case"}${rule.source.length > 1 ? `; ${rule.source}` : ""})`) : null);
   });
   const facts = [one.phase, one.profile, one.negative ? "negative" : "", ...one.io.map((line) => `io ${line}`)].filter(Boolean).join(" · ");
   const sheet = el("div", "sheet",

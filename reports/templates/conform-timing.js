@@ -76,10 +76,12 @@ function timing(events) {
         const line = svg("line", { class: "tick", x1: x(mark.t), x2: x(mark.t), y1: 2, y2: top + 6 });
         line.append(svg("title", {}, `${mark.kind} at ${(mark.t / 1e6).toFixed(6)} s`));
         root.append(line);
-        if (x(mark.t) < free) continue;
         const label = mark.kind.replace("_", " ") + (mark.number ? ` ${mark.number}` : "");
-        root.append(svg("text", { x: x(mark.t) + 3, y: top + 14 }, label));
-        free = x(mark.t) + 6.5 * label.length;
+        const long = 6.5 * label.length;
+        const isBehind = x(mark.t) + long <= width; // else it stands before its tick
+        if ((isBehind ? x(mark.t) : x(mark.t) - long) < free) continue;
+        root.append(svg("text", { x: x(mark.t) + (isBehind ? 3 : -3), y: top + 14, "text-anchor": isBehind ? "start" : "end" }, label));
+        free = x(mark.t) + (isBehind ? long : 0);
       }
     }
     holder.replaceChildren(root);

@@ -51,6 +51,16 @@ def test_record_shows_each_case(results: list[CaseResult]) -> None:
     assert all(check["state"] == "met" for check in first["checks"])
 
 
+def test_a_path_is_kept_though_others_ran_without_a_robot() -> None:
+    """Where the first executors have no robot, the first that has one shows the path."""
+    results = run_cases(selected(find_cases(), NAMES[3:]), ["tree"], ["none", "kinematic"], jobs=1)
+    (case,) = record_of(results, ["tree"], ["none", "kinematic"], version="1", seconds=1.0)["cases"]
+    without, moved = case["results"]
+    assert "path" not in without
+    assert len(moved["path"]["poses"]) > 10
+    assert [445.0, 0.0, 810.0] == moved["path"]["analytic"][0]
+
+
 def test_junit_has_a_test_for_each_result(results: list[CaseResult], tmp_path: Path) -> None:
     """Failures are failures, with what was expected."""
     target = tmp_path / "deep" / "junit.xml"

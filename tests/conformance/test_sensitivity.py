@@ -78,6 +78,30 @@ def test_a_fault_of_the_machine_is_found_by_comparison() -> None:
     assert ("control/recursion", "fail") == (found.case, found.verdict)
 
 
+def test_a_wrong_machine_has_failed_whatever_the_rule() -> None:
+    """As in every night, executors that part are a failure even where the rule may not fail."""
+    fault = next(one for one in all_faults() if one.words == "NE_INT: does what EQ_INT does")
+    (found,) = try_faults([fault], _cases("data/relations_int"))
+    assert ("data/relations_int", "fail") == (found.case, found.verdict)
+
+
+def test_each_fault_is_told_when_it_was_judged() -> None:
+    """Progress moves with each fault, and nothing depends on how many processes there are."""
+    faults, cases = all_faults()[:3], _cases("io/anout_follows", "control/if_else")
+    told: list[int] = []
+    alone = try_faults(faults, cases, 1, told.append)
+    assert [1, 1, 1] == told
+    assert alone == try_faults(faults, cases, 2, told.append)
+    assert [1] * 6 == told
+
+
+def test_cases_that_cannot_notice_are_not_run() -> None:
+    """A program without the instruction is not run with a fault of it."""
+    fault = next(one for one in all_faults() if one.op == "MUL_INT")
+    (found,) = try_faults([fault], _cases("control/if_else"))
+    assert (None, 0) == (found.case, found.runs)
+
+
 def test_a_fault_that_changes_nothing_survives() -> None:
     """A fault that nobody can see is told as not found, with how often it was looked for."""
     nothing = Fault("none", "nothing", ("control",), constant(blending, "_HALF", blending._HALF))

@@ -11,7 +11,7 @@ from grammar.build import read_module
 from grammar.generate import GRAMMAR
 from grammar.link import File, Project, Workspace, link
 from grammar.predefined import System
-from grammar.resolve import Resolution, resolve, unknown_in
+from grammar.resolve import Resolution, resolve
 from grammar.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.symbols import Kind, Space
 from grammar.tables import table_of
@@ -221,8 +221,8 @@ def test_announced_routine_that_is_missing(texts: Mapping[str, str]) -> None:
     answer = use(of, "a.src", "WORK")
     assert isinstance(answer, Found)
     assert Kind.EXTERNAL is answer.symbol.kind
-    (unknown,) = unknown_in([resolved(of, "a.src")])
-    assert ("WORK", Space.ROUTINE) == (unknown.key, unknown.space)
+    (unknown,) = resolved(of, "a.src").open_uses
+    assert ("WORK", Space.ROUTINE) == (unknown.name.key, unknown.space)
 
 
 def test_what_the_controller_has_is_not_hidden_by_ext() -> None:
@@ -618,28 +618,25 @@ def test_program_that_cannot_be_read() -> None:
     assert NotFound() == use(of, "a.src", "N")
 
 
-def test_unknown_names_are_told_once() -> None:
-    """A name that is missing everywhere counts its uses and has one first place."""
-    of = project({"a.src": src("A()", "VENDOR(1)", "N=1", "vendor(2)"), "b.src": src("B()", "N=2")})
-    unknown = unknown_in(resolve(of, module) for module in of.modules)
-    assert [("N", 2), ("VENDOR", 2)] == [(one.key, one.count) for one in unknown]
-    first = unknown[1].first
-    assert ("VENDOR", "a.src") == (first.name.text, first.module.path)
+def test_every_use_of_an_unknown_name_is_open() -> None:
+    """A name that is missing everywhere has an open use wherever it stands, in the file's order."""
+    of = project({"a.src": src("A()", "VENDOR(1)", "N=1", "vendor(2)")})
+    uses = resolved(of, "a.src").open_uses
+    assert ["VENDOR", "N", "vendor"] == [use.name.text for use in uses]
+    assert {"a.src"} == {use.module.path for use in uses}
 
 
-def test_what_no_other_file_could_bring() -> None:
-    """Labels and members that are not there are open uses, and no unknown names of the project."""
+def test_labels_and_members_are_open_too() -> None:
+    """A label has its space; a member that its structure does not have has none."""
     of = project({"a.src": src("A()", "DECL FRAME F", "GOTO NOWHERE", "F.Q=1")})
     uses = resolved(of, "a.src").open_uses
     assert [(Space.LABEL, "NOWHERE"), (None, "Q")] == [(use.space, use.name.text) for use in uses]
-    assert [] == unknown_in([resolved(of, "a.src")])
 
 
 def test_vendor_call_with_ext_counts_as_unknown() -> None:
     """What EXT announces and no file has is unknown as a whole, though its signature is known."""
     of = project({"a.src": src("A()", "EXT WORK (INT :IN)", "WORK(1)")})
-    (unknown,) = unknown_in([resolved(of, "a.src")])
-    assert 1 == unknown.count  # the announcement itself is no use
+    assert 1 == len(resolved(of, "a.src").open_uses)  # the announcement itself is no use
 
 
 # ------------------------------------------------------------------------------- laws and costs

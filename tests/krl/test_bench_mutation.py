@@ -7,27 +7,13 @@ import pytest
 
 from krl.cli import main
 
-GRAMMAR = """grammar S;
-options { caseInsensitive = true; }
-program : DEF NAME '(' ')' eol statement* END eol* EOF ;
-eol : NEWLINE+ ;
-statement : HALT eol | WAIT NAME eol ;
-DEF : 'DEF' ;
-END : 'END' ;
-HALT : 'HALT' ;
-WAIT : 'WAIT' ;
-LPAREN : '(' ;
-RPAREN : ')' ;
-NAME : [A-Z]+ ;
-NEWLINE : '\\n' ;
-SPACE : ' ' -> skip ;
-"""
 
-
-def test_figures_beside_the_aims(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_figures_beside_the_aims(
+    tmp_path: Path, small_grammar: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Every figure has its row, and the record says what they rest on."""
     grammar, programs = tmp_path / "s.g4", tmp_path / "programs"
-    grammar.write_text(GRAMMAR, encoding="utf-8", newline="\n")
+    grammar.write_text(small_grammar, encoding="utf-8", newline="\n")
     programs.mkdir()
     for number, line in enumerate(("HALT", "WAIT B", "HALT", "WAIT C")):
         text = f"DEF A()\n{line}\nEND\n"

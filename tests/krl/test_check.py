@@ -16,17 +16,7 @@ WRONG = "DEF A()\nDECL INT N\nIF N = 1 THEN\nHALT\nENDIF\nEND\n"
 LOOSE = "DEF B()\nHALT\nEXIT\nEND\n"
 FINE = "DEF C()\nHALT\nEND\n"
 
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working directory and a cache of their own."""
-    folder = tmp_path / "elsewhere"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
-    monkeypatch.delenv("KRL_TRACEBACK", raising=False)
-    return folder
+pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
 @pytest.fixture

@@ -119,3 +119,40 @@ def test_recording_is_made_from_the_list_and_judged(
     recording.write_text(json.dumps(told), encoding="utf-8")
     assert 1 == run("import", recording)
     assert "data/round_half" in capsys.readouterr().out
+
+
+def test_a_planted_fault_is_found_and_shown_on_the_page(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The case that states the rule fails, the page says what was planted; then it is gone."""
+    words = ("trigger/delay_later", "--executor", "tree", "--robot", "none", "--html", tmp_path)
+    assert 1 == run(*words, "--fault", "delay has the other SIGN")
+    out = capsys.readouterr().out
+    assert out.startswith("planted: triggers: DELAY has the other sign")
+    assert "trigger/delay_later" in out
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "A fault was planted: triggers: DELAY has the other sign" in page
+    assert "1 case of 1 failed" in page
+    assert 0 == run(*words)
+    assert "A fault was planted" not in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
+def test_a_fault_of_the_machine_shows_beside_the_others(tmp_path: Path) -> None:
+    """Only the machine in Python is wrong: it parts from the tree interpreter."""
+    both = ("control/recursion", "--executor", "tree", "--executor", "vm", "--robot", "none")
+    target = tmp_path / "record.json"
+    assert 1 == run(*both, "--json", target, "--fault", "MUL_INT: the result is a little off")
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert "the machine: MUL_INT: the result is a little off" == record["fault"]
+    (case,) = record["cases"]
+    tree, vm = case["results"]
+    assert ("pass", "fail") == (tree["verdict"], vm["verdict"])
+    assert vm["divergence"]
+
+
+def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    """Words that fit several faults name them; words that fit none say where all are named."""
+    assert 2 == run("control/recursion", "--fault", "DELAY")
+    assert "DELAY counts nothing; DELAY is in hundredths of a second" in capsys.readouterr().err
+    assert 2 == run("control/recursion", "--fault", "nobody knows this")
+    assert "krl bench conform" in capsys.readouterr().err

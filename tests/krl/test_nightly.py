@@ -1,11 +1,17 @@
 """`krl nightly` that goes on where it was: what is there is not done again, nor trusted blindly."""
 
+import io
 import json
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from krl.cli import main
+from krl.commands import nightly
 
 DATE = "2026-01-02"
 
@@ -28,7 +34,7 @@ def test_what_is_there_is_not_done_again(
     """The record of a step is taken as it is; the night is one line, however often it went on."""
     (tmp_path / DATE).mkdir()
     record = tmp_path / DATE / "fuzz.json"
-    record.write_text('{"programs": 7, "seed": 1, "divergences": 0}', encoding="utf-8")
+    record.write_text('{"programs": 7, "seed": 1, "differences": []}', encoding="utf-8")
     before = record.stat().st_mtime_ns
     for _ in range(2):
         assert 0 == night(tmp_path, capsys, "fuzz")[0]
@@ -54,9 +60,85 @@ def test_a_damaged_history_hides_no_night(
 ) -> None:
     """Lines that are no nights are passed over, and the night of before is compared with."""
     (tmp_path / DATE).mkdir()
-    (tmp_path / DATE / "fuzz.json").write_text('{"divergences": 0}', encoding="utf-8")
+    (tmp_path / DATE / "fuzz.json").write_text('{"differences": []}', encoding="utf-8")
     old = json.dumps({"date": "2026-01-01", "fuzz": {"divergences": 3}})
     damaged = f'{old}\n{"[" * 90_000}\n{{"date": \n\x00\x1b[31m\n'
     (tmp_path / "h.jsonl").write_text(damaged, encoding="utf-8")
     status, out = night(tmp_path, capsys, "fuzz")
-    assert (0, "fuzz: divergences 3 → 0") == (status, out[-2])
+    assert (0, "fixed: fuzz: divergences 3 → 0") == (status, out[-2])
+
+
+def test_a_divergence_of_the_fuzzer_is_a_bad_night(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What 'krl fuzz' writes of a program on which executors part is counted, and told."""
+    (tmp_path / DATE).mkdir()
+    found = {"programs": 9, "seed": 1, "differences": [{"program": 4, "executor": "vm"}]}
+    (tmp_path / DATE / "fuzz.json").write_text(json.dumps(found), encoding="utf-8")
+    status, out = night(tmp_path, capsys, "fuzz")
+    assert (1, "fuzz: 1 divergence") == (status, out[-2])
+
+
+def test_a_night_that_goes_on_knows_how_its_steps_went(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status and seconds of a step that was done before the night broke off are kept."""
+    (tmp_path / DATE).mkdir()
+    (tmp_path / DATE / "fuzz.json").write_text('{"differences": []}', encoding="utf-8")
+    kept = {"fuzz": {"status": "findings", "seconds": 12.5, "page": ""}}
+    (tmp_path / DATE / "steps.json").write_text(json.dumps(kept), encoding="utf-8")
+    assert 0 == night(tmp_path, capsys, "fuzz")[0]
+    record = json.loads((tmp_path / DATE / "night.json").read_text(encoding="utf-8"))
+    assert kept == record["steps"]
+
+
+class Terminal(io.StringIO):
+    """A terminal that remembers what it shows."""
+
+    def isatty(self) -> bool:
+        """It is one."""
+        return True
+
+
+def test_progress_of_a_step_is_seen_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a step shows of its progress passes through; its last line is known without colours."""
+    shows = (
+        "import sys; from rich.console import Console; Console(stderr=True).print('[red]3 of 9')"
+    )
+    for stream, is_seen in ((Terminal(), True), (io.StringIO(), False)):
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert (0, "3 of 9") == nightly._watched([sys.executable, "-c", shows], 60)
+        assert is_seen == ("\x1b[" in stream.getvalue()) == bool(stream.getvalue())
+
+
+def test_a_step_that_takes_too_long_is_cut_off() -> None:
+    """It is ended, with no status; what it said last is known."""
+    sleeps = "import sys, time; print('far', file=sys.stderr, flush=True); time.sleep(600)"
+    assert (None, "far") == nightly._watched([sys.executable, "-c", sleeps], 2)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
+def test_a_night_that_is_ended_ends_its_step(tmp_path: Path) -> None:
+    """Nothing of a night that was told to end goes on working."""
+    alive = tmp_path / "alive"
+    step = f"import time, pathlib; time.sleep(3); pathlib.Path({str(alive)!r}).touch()"
+    night = (
+        "import os, signal, sys, threading; from krl.commands.nightly import _watched;"
+        " threading.Timer(1, os.kill, (os.getpid(), signal.SIGTERM)).start();"
+        f" _watched([sys.executable, '-c', {step!r}], 60)"
+    )
+    done = subprocess.run([sys.executable, "-c", night], check=False, timeout=60)
+    assert 128 + signal.SIGTERM == done.returncode
+    time.sleep(3)
+    assert not alive.exists()
+
+
+def test_results_of_the_last_night_are_at_hand(tmp_path: Path) -> None:
+    """A step of a new night begins with the results that the one before has kept."""
+    old = tmp_path / "2026-01-01" / "recover" / "cache" / "results.sqlite"
+    old.parent.mkdir(parents=True)
+    old.write_bytes(b"kept")
+    nightly._recall(tmp_path / DATE, "recover")
+    assert b"kept" == (tmp_path / DATE / "recover/cache/results.sqlite").read_bytes()
+    nightly._recall(tmp_path / DATE, "growth")
+    assert not (tmp_path / DATE / "growth").exists()

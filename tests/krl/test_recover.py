@@ -22,6 +22,7 @@ FINE = b"DEF A()\nHALT\nEND\n"
 STEP = b"DEF A()\r\nFOR I=1 TO 9 STEP %s\r\nENDFOR\r\nEND\r\n"
 RETURN = b"DEF B()\nRETURN 1\nEND\n"
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
+pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
 def lay(root: Path, **files: bytes) -> Path:
@@ -30,16 +31,6 @@ def lay(root: Path, **files: bytes) -> Path:
         (root / name).mkdir(parents=True, exist_ok=True)
         (root / name / f"{name}.src").write_bytes(data)
     return root
-
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working directory of its own, in which nothing lies."""
-    folder = tmp_path / "elsewhere"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    monkeypatch.delenv("KRL_TRACEBACK", raising=False)
-    return folder
 
 
 @pytest.fixture

@@ -1,8 +1,6 @@
 """The page of a real survey, opened in a real browser."""
 
 import json
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +12,6 @@ from selenium.webdriver.remote.webelement import WebElement
 from grammar.generate import GRAMMAR
 from krl.cli import main
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("chrome")
-DRIVER = shutil.which("chromedriver")
-FLAGS = (
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--window-size=1280,900",
-)
 FILES = {
     "cell1/KRC/R1/step.src": "DEF A()\r\nFOR I=1 TO 9 STEP 2\r\nENDFOR\r\nEND\r\n",
     "cell1/KRC/R1/loop.src": "DEF A()\nLOOP\n\tFOR I=1 TO N STEP K ; on\n\tENDFOR\nENDLOOP\nEND\n",
@@ -38,11 +23,7 @@ FILES = {
     "cell2/KRC/R1/junk.dat": "1;2;3\n",
 }
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason="no chromium on the path"),
-    pytest.mark.skipif(DRIVER is None, reason="no chromedriver on the path"),
-]
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")
@@ -66,24 +47,11 @@ def record(out: Path) -> dict[str, Any]:
     return loaded
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    """A headless chromium with an empty profile."""
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(str(DRIVER)))
-    yield driver
-    driver.quit()
-
-
 @pytest.fixture
 def page(browser: webdriver.Chrome, out: Path) -> webdriver.Chrome:
     """The page, freshly loaded."""
     browser.get("about:blank")
-    browser.get_log("browser")  # type: ignore[no-untyped-call]
+    browser.get_log("browser")
     browser.get((out / "index.html").as_uri())
     return browser
 
@@ -183,4 +151,4 @@ def test_source_does_not_run(page: webdriver.Chrome, record: dict[str, Any]) -> 
         assert page.execute_script("return window.hacked === undefined")
         assert [] == page.find_elements(By.CSS_SELECTOR, ".card script")
     assert 0 == page.execute_script("return performance.getEntriesByType('resource').length")
-    assert [] == page.get_log("browser")  # type: ignore[no-untyped-call]
+    assert [] == page.get_log("browser")

@@ -34,7 +34,7 @@ def codes(found: Checkup) -> list[tuple[str, int, str]]:
     ]
 
 
-def check(root: Path, wishes: Wishes = Wishes(), **options: object) -> Checkup:  # noqa: B008
+def check(root: Path, wishes: Wishes = Wishes(), **options: object) -> Checkup:  # noqa: B008 - frozen
     return checkup([root], wishes, **{"jobs": 1, **options})  # type: ignore[arg-type]
 
 

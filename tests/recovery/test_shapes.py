@@ -55,6 +55,7 @@ def each(*lines: str) -> list[str]:
     [
         ("DECL INT A,B", "DECL … ,"),
         ("X[1,2]=3", "… [ … ,"),
+        ("X[,]=3", "… [ ,"),
         ("A=F(1)[2]", "… ["),
         ("A=1.B", "… ."),
         ("HALT 3", "HALT … INTEGER"),
@@ -196,6 +197,25 @@ def test_the_order_of_files_does_not_matter() -> None:
         "SWITCH=1 2",
     )
     assert titles(*programs) == titles(*programs[::-1])[::-1]
+
+
+def test_what_comes_right_behind_a_bracket_is_a_title_of_its_own_but_no_shape() -> None:
+    """A dimension left out has another title; whether one edit mends both is not yet known."""
+    ((one,), (other,)) = shapes(*each("X[1,2]=3", "X[,]=3"))
+    assert ("… [ … ,", "… [ ,") == (one.title, other.title)
+    assert one == other
+
+
+def test_a_word_before_a_name_and_before_a_brace_is_a_keyword() -> None:
+    """Behind a type comes a name; a word with an aggregate behind it, too, is no type."""
+    assert 2 * ["ASYPTP …"] == titles(*each("ASYPTP A", "ASYPTP {E1 180.0}"))
+    assert only_names(["REAL_T A", "REAL_T A"], "REAL_T")
+
+
+def test_a_word_known_from_other_lines_is_one_where_no_name_could_come() -> None:
+    """STEP behind FOR is known, so STEP behind HALT is meant so too, with nothing behind it."""
+    lines = [f"FOR I=1 TO 9 STEP {n}" for n in "ABCD"]
+    assert "HALT … STEP" == titles(*each(*lines, "HALT STEP"))[-1]
 
 
 def test_a_word_that_alone_comes_behind_a_keyword_is_one() -> None:

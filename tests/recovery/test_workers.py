@@ -2,13 +2,15 @@
 
 import os
 import signal
+import socket
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
 from krl.cli import main
-from recovery.workers import WorkersError, code_digest, in_order
+from recovery.workers import WorkersError, code_digest, in_order, meet
 
 
 def _double(number: int, folder: str) -> int:
@@ -60,3 +62,27 @@ def test_release_is_told_by_code_and_tables() -> None:
     """Two processes of one checkout have the same digest."""
     (there,) = in_order(code_digest, [()], jobs=2)
     assert code_digest() == there
+
+
+@pytest.mark.parametrize("answer", [b"", b"\xff" * 64, b"\x00" * 64, b"HTTP/1.1 400 Bad\r\n\r\n"])
+def test_what_answers_and_is_no_scheduler_is_told(
+    monkeypatch: pytest.MonkeyPatch, answer: bytes
+) -> None:
+    """A server that says nothing, or something else than a scheduler, is not waited for."""
+    monkeypatch.setattr("recovery.workers._GREETING", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        callers: list[socket.socket] = []
+
+        def reply() -> None:
+            callers.append(server.accept()[0])
+            callers[0].sendall(answer)
+
+        replying = threading.Thread(target=reply)
+        replying.start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        began = time.monotonic()
+        with pytest.raises(WorkersError, match=f"^no Dask scheduler answers at {address}$"):
+            meet(address)
+        assert time.monotonic() - began < 5
+        replying.join()
+        callers[0].close()

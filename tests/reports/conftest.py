@@ -1,13 +1,11 @@
 """Records of surveys that never took place, shaped as ``krl recover --json`` shapes real ones."""
 
 import random
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
-from selenium import webdriver
 
 Json = dict[str, Any]
 
@@ -569,37 +567,3 @@ _GROWN: dict[str, RecordBuilder] = {
 def grown() -> Callable[[str], Json]:
     """Builds a fresh record of a growth by name: believable, hostile, start, empty."""
     return lambda name: _GROWN[name]()
-
-
-# -- a real browser --------------------------------------------------------------------------------
-
-_FLAGS = (
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--window-size=1280,900",
-)
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    """A headless chromium with an empty profile; without one the test is skipped."""
-    chromium = next(
-        filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None
-    )
-    driver_path = shutil.which("chromedriver")
-    if chromium is None or driver_path is None:
-        pytest.skip("no chromium or no chromedriver on the path")
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    for flag in (*_FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver_path))
-    yield driver
-    driver.quit()

@@ -109,7 +109,7 @@ def opened(browser: webdriver.Chrome) -> Opened:
 
     def load(page: Path, fragment: str = "") -> None:
         browser.get("about:blank")
-        browser.get_log("browser")  # type: ignore[no-untyped-call]
+        browser.get_log("browser")
         browser.get(page.as_uri() + fragment)
 
     return load
@@ -117,7 +117,7 @@ def opened(browser: webdriver.Chrome) -> Opened:
 
 def _is_sound(browser: webdriver.Chrome) -> bool:
     """Nothing foreign ran, and the browser had nothing to complain about."""
-    log = browser.get_log("browser")  # type: ignore[no-untyped-call]
+    log = browser.get_log("browser")
     return browser.execute_script("return window.hacked") is None and not log
 
 
@@ -150,6 +150,36 @@ def test_the_judge_shows_what_was_seen_beside_what_was_expected(
     assert _is_sound(browser)
 
 
+def test_what_was_seen_is_in_sight_in_a_narrow_window(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """At 800 pixels nothing lies beyond the edge, however long a line of a case is."""
+    record = conform_record()
+    for case in record["cases"]:
+        case["files"][0]["text"] = case["files"][0]["text"].replace(";>", f"{'; ' * 60};>")
+    record["suites"] = [
+        {
+            "name": "io",
+            "cases": 2,
+            "cells": [
+                {"executor": executor, "robot": robot, "verdicts": {"pass": 2}}
+                for executor in ("tree", "vm", "native")
+                for robot in ("none", "kinematic", "mujoco")
+            ],
+        }
+    ]
+    size = browser.get_window_size()
+    browser.set_window_size(800, 900)
+    try:
+        opened(write_conformance_page(record, tmp_path), "#case=io%2Fwrong")
+        reach = "return document.documentElement.scrollWidth <= innerWidth"
+        assert browser.execute_script(reach)
+        seen = browser.find_element(By.CSS_SELECTOR, ".case-source .seen").rect
+        assert seen["x"] + seen["width"] <= 800
+    finally:
+        browser.set_window_size(size["width"], size["height"])
+
+
 def test_cases_are_filtered_by_verdict_and_words(
     browser: webdriver.Chrome, opened: Opened, tmp_path: Path
 ) -> None:
@@ -180,4 +210,26 @@ def test_the_page_of_a_night_draws_its_curves(
     opened(write_night_page(record, tmp_path), "")
     titles = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#curves h3")]
     assert any(title.startswith("vm.ratio") for title in titles)
+    assert "Nothing failed" == browser.find_element(By.CSS_SELECTOR, ".top .grammar").text
+    row = browser.find_element(By.XPATH, "//tr[th='vm.ratio']")
+    assert "vm.ratio 4 3" == row.text
+    figures = browser.find_element(By.CSS_SELECTOR, ".figures").text
+    assert "2 of 2" in figures
+    assert "fuzzed" not in figures
+    assert _is_sound(browser)
+
+
+def test_the_page_of_a_bad_night_says_why(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """What failed stands on top: steps, cases, divergences."""
+    record = {
+        "date": "2031-05-07",
+        "steps": {"recover": {"status": "cut off after 9 minutes", "seconds": 540.0}},
+        "conform": {"verdicts": {"pass": 5, "fail": 2}},
+        "fuzz": {"programs": 7, "divergences": 1},
+    }
+    opened(write_night_page(record, tmp_path), "")
+    told = "step recover: cut off after 9 minutes; 2 runs of cases failed; 1 divergence of the"
+    assert browser.find_element(By.CSS_SELECTOR, ".top .bad").text.startswith(told)
     assert _is_sound(browser)

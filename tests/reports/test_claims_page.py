@@ -36,8 +36,12 @@ RECORDS: dict[str, dict[str, Any]] = {
     "bench-conform": {
         "mutants": 100,
         "killed": 97,
+        "failing": 90,
         "aim": 0.95,
-        "groups": [{"group": "blends", "mutants": 100, "killed": 97}],
+        "cases": 870,
+        "cases_per_s": 149.04,
+        "executor": "tree",
+        "groups": [{"group": "blends", "mutants": 100, "killed": 97, "failing": 90}],
     },
     "conform": {
         "cases": [
@@ -72,6 +76,23 @@ def test_each_claim_has_its_figure() -> None:
     assert [""] * 6 == [one.command for one in view.claims]
 
 
+def test_causes_are_those_of_the_start() -> None:
+    """Where nothing is left under the grammar in force, the start shows what failures came to."""
+    start = {"clusters": [{"title": "FOR", "failures": 6, "files": 2, "unlocks": 1}]}
+    record = {"failures": [], "clusters": [], "start": start}
+    claim = claims_view({"recover": record}).claims[1]
+    assert claim.found.startswith("Under the restrictive start 6 failures have 1 cause")
+    assert ["FOR"] == [bar.label for bar in claim.bars]
+
+
+def test_what_a_green_night_is_worth_is_told_with_its_speed() -> None:
+    """Faults found, those that turn a night red, and cases a second."""
+    claim = claims_view(RECORDS).claims[5]
+    assert "97 of them, 97.0 %; 90 of these turn the night red" in claim.found
+    assert "870 cases run at 149 a second" in claim.found
+    assert ("100", "97", "90", "97.0 %") == claim.bars[0].values
+
+
 def test_up_to_300_times_is_about_the_best_kernel() -> None:
     """The paper says "up to": a mean below it does not miss it where the best kernel is above."""
     assert claims_view(RECORDS).claims[3].is_kept is True
@@ -85,6 +106,15 @@ def test_what_was_left_out_has_the_verdict_of_its_executor() -> None:
     assert "pass on tree/none" == told["submit/runs_beside"]
     assert "pass on native/kinematic" == told["motion/lin_is_straight"]
     assert "not run" == told["motion/tracking_lin"]
+
+
+def test_the_simulated_arm_has_a_record_of_its_own() -> None:
+    """A night runs it apart from the other robots, and its verdict is shown."""
+    result = {"executor": "native", "robot": "mujoco", "verdict": "pass"}
+    arm = {"cases": [{"name": "motion/tracking_lin", "title": "It tracks", "results": [result]}]}
+    told = {one.case: one for one in claims_view({**RECORDS, "conform-arm": arm}).left_out}
+    assert "pass on native/mujoco" == told["motion/tracking_lin"].verdict
+    assert "pass on native/kinematic" == told["motion/lin_is_straight"].verdict
 
 
 def test_the_cases_that_are_named_exist() -> None:

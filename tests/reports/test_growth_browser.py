@@ -132,7 +132,7 @@ def test_hostile_text_is_shown_and_does_not_run(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Every card and fold is opened; nothing ran, nothing loaded, nothing was reported."""
-    browser.get_log("browser")  # type: ignore[no-untyped-call]
+    browser.get_log("browser")
     _open(browser, pages("hostile"))
     browser.execute_async_script(
         """
@@ -147,17 +147,17 @@ def test_hostile_text_is_shown_and_does_not_run(
     assert 2 == len(_all(browser, "script"))
     assert 13 == len(_all(browser, ".card"))
     assert 0 == browser.execute_script("return performance.getEntriesByType('resource').length")
-    assert [] == browser.get_log("browser")  # type: ignore[no-untyped-call]
+    assert [] == browser.get_log("browser")
 
 
 def test_a_ledger_without_steps_has_no_chart(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """And reports no error."""
-    browser.get_log("browser")  # type: ignore[no-untyped-call]
+    browser.get_log("browser")
     _open(browser, pages("start"))
     assert "The ledger is empty" == _one(browser, "#empty h2").text
-    assert [] == browser.get_log("browser")  # type: ignore[no-untyped-call]
+    assert [] == browser.get_log("browser")
 
 
 @pytest.mark.parametrize("width", [1000, 1280])

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from reports import write_night_page
-from reports.history import append_night, changes, night_of, read_nights
+from reports.history import append_night, changes, known_before, night_of, read_nights
 
 
 def _case(name: str, verdict: str, time: int = 1_000) -> dict[str, Any]:
@@ -57,6 +57,43 @@ def test_a_slower_bench_is_told_by_its_ratio() -> None:
         "slower: vm.native_vs_tree 300 → 200 (1.50 times worse)",
         "slower: vm.crossing_us 2 → 3 (1.50 times worse)",
     ] == changes(before, after)
+
+
+def test_what_a_night_did_not_do_has_not_changed() -> None:
+    """A step without a record tells nothing: no case vanished, no file is gone."""
+    whole = _night("1", _conform(_case("a/x", "pass")), ratio=2.0)
+    part = night_of("2", {"fuzz": {"programs": 5, "differences": []}}, {})
+    assert [] == changes(whole, part)
+    assert "conform" not in part
+
+
+def test_a_night_of_some_steps_hides_none_before_it() -> None:
+    """The next night is compared with the last one that knows of each part."""
+    whole = _night("1", _conform(_case("a/x", "pass")), ratio=2.0)
+    part = night_of("2", {"fuzz": {"programs": 5, "differences": []}}, {})
+    known = known_before([whole, part])
+    assert known is not None
+    assert ("1", "2") == (known["of"]["conform"], known["of"]["fuzz"])
+    told = changes(known, _night("3", _conform(_case("a/x", "fail")), ratio=1.0))
+    assert [
+        "new failure: a/x: pass → fail",
+        "slower: vm.ratio 2 → 1 (2.00 times worse)",
+    ] == told
+
+
+def test_a_first_night_tells_what_is_wrong() -> None:
+    """Nothing is new in a first night, but failures are no secret."""
+    made = {
+        "conform": _conform(_case("a/x", "fail"), _case("a/y", "pass")),
+        "fuzz": {"programs": 5, "differences": [{}, {}]},
+    }
+    steps = {"recover": {"status": "cut off after 9 minutes", "seconds": 540.0}}
+    assert [
+        "this is the first night",
+        "step recover: cut off after 9 minutes",
+        "new failure: a/x",
+        "fuzz: 2 divergences",
+    ] == changes(None, night_of("1", made, steps))
 
 
 def test_damaged_lines_hide_no_night(tmp_path: Path) -> None:

@@ -79,10 +79,10 @@ def test_the_page_loads_no_resource_and_reports_no_error(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The browser asked for nothing beyond the page, and its policy was not offended."""
-    browser.get_log("browser")  # type: ignore[no-untyped-call]
+    browser.get_log("browser")
     _open(browser, pages("believable"))
     assert browser.execute_script("return performance.getEntriesByType('resource').length") == 0
-    assert browser.get_log("browser") == []  # type: ignore[no-untyped-call]
+    assert browser.get_log("browser") == []
 
 
 def test_a_click_on_a_heading_sorts_and_a_third_one_restores(
@@ -338,7 +338,7 @@ def test_hostile_text_is_shown_and_does_not_run(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Every card and fold is opened; nothing ran, nothing loaded, and the text is there."""
-    browser.get_log("browser")  # type: ignore[no-untyped-call]
+    browser.get_log("browser")
     _open(browser, pages("hostile"))
     browser.execute_async_script(
         """
@@ -357,7 +357,7 @@ def test_hostile_text_is_shown_and_does_not_run(
     line = _one(browser, ".example .failing .tx").get_attribute("textContent") or ""
     assert "</script><script>window.hacked=1</script>" in line
     assert "␛[31m␀" in line
-    assert browser.get_log("browser") == []  # type: ignore[no-untyped-call]
+    assert browser.get_log("browser") == []
 
 
 def test_a_cluster_of_the_start_shows_what_answered_it(

@@ -1,4 +1,4 @@
-"""Calls: of routines of the program, and of what the controller brings along.
+"""Calls: of routines of the program.
 
 A routine is compiled for the way it is called. What is passed :OUT and is a variable is a
 reference, an array a view, so that it has the sizes of the actual argument. A system variable
@@ -8,52 +8,34 @@ parameters for its indices only.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 
 from grammar import ast
-from grammar.predefined import Parameter, System
 from grammar.scopes import Found
-from grammar.symbols import Kind, Space
-from grammar.types import CHAR, REAL, UNKNOWN, Array, Type
+from grammar.symbols import Space
+from grammar.types import CHAR, Array, Type
 from grammar.walk import walk
-from interp.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
-from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
-    Formal,
     FormalView,
     Hole,
     Place,
-    Pushed,
     PushedView,
     Remote,
     Scalar,
     Text,
     Value,
     View,
+    is_view_of,
 )
+from interp.bytecode.compiler.predefined_calls import PredefinedCalls
 from interp.bytecode.compiler.rooms import Bound
-from interp.bytecode.crossing import unlike
-from interp.bytecode.program import (
-    Argument,
-    Ask,
-    Builtin,
-    Changed,
-    Constant,
-    Input,
-    Items,
-    Mode,
-    Program,
-)
-from interp.faults import LinkError
 from interp.phrases import is_variable
 from interp.program import Routine
-from interp.values import letters
 from interp.variables import (
     MOST_CELLS,
     cells_of_routine,
@@ -64,10 +46,7 @@ from interp.variables import (
     untyped_result,
 )
 
-__all__ = ["BY_TEXT", "Binding", "Calls", "Formals", "formals_of"]
-
-#: Functions that are given the name of a variable as a text [TYP-18].
-BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
+__all__ = ["Binding", "Calls", "Formals", "formals_of"]
 
 #: What stands for a system variable in a routine: its path, ``None`` for each index.
 Binding = tuple[tuple[str | int | None, ...], Type] | None
@@ -95,7 +74,7 @@ def formals_of(routine: Routine, type_of: object) -> Formals:
     return Formals(tuple(found), types, is_in)
 
 
-class Calls(Expressions):
+class Calls(PredefinedCalls):
     """Makes the code of calls."""
 
     def call(self, node: ast.Call, _wanted: Type) -> Value:
@@ -111,13 +90,11 @@ class Calls(Expressions):
         if found is None:
             raise self.unlinked(f"{node.name.text} is declared nowhere")
         if found.module is None:
-            return self._predefined(node, is_value=is_value)
+            return self.predefined(node, is_value=is_value)
         routine = self.context.program.routines.get(found.symbol)
         if routine is None:
             raise self.unlinked(f"{node.name.text} is a routine that no file has")
         return self._routine(node, routine)
-
-    # ----------------------------------------------------------------------- routines
 
     def _routine(self, node: ast.Call, routine: Routine) -> Value | None:
         program = self.context.program
@@ -216,7 +193,7 @@ class Calls(Expressions):
         if isinstance(type_, Array) and is_view:
             is_array = isinstance(given, View) or isinstance(given.type, Array)
             view = self.as_view(given) if is_array else None
-            if view is not None and _is_of(view, self.closed(type_.element), len(type_.sizes)):
+            if view is not None and is_view_of(view, self.closed(type_.element), len(type_.sizes)):
                 return view.most
         elif given == Block(self.closed(type_)):
             return None
@@ -234,12 +211,9 @@ class Calls(Expressions):
             self.emit(Op.STORE_LOCAL, kept.offset)
             self.refer(kept)
             return
-        self.writer.insert(behind, *self._reference(kept))
+        self.refer_below(kept, behind)
         self.store_block(type_, value, behind + 1)
         self.refer(kept)
-
-    def _reference(self, kept: Cells) -> tuple[Op, int, int]:
-        return Op.REF_LOCAL, kept.offset, self.number(kept.type)
 
     def _copied_view(self, type_: Type, argument: ast.Expression) -> Bound:
         """Push a view of a copy of a value."""
@@ -262,172 +236,22 @@ class Calls(Expressions):
         if (made.element, len(made.sizes)) != (self.closed(type_.element), len(type_.sizes)):
             raise self.refuse(_other_type(type_))
         kept = Cells(self.writer.temporary(made), made)
-        self.writer.insert(behind, *self._reference(kept))
+        self.refer_below(kept, behind)
         self.store_block(made, value, behind + 1)
         self.refer(kept)
         return self.as_view(Block(made)).most
 
     def _copied_to_room(self, type_: Array, value: View) -> Bound:
         """Make of the view on top one of a copy of the array, whose size only running tells."""
-        if not _is_of(value, self.closed(type_.element), len(type_.sizes)):
+        if not is_view_of(value, self.closed(type_.element), len(type_.sizes)):
             raise self.refuse(_other_type(type_))
         room = self.writer.room(value.element, value.dimensions, value.most)
         self.emit(Op.COPY_VIEW, room.offset, room.type)
         return value.most
 
-    # ----------------------------------------------------------------------- the controller's
-
-    def _predefined(self, node: ast.Call, *, is_value: bool) -> Value | None:
-        name = node.name.key
-        function = System.load().functions[name]
-        is_builtin = name in BUILTINS
-        parts = [
-            self._argument(name, argument, parameter, is_builtin=is_builtin)
-            for argument, parameter in _paired(node.arguments, function.parameters)
-        ]
-        result = function.result
-        if result == UNKNOWN and is_value:
-            raise self.refuse(str(untyped_result(name)))
-        if is_builtin and not _fits(node, function.parameters, function.has_more):
-            raise self.fail("argument")
-        if result is None or result == UNKNOWN:
-            self._cross(name, parts, None, is_builtin=is_builtin)
-            return None
-        closed = self.closed(result)
-        number = self.number(closed)
-        if isinstance(closed, Plain):
-            self._cross(name, parts, number, is_builtin=is_builtin)
-            return Scalar(closed)
-        kept = Cells(self.writer.temporary(closed), closed)
-        self.refer(kept)
-        self._cross(name, parts, number, is_builtin=is_builtin)
-        self.refer(kept)
-        return Block(closed)
-
-    def _cross(
-        self, name: str, parts: list[Argument], result: int | None, *, is_builtin: bool
-    ) -> None:
-        tables = self.context.tables
-        if not is_builtin:
-            assert name in WORLD, "what does not compute needs the world"
-            ask = Ask("Invoke", (Constant(name), Items(tuple(parts))), result)
-            self.emit(Op.ASK, tables.ask(ask))
-            return
-        builtin = Builtin(name, tuple(parts), result)
-        reason = unlike(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
-        if reason is not None:
-            raise self.refuse(f"{name}: {reason}")
-        self.emit(Op.BUILTIN, tables.builtin(builtin))
-
-    def _argument(
-        self,
-        name: str,
-        argument: ast.Expression | None,
-        parameter: Parameter | None,
-        *,
-        is_builtin: bool,
-    ) -> Argument:
-        """Push an argument; what is passed :OUT and is a variable is assigned afterwards."""
-        if argument is None:
-            return Constant(None)
-        if parameter is not None:
-            is_out, type_ = parameter.is_out, parameter.type
-        else:
-            is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
-        if is_out and is_variable(self.context.unit, argument):
-            return self._changed(self.place(argument))
-        if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
-            return self.handed(Text(letters(self._name_to_find(argument.text))))
-        value = self._given(argument, type_, is_builtin=is_builtin)
-        if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
-            self.convert(value, REAL)
-            value = Scalar(REAL)
-        return self.handed(value)
-
-    def _name_to_find(self, text: str) -> str:
-        """A name as the machine finds it, which knows no IMPORT: what it stands for [ADV-05].
-
-        Where the name of that means something else here, the text stays, and finds nothing.
-        """
-        root = text.partition("[")[0].partition(".")[0].strip()
-        answer = self.context.scope.find(Space.VALUE, root.upper())
-        if not isinstance(answer, Found) or answer.symbol.kind is not Kind.IMPORT:
-            return text
-        try:
-            meant = self.context.program.declaration(answer).symbol
-        except LinkError:
-            return text
-        places, data = list(self.context.places), self.context.tables.data
-        if meant not in places or any(one.key == meant.key for one in self.context.variables):
-            return text
-        same = [number for number, one in enumerate(data) if one.name.upper() == meant.key]
-        module = PurePosixPath(self.context.unit.module.path).stem.upper()
-        own = [number for number in same if data[number].module.upper() == module]
-        seen = own or [number for number in same if data[number].is_global]
-        return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
-
-    def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
-        """The value of an argument :IN; for a text see `interp.builtins.reads_text`."""
-        if not (is_builtin and reads_text(type_) and is_variable(self.context.unit, argument)):
-            return self.value(argument, type_)
-        place = self.place(argument)
-        if isinstance(place, FormalView) and _is_of(place, CHAR, 1):
-            return self.view(place, may_be_missing=True)
-        return self.load(place)
-
-    def _changed(self, place: Place) -> Argument:
-        if isinstance(place, Remote):
-            return self._changed_remote(place)
-        through: int | None = None
-        if isinstance(place, Formal | FormalView):
-            through = place.offset
-        elif isinstance(place, Pushed | PushedView):
-            through = place.through
-        if isinstance(place, FormalView | PushedView):
-            given = self.handed(self.view(place))
-        else:
-            self.refer(place)
-            given = self.handed(Block(place.type))
-        assert isinstance(given, Input), "it is on the stack"
-        return Changed(given, through)
-
-    def _changed_remote(self, place: Remote) -> Argument:
-        """A copy of a system variable, which is written back if it has changed."""
-        behind = self.writer.here
-        value = self.read(place)
-        assert isinstance(value, Scalar | Block), "what is read has a known type"
-        kept = Cells(self.writer.temporary(value.type), value.type)
-        if isinstance(value, Scalar):
-            self.emit(Op.STORE_LOCAL, kept.offset)
-        else:
-            self.writer.insert(behind, *self._reference(kept))
-            self.emit(*self._copy(value.type))
-        path = self.pushed_path(place)
-        self.refer(kept)
-        return Changed(Input(Mode.REF, self.number(value.type)), None, path)
-
-    def _copy(self, type_: Type) -> tuple[Op, int]:
-        return Op.COPY, self.number(type_)
-
-
-def _is_of(view: View | FormalView, element: Type, dimensions: int) -> bool:
-    return (view.element, view.dimensions) == (element, dimensions)
-
 
 def _other_type(type_: Type) -> str:
     return f"an argument of another type than {type_}"
-
-
-def _paired(
-    arguments: Sequence[ast.Expression | None], parameters: Sequence[Parameter]
-) -> Iterator[tuple[ast.Expression | None, Parameter | None]]:
-    for place, argument in enumerate(arguments):
-        yield argument, parameters[place] if place < len(parameters) else None
-
-
-def _fits(node: ast.Call, parameters: Sequence[Parameter], has_more: bool) -> bool:
-    count = len(node.arguments)
-    return count >= len(parameters) and (count == len(parameters) or has_more)
 
 
 def _calls(nodes: Sequence[ast.Expression | None]) -> bool:

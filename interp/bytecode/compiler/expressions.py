@@ -1,19 +1,17 @@
-"""Expressions: what leaves their values on the stack, and the places that they name.
+"""Expressions: what leaves their values on the stack.
 
-Operands, indices and arguments are evaluated from left to right. What cannot be known before the
-program runs, above all the type of a system variable that no table has, is refused: it ends the
-program when it is reached, and is told to whoever compiles.
+Operands and arguments are evaluated from left to right. What cannot be known before the program
+runs, above all the type of a system variable that no table has, is refused: it ends the program
+when it is reached, and is told to whoever compiles.
 """
 
 from __future__ import annotations
 
-import math
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from grammar import ast
-from grammar.scopes import Found
-from grammar.symbols import Kind, SignalSymbol
 from grammar.types import (
     BOOL,
     CHAR,
@@ -23,42 +21,32 @@ from grammar.types import (
     REAL,
     UNKNOWN,
     Aggregate,
-    Array,
     Enumeration,
     Structure,
     Type,
 )
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import array_sizes, bits_of, elements
-from interp.bytecode.compiler.memory import Memory
+from interp.bytecode.cells import bits_of
+from interp.bytecode.compiler.designators import Designators, literal
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
-    DataCells,
-    Formal,
     FormalView,
-    Hole,
     Place,
-    Pushed,
     PushedView,
-    Remote,
     Scalar,
     Text,
     Value,
-    View,
 )
 from interp.bytecode.compiler.writer import Label
 from interp.faults import Fault, LinkError
 from interp.operators import Primitive, Selection, kind_of, select
 from interp.values import constant, letters, position_type, single
-from interp.variables import untyped
 
 __all__ = ["Expressions"]
 
-_MOST_SIGNALS = 8
 
-
-class Expressions(Memory):
+class Expressions(Designators):
     """Makes the code of expressions."""
 
     # ----------------------------------------------------------------------- values
@@ -117,7 +105,7 @@ class Expressions(Memory):
             case ast.Unary(operator="-" | "+" as sign):
                 number = self.literal_integer(node.operand)
                 return -number if number is not None and sign == "-" else number
-        return _literal(node)
+        return literal(node)
 
     def _real(self, node: ast.RealLiteral, _wanted: Type) -> Value:
         try:
@@ -239,7 +227,7 @@ class Expressions(Memory):
     def _composed(self, left: Scalar | Block, right: Scalar | Block, first: int) -> Value:
         """The geometric operator: its result has a place below its operands."""
         kept = Cells(self.writer.temporary(right.type), right.type)
-        self.writer.insert(first, Op.REF_LOCAL, kept.offset, self.number(right.type))
+        self.refer_below(kept, first)
         self.emit(Op.COMPOSE, self.number(left.type), self.number(right.type))
         self.refer(kept)
         return Block(right.type)
@@ -278,202 +266,14 @@ class Expressions(Memory):
         self.store(ready, self.value(node, wanted), behind)
         return ready
 
-    # ----------------------------------------------------------------------- places
-
-    def place(self, node: ast.Expression) -> Place:
-        """Where an expression has its value."""
-        match node:
-            case ast.Variable():
-                found = self.context.unit.found(node.name)
-                if found is not None and found.symbol.kind is Kind.IMPORT:
-                    self.ask("StopAdvance")
-                return self.variable(node.name)
-            case ast.Parenthesised():
-                return self.place(node.inner)
-            case ast.Member():
-                return self.member(self.place(node.base), node.name.text)
-            case ast.Subscript():
-                return self.element(self.place(node.base), node.indices)
-        match self.value(node):
-            case Block(type_):
-                return Pushed(type_, None)
-            case View(element, dimensions, most):
-                return PushedView(element, dimensions, None, most)
-        raise self.unlinked("a part of what has none")
-
-    def variable(self, name: ast.Name) -> Place:
-        """The place of a variable."""
-        found = self.context.unit.found(name)
-        if found is not None:
-            return self.declared(found)
-        if name.key.startswith("$"):  # another release may have it
-            return Remote((name.key,), UNKNOWN)
-        raise self.unlinked(f"{name.text} is declared nowhere")
-
-    def declared(self, found: Found, signals: int = 0) -> Place:
-        """The place of what a name means: of a frame, of a data list, or of the world."""
-        try:
-            found = self.context.program.declaration(found)
-        except LinkError as error:
-            raise self.unlinked(str(error)) from None
-        symbol = found.symbol
-        if found.scope.routine is not None and not isinstance(symbol, SignalSymbol):
-            if symbol in self.context.variables:
-                return self.context.variables[symbol]
-            raise self.refuse(str(untyped(symbol.name)))
-        if self._is_remote(found):
-            return Remote((symbol.key,), self.context.program.type_of(found))
-        if isinstance(symbol, SignalSymbol):
-            if signals == _MOST_SIGNALS:
-                raise self.unlinked(f"the signal {symbol.name} leads nowhere")
-            return self._signal(symbol, found, signals)
-        if symbol in self.context.places:
-            return DataCells(*self.context.places[symbol])
-        if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
-            raise self.refuse(str(untyped(symbol.name)))
-        raise self.unlinked(f"{symbol.name} is no variable")
-
-    def _is_remote(self, found: Found) -> bool:
-        """Whether it is the world that has a variable."""
-        return found.module is None or found.symbol.key.startswith("$")
-
-    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> Remote:
-        """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)`` [IOT-03]."""
-        assert found.module is not None, "the controller's signals are variables"
-        unit = self.context.program.units[found.module]
-        ends: list[Remote] = []
-        for node in (symbol.first, symbol.last):
-            match node:
-                case ast.Variable():
-                    root, numbers = node, list[int]()
-                case ast.Subscript(
-                    base=ast.Variable() as root, indices=(ast.IntegerLiteral() as number,)
-                ):
-                    numbers = [number.value]
-                case _:
-                    continue
-            means = unit.found(root.name)
-            place = (
-                self.declared(means, signals + 1) if means else Remote((root.name.key,), UNKNOWN)
-            )
-            if isinstance(place, Remote):
-                ends.append(_remote_element(place, tuple(numbers)) if numbers else place)
-        if not ends:
-            return Remote((symbol.key,), BOOL)  # connected to nothing
-        if symbol.last is None:
-            return ends[0]
-        return Remote((*ends[0].path, "TO", ends[-1].path[-1]), INT)
-
-    # ----------------------------------------------------------------------- elements
-
-    def element(self, base: Place, nodes: tuple[ast.Expression | None, ...]) -> Place:
-        """An element; an index left out, and all behind it, mean the rest of the array."""
-        given: list[ast.Expression] = []
-        for node in nodes:
-            if node is None:
-                break
-            given.append(node)
-        if not given:
-            return base
-        if isinstance(base, Remote):
-            return self._remote_element(base, given)
-        if isinstance(base, FormalView | PushedView):
-            return self._view_element(base, given)
-        if not isinstance(base.type, Array):
-            raise self.unlinked("an index of what is no array")
-        sizes = base.type.sizes
-        fixed = [number for node in given if (number := _literal(node)) is not None]
-        if isinstance(base, Cells | DataCells) and len(fixed) == len(given) <= len(sizes):
-            found = self.fixed_element(base, tuple(fixed))
-            if found is not None:
-                return found
-        through = base.offset if isinstance(base, Formal) else None
-        through = base.through if isinstance(base, Pushed) else through
-        if len(given) == len(sizes):
-            return self._indexed(base, base.type, given, through)
-        self.refer(base)
-        self._indices(given)
-        if len(given) > len(sizes):
-            raise self.unlinked("an array has too many indices")
-        self.emit(Op.ROW, self.number(base.type), len(given))
-        rest = elements(base.type) // math.prod(array_sizes(base.type)[: len(given)])
-        return PushedView(base.type.element, len(sizes) - len(given), through, rest)
-
-    def _indexed(
-        self,
-        base: Cells | DataCells | Formal | Pushed,
-        type_: Array,
-        nodes: list[ast.Expression],
-        through: int | None,
-    ) -> Pushed:
-        number = self.number(type_)
-        match base:
-            case Cells(offset):
-                self._indices(nodes)
-                self.emit(Op.INDEX_LOCAL, offset, number)
-            case DataCells(address):
-                self._indices(nodes)
-                self.emit(Op.INDEX_DATA, address, number)
-            case _:
-                self.refer(base)
-                self._indices(nodes)
-                self.emit(Op.INDEX, number)
-        return Pushed(type_.element, through)
-
-    def _view_element(
-        self, base: FormalView | PushedView, nodes: list[ast.Expression]
-    ) -> Pushed | PushedView:
-        if isinstance(base, PushedView):
-            raise self.refuse("an index of a part of an array")
-        self._indices(nodes)
-        if len(nodes) > base.dimensions:
-            raise self.unlinked("an array has too many indices")
-        if len(nodes) == base.dimensions:
-            self.emit(Op.INDEX_VIEW, base.offset)
-            return Pushed(base.element, base.offset)
-        self.emit(Op.ROW_VIEW, base.offset, len(nodes))
-        return PushedView(base.element, base.dimensions - len(nodes), base.offset, base.most)
-
-    def _remote_element(self, base: Remote, nodes: list[ast.Expression]) -> Remote:
-        steps: list[int | Hole] = []
-        for node in nodes:
-            number = _literal(node)
-            if number is None:
-                self.convert(self.value(node), INT)
-                hole = Hole(self.writer.temporary(INT))
-                self.emit(Op.STORE_LOCAL, hole.offset)
-                steps.append(hole)
-            else:
-                steps.append(number)
-        return _remote_element(base, tuple(steps))
-
-    def _indices(self, nodes: list[ast.Expression]) -> None:
-        for node in nodes:
-            self.convert(self.value(node), INT)
-
     # ----------------------------------------------------------------------- calls
 
+    @abstractmethod
     def call(self, node: ast.Call, _wanted: Type) -> Value:
         """The value of a function."""
-        raise NotImplementedError  # see `interp.bytecode.compiler.calls`
 
 
 _SIGNS = {"add_int": 1, "sub_int": -1}
-
-
-def _literal(node: ast.Expression) -> int | None:
-    """The value of a literal that is an INT."""
-    while isinstance(node, ast.Parenthesised):
-        node = node.inner
-    if isinstance(node, ast.IntegerLiteral) and node.value <= INT_MAX:
-        return node.value
-    return None
-
-
-def _remote_element(base: Remote, steps: tuple[int | Hole, ...]) -> Remote:
-    is_whole = isinstance(base.type, Array) and len(base.type.sizes) == len(steps)
-    element = base.type.element if isinstance(base.type, Array) and is_whole else UNKNOWN
-    return Remote((*base.path, *steps), element)
 
 
 _Rule = Callable[[Expressions, Any, Type], Value]

@@ -132,6 +132,10 @@ class Memory:
             case Formal(offset):
                 self.emit(Op.LOAD_REF, offset)
 
+    def refer_below(self, place: Cells, at: int) -> None:
+        """Leave a reference to cells of the frame below what was pushed from ``at`` on."""
+        self.writer.insert(at, Op.REF_LOCAL, place.offset, self.number(place.type))
+
     def view(self, place: FormalView | PushedView, *, may_be_missing: bool = False) -> View:
         """Leave a view on the stack."""
         if isinstance(place, FormalView):
@@ -347,7 +351,7 @@ class Memory:
             return Input(Mode.IN, self.number(type_))
         if value != Block(type_):
             kept = Cells(self.writer.temporary(type_), type_)
-            self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(type_))
+            self.refer_below(kept, behind)
             self.store_block(type_, value, behind + 1)
             self.refer(kept)
         return Input(Mode.REF, self.number(type_))

@@ -22,6 +22,7 @@ __all__ = [
     "Text",
     "Value",
     "View",
+    "is_view_of",
 ]
 
 
@@ -130,3 +131,8 @@ class Text:
 
 
 Value = Scalar | Block | View | Text
+
+
+def is_view_of(view: View | FormalView, element: Type, dimensions: int) -> bool:
+    """Whether a view is one of an array with such elements and so many dimensions."""
+    return (view.element, view.dimensions) == (element, dimensions)

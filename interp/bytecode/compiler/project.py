@@ -12,7 +12,7 @@ from grammar.types import BOOL, INT, Array, Type
 from grammar.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import Plain
-from interp.bytecode.compiler.calls import BY_TEXT, Binding, Formals, formals_of
+from interp.bytecode.compiler.calls import Binding, Formals, formals_of
 from interp.bytecode.compiler.context import Context, Refusal
 from interp.bytecode.compiler.data import declare_data, initial_values
 from interp.bytecode.compiler.places import (
@@ -26,6 +26,7 @@ from interp.bytecode.compiler.places import (
     PushedView,
     Remote,
 )
+from interp.bytecode.compiler.predefined_calls import BY_TEXT
 from interp.bytecode.compiler.rooms import Sizes
 from interp.bytecode.compiler.statements import Statements
 from interp.bytecode.compiler.tables import Tables

@@ -12,7 +12,6 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cells import size
 from interp.bytecode.compiler.rooms import Bound, Sizes
 from interp.bytecode.compiler.tables import Tables
-from interp.bytecode.flow import ENDS
 from interp.bytecode.isa import MAX_CELLS, shape
 from interp.bytecode.program import (
     Code,
@@ -23,6 +22,7 @@ from interp.bytecode.program import (
     Parameter,
     stack_cells,
 )
+from interp.bytecode.successors import ENDS
 
 __all__ = ["Label", "Room", "Writer"]
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
+from grammar import ast
 from grammar.build import read_module
 from grammar.check.framework import Checked, check, check_module
 from grammar.diagnostics import Diagnostic
@@ -33,7 +34,7 @@ def linked(files: Mapping[str, str], *, is_complete: bool | None) -> list[tuple[
     return list(link(read, is_complete=is_complete).modules())
 
 
-def _read(text: str, path: str):  # type: ignore[no-untyped-def]
+def _read(text: str, path: str) -> ast.Module:
     module = read_module(text, path)
     assert not isinstance(module, list), module
     return module

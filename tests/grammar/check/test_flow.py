@@ -1,6 +1,7 @@
 """EXIT, GOTO and labels, the end of functions, what is never reached; by rule."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -78,7 +79,7 @@ def test_labels_are_known_in_their_routine_only(agrees: Agrees) -> None:
     )
 
 
-def test_a_label_that_is_nearly_there_is_offered(finds: Callable[..., list]) -> None:  # type: ignore[type-arg]
+def test_a_label_that_is_nearly_there_is_offered(finds: Callable[..., list[Any]]) -> None:
     """For an unknown label one that looks alike is offered."""
     (found,) = finds({"NEG.src": routine("GOTO FINSH", "FINISH:")})
     assert "did you mean FINISH?" == found.fix.text
@@ -142,7 +143,7 @@ def test_what_a_goto_leads_to_is_reached(agrees: Agrees) -> None:
     agrees(routine("IF $IN[1] THEN", "GOTO LAST", "ENDIF", "RETURN", "LAST:", "$OUT[1] = TRUE"))
 
 
-def test_depth_meets_no_limit(finds: Callable[..., list]) -> None:  # type: ignore[type-arg]
+def test_depth_meets_no_limit(finds: Callable[..., list[Any]]) -> None:
     """Blocks may nest as deep as a file is long."""
     depth = 3_000
     text = routine(*["IF $IN[1] THEN"] * depth, "EXIT", *["ENDIF"] * depth)

@@ -2,6 +2,7 @@
 
 import pickle
 from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 from grammar import ast
 from grammar.check.framework import Checked, check_project
@@ -11,6 +12,7 @@ from grammar.walk import walk
 
 Check = Callable[..., Checked]
 Find = Callable[..., list[Diagnostic]]
+_N = TypeVar("_N", bound=ast.Node)
 
 TEXT = """DEF NEG()
   DECL INT I, LIST[3]
@@ -28,10 +30,10 @@ END
 """
 
 
-def node(checked: Checked, kind: type[ast.Node], place: int = 0) -> ast.Node:
+def node(checked: Checked, kind: type[_N], place: int = 0) -> _N:
     """A node of the tree by its kind and its place among them."""
     assert checked.module.syntax is not None
-    return [one for one in walk(checked.module.syntax) if type(one) is kind][place]
+    return [one for one in walk(checked.module.syntax) if isinstance(one, kind)][place]
 
 
 def test_every_expression_has_a_type(checked: Check) -> None:
@@ -61,7 +63,7 @@ def test_types(checked: Check) -> None:
     assert Constant("VAR") == made.types[node(made, ast.EnumConstant)]
     assert Text(3) == made.types[node(made, ast.StringLiteral)]
     assert "E6POS" == str(made.types[node(made, ast.Aggregate)])
-    array = made.types[node(made, ast.Subscript).base]  # type: ignore[attr-defined]
+    array = made.types[node(made, ast.Subscript).base]
     assert Array(INT, (3,)) == array
 
 

@@ -14,7 +14,8 @@ from interp.agreement import Difference, Entered, Evaluated, Observed, Prober, d
 from interp.bytecode.assembler import assemble
 from interp.bytecode.compiler import Compiled, compile_program
 from interp.bytecode.disassembler import disassemble
-from interp.bytecode.image import read_image, write_image
+from interp.bytecode.image_reader import read_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.verify import verify
 from interp.bytecode.vm import Machine
 from interp.events import Event

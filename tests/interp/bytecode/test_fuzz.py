@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from grammar.predefined import System
 from interp.bytecode.assembler import assemble
 from interp.bytecode.disassembler import disassemble
-from interp.bytecode.image import ImageError, read_image, write_image
+from interp.bytecode.image_reader import ImageError, read_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.isa import instructions
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verify import VerificationError, Verified, verify

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from interp.bytecode.assembler import assemble
-from interp.bytecode.image import ImageError, read_image, write_image
+from interp.bytecode.image_reader import ImageError, read_image
+from interp.bytecode.image_writer import write_image
 
 SMALL = 'bytecode 2\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 

@@ -8,8 +8,8 @@ import pytest
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.assembler import assemble
-from interp.bytecode.flow import Flow
 from interp.bytecode.isa import OPERAND_KINDS, instructions, outdated
+from interp.bytecode.stack_effects import StackEffects
 from interp.bytecode.threads import Threads
 from interp.bytecode.verify import verify
 from interp.bytecode.vm import Machine
@@ -65,8 +65,8 @@ def test_sentences_name_the_faults_of_primitives() -> None:
 def test_every_instruction_is_verified_and_done(name: str) -> None:
     """The verifier knows the effect of each instruction, and the machine what it does."""
     program = assemble(SMALLEST)
-    flow: Any = Flow(program, program.codes[0])
-    assert Op[name] in flow._rules or instructions()[Op[name]].effect is not None
+    effects: Any = StackEffects(program, program.codes[0])
+    assert Op[name] in effects._rules or instructions()[Op[name]].effect is not None
     machine: Any = Machine(verify(program), "MAIN")
     threads: Threads = machine._threads
     assert Op[name] in threads._rules or name.startswith("TELL")

@@ -12,7 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from interp.bytecode.assembler import assemble
-from interp.bytecode.image import ImageError, read_image, write_image
+from interp.bytecode.image_reader import ImageError, read_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.isa import instructions
 from interp.bytecode.verify import VerificationError, verify
 

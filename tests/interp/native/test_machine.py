@@ -15,7 +15,7 @@ from interp.agreement import Prober, difference, observe
 from interp.bytecode import vm
 from interp.bytecode.assembler import assemble
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.image import write_image
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.verify import verify
 from interp.executors import Prepared
 from interp.faults import Fault

@@ -1,0 +1,89 @@
+"""The types of cells: of what parameters, locals and data lists hold, by their places."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from grammar.types import Array, Type
+from interp.bytecode.cells import kind_at, path_to
+from interp.bytecode.program import Code, Mode, Parameter, Program, Slot
+from interp.bytecode.stack_types import Held, Refused, handed_over
+
+__all__ = ["CellTypes"]
+
+
+class CellTypes:
+    """The cells that one code object reaches; raises `Refused` for what is not there."""
+
+    def __init__(self, program: Program, code: Code) -> None:
+        self._program = program
+        self._types = program.types
+        self._slots = program.slots(code)
+        self._starts = [slot.offset for slot in self._slots]
+        self._numbers = {type_: number for number, type_ in enumerate(program.types)}
+
+    def _value(self, type_: Type) -> Held:
+        return Held(Mode.IN, self._numbers[type_])
+
+    def slot(self, place: int) -> Slot:
+        """The parameter or local that a cell of the frame belongs to."""
+        number = bisect_right(self._starts, place) - 1
+        if number < 0 or place >= self._slots[number].offset + self._slots[number].cells:
+            raise Refused("there is no such cell in the frame")
+        return self._slots[number]
+
+    def _variable(self, place: int) -> tuple[Type, int]:
+        """The type of the parameter or local that a cell belongs to, and the offset within it."""
+        slot = self.slot(place)
+        if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+            raise Refused("the cell holds a reference")
+        return self._types[slot.variable.type], place - slot.offset
+
+    def _data_variable(self, address: int) -> tuple[Type, int]:
+        number = self._program.data_at(address)
+        if number is None:
+            raise Refused("there is no such cell in the data lists")
+        type_ = self._types[self._program.data[number].type]
+        return type_, address - self._program.addresses[number]
+
+    def local(self, place: int) -> Held:
+        """What a cell of the frame holds."""
+        return self._value(kind_at(*self._variable(place)))
+
+    def data(self, address: int) -> Held:
+        """What a cell of the data lists holds."""
+        return self._value(kind_at(*self._data_variable(address)))
+
+    def check_local(self, place: int, number: int) -> None:
+        """A part of this type begins at a cell of the frame."""
+        self.check_part(*self._variable(place), number)
+
+    def check_data(self, address: int, number: int) -> None:
+        """A part of this type begins at a cell of the data lists."""
+        self.check_part(*self._data_variable(address), number)
+
+    def check_part(self, whole: Type, offset: int, number: int) -> None:
+        """A part of this type begins at an offset within a type."""
+        if path_to(whole, offset, self._types[number]) is None:
+            raise Refused(f"no {self._types[number]} is there")
+
+    def parameter(self, place: int, mode: Mode) -> Held:
+        """The reference or view that a parameter is."""
+        slot = self.slot(place)
+        parameter = slot.variable
+        if slot.offset != place or not isinstance(parameter, Parameter):
+            raise Refused("no parameter begins there")
+        if parameter.mode is not mode:
+            raise Refused(f"the parameter is no {mode.value}")
+        return handed_over(parameter)
+
+    def array(self, number: int) -> Array:
+        """The array type of a number."""
+        type_ = self._types[number]
+        if not isinstance(type_, Array):
+            raise Refused(f"{type_} is no array")
+        return type_
+
+    def element(self, array: Array) -> int:
+        """The number of the type of an array's elements."""
+        return self._numbers[array.element]

@@ -1,0 +1,201 @@
+"""Calls of predefined functions: of what computes alone, and of what needs the world.
+
+What is passed :OUT and is a variable is handed over by reference and assigned afterwards; a system
+variable cannot be referred to, so a copy is, which is written back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import PurePosixPath
+
+from grammar import ast
+from grammar.predefined import Parameter, System
+from grammar.scopes import Found
+from grammar.symbols import Kind, Space
+from grammar.types import CHAR, REAL, UNKNOWN, Type
+from interp.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cells import Plain
+from interp.bytecode.compiler.expressions import Expressions
+from interp.bytecode.compiler.places import (
+    Block,
+    Cells,
+    Formal,
+    FormalView,
+    Place,
+    Pushed,
+    PushedView,
+    Remote,
+    Scalar,
+    Text,
+    Value,
+    is_view_of,
+)
+from interp.bytecode.crossing import unlike
+from interp.bytecode.program import (
+    Argument,
+    Ask,
+    Builtin,
+    Changed,
+    Constant,
+    Input,
+    Items,
+    Mode,
+    Program,
+)
+from interp.faults import LinkError
+from interp.phrases import is_variable
+from interp.values import letters
+from interp.variables import untyped_result
+
+__all__ = ["BY_TEXT", "PredefinedCalls"]
+
+#: Functions that are given the name of a variable as a text [TYP-18].
+BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
+
+
+class PredefinedCalls(Expressions):
+    """Makes the code of calls of predefined functions."""
+
+    def predefined(self, node: ast.Call, *, is_value: bool) -> Value | None:
+        """Call a function; gives its result, ``None`` where it has none."""
+        name = node.name.key
+        function = System.load().functions[name]
+        is_builtin = name in BUILTINS
+        parts = [
+            self._argument(name, argument, parameter, is_builtin=is_builtin)
+            for argument, parameter in _paired(node.arguments, function.parameters)
+        ]
+        result = function.result
+        if result == UNKNOWN and is_value:
+            raise self.refuse(str(untyped_result(name)))
+        if is_builtin and not _fits(node, function.parameters, function.has_more):
+            raise self.fail("argument")
+        if result is None or result == UNKNOWN:
+            self._cross(name, parts, None, is_builtin=is_builtin)
+            return None
+        closed = self.closed(result)
+        number = self.number(closed)
+        if isinstance(closed, Plain):
+            self._cross(name, parts, number, is_builtin=is_builtin)
+            return Scalar(closed)
+        kept = Cells(self.writer.temporary(closed), closed)
+        self.refer(kept)
+        self._cross(name, parts, number, is_builtin=is_builtin)
+        self.refer(kept)
+        return Block(closed)
+
+    def _cross(
+        self, name: str, parts: list[Argument], result: int | None, *, is_builtin: bool
+    ) -> None:
+        tables = self.context.tables
+        if not is_builtin:
+            assert name in WORLD, "what does not compute needs the world"
+            ask = Ask("Invoke", (Constant(name), Items(tuple(parts))), result)
+            self.emit(Op.ASK, tables.ask(ask))
+            return
+        builtin = Builtin(name, tuple(parts), result)
+        reason = unlike(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
+        if reason is not None:
+            raise self.refuse(f"{name}: {reason}")
+        self.emit(Op.BUILTIN, tables.builtin(builtin))
+
+    def _argument(
+        self,
+        name: str,
+        argument: ast.Expression | None,
+        parameter: Parameter | None,
+        *,
+        is_builtin: bool,
+    ) -> Argument:
+        """Push an argument; what is passed :OUT and is a variable is assigned afterwards."""
+        if argument is None:
+            return Constant(None)
+        if parameter is not None:
+            is_out, type_ = parameter.is_out, parameter.type
+        else:
+            is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
+        if is_out and is_variable(self.context.unit, argument):
+            return self._changed(self.place(argument))
+        if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
+            return self.handed(Text(letters(self._name_to_find(argument.text))))
+        value = self._given(argument, type_, is_builtin=is_builtin)
+        if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
+            self.convert(value, REAL)
+            value = Scalar(REAL)
+        return self.handed(value)
+
+    def _name_to_find(self, text: str) -> str:
+        """A name as the machine finds it, which knows no IMPORT: what it stands for [ADV-05].
+
+        Where the name of that means something else here, the text stays, and finds nothing.
+        """
+        root = text.partition("[")[0].partition(".")[0].strip()
+        answer = self.context.scope.find(Space.VALUE, root.upper())
+        if not isinstance(answer, Found) or answer.symbol.kind is not Kind.IMPORT:
+            return text
+        try:
+            meant = self.context.program.declaration(answer).symbol
+        except LinkError:
+            return text
+        places, data = list(self.context.places), self.context.tables.data
+        if meant not in places or any(one.key == meant.key for one in self.context.variables):
+            return text
+        same = [number for number, one in enumerate(data) if one.name.upper() == meant.key]
+        module = PurePosixPath(self.context.unit.module.path).stem.upper()
+        own = [number for number in same if data[number].module.upper() == module]
+        seen = own or [number for number in same if data[number].is_global]
+        return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
+
+    def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
+        """The value of an argument :IN; for a text see `interp.builtins.reads_text`."""
+        if not (is_builtin and reads_text(type_) and is_variable(self.context.unit, argument)):
+            return self.value(argument, type_)
+        place = self.place(argument)
+        if isinstance(place, FormalView) and is_view_of(place, CHAR, 1):
+            return self.view(place, may_be_missing=True)
+        return self.load(place)
+
+    def _changed(self, place: Place) -> Argument:
+        if isinstance(place, Remote):
+            return self._changed_remote(place)
+        through: int | None = None
+        if isinstance(place, Formal | FormalView):
+            through = place.offset
+        elif isinstance(place, Pushed | PushedView):
+            through = place.through
+        if isinstance(place, FormalView | PushedView):
+            given = self.handed(self.view(place))
+        else:
+            self.refer(place)
+            given = self.handed(Block(place.type))
+        assert isinstance(given, Input), "it is on the stack"
+        return Changed(given, through)
+
+    def _changed_remote(self, place: Remote) -> Argument:
+        """A copy of a system variable, which is written back if it has changed."""
+        behind = self.writer.here
+        value = self.read(place)
+        assert isinstance(value, Scalar | Block), "what is read has a known type"
+        kept = Cells(self.writer.temporary(value.type), value.type)
+        if isinstance(value, Scalar):
+            self.emit(Op.STORE_LOCAL, kept.offset)
+        else:
+            self.refer_below(kept, behind)
+            self.emit(Op.COPY, self.number(value.type))
+        path = self.pushed_path(place)
+        self.refer(kept)
+        return Changed(Input(Mode.REF, self.number(value.type)), None, path)
+
+
+def _paired(
+    arguments: Sequence[ast.Expression | None], parameters: Sequence[Parameter]
+) -> Iterator[tuple[ast.Expression | None, Parameter | None]]:
+    for place, argument in enumerate(arguments):
+        yield argument, parameters[place] if place < len(parameters) else None
+
+
+def _fits(node: ast.Call, parameters: Sequence[Parameter], has_more: bool) -> bool:
+    count = len(node.arguments)
+    return count >= len(parameters) and (count == len(parameters) or has_more)

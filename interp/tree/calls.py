@@ -1,0 +1,134 @@
+"""Calls: of routines of the program, and of what the controller brings along.
+
+Arguments are evaluated from left to right.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grammar import ast
+from grammar.predefined import System
+from grammar.scopes import Found
+from grammar.symbols import Space
+from grammar.types import UNKNOWN, Type
+from interp.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
+from interp.faults import LinkError, fault
+from interp.phrases import is_variable
+from interp.requests import Invoke
+from interp.tree.expressions import Expressions
+from interp.tree.places import Local, Place, Remote, fresh, is_left_out, sized
+from interp.tree.run import Call, Steps
+from interp.values import Value, copied, known
+from interp.variables import (
+    is_complete,
+    is_complete_parameter,
+    is_referable,
+    mismatched,
+    untyped_parameter,
+    untyped_result,
+)
+
+__all__ = ["Calls"]
+
+
+class Calls(Expressions):
+    """What calls do in one frame."""
+
+    def called(self, node: ast.Call) -> Steps[Value]:
+        """The value of a function."""
+        value = yield from self.call(node, is_value=True)
+        if value is None:
+            raise LinkError(f"{node.name.text} gives no value")
+        return value
+
+    def call(self, node: ast.Call, *, is_value: bool) -> Steps[Value | None]:
+        """Call a routine; a procedure gives ``None``."""
+        found = self.frame.unit.found(node.name)
+        if found is None:
+            raise LinkError(f"{node.name.text} is declared nowhere")
+        if found.module is None:
+            given: Value | None = yield from self._predefined(node, is_value=is_value)
+            return given
+        routine = self.run.program.routines.get(found.symbol)
+        if routine is None:
+            raise LinkError(f"{node.name.text} is a routine that no file has")
+        result_type = self.run.program.result_of(routine)
+        if result_type is not None and not is_complete(result_type):
+            raise untyped_result(routine.name)
+        variables = {}
+        for number, parameter in enumerate(routine.node.parameters):
+            argument = node.arguments[number] if number < len(node.arguments) else None
+            means = routine.scope.own(Space.VALUE, parameter.name.key)
+            assert means is not None, "a routine's table has its parameters"
+            if not is_complete_parameter(self.run.program.type_of(means)):
+                raise untyped_parameter(means.symbol.name, routine.name)
+            is_in = parameter.mode == "IN"
+            variables[means.symbol] = yield from self._passed(means, argument, is_in=is_in)
+        result: Value | None = yield Call(routine, variables)
+        return result
+
+    def _passed(
+        self, parameter: Found, argument: ast.Expression | None, *, is_in: bool
+    ) -> Steps[Place]:
+        """A parameter: what is no variable is passed :IN, whatever is declared [SCO-06]."""
+        type_, name = self.run.program.type_of(parameter), parameter.symbol.key
+        if argument is None:
+            return fresh(type_, name)
+        if not is_in and is_variable(self.frame.unit, argument):
+            place = yield from self.place(argument)
+            if isinstance(place, Remote):
+                return place
+            if not is_referable(type_, place.type):
+                raise mismatched(type_)
+            return Local(place.parts, place.at, place.type, (name,))
+        value = yield from self.value(argument, type_)
+        made = fresh(sized(type_, value), name)
+        made.set(value)
+        return made
+
+    def _predefined(self, node: ast.Call, *, is_value: bool) -> Steps[Any]:
+        """Call what the controller brings along; what is passed :OUT is assigned afterwards."""
+        name = node.name.key
+        parameters = System.load().functions[name].parameters
+        places: list[Place | None] = []
+        values: list[Value | None] = []
+        for number, argument in enumerate(node.arguments):
+            place, value = None, None
+            if number < len(parameters):
+                is_out, type_ = parameters[number].is_out, parameters[number].type
+            else:
+                is_out, type_ = name in WORLD or BUILTINS[name].changes_more, UNKNOWN
+            if argument is not None and is_out and is_variable(self.frame.unit, argument):
+                place = yield from self.place(argument)
+                value = yield from self.read(place)
+                if value is None and is_left_out(place):
+                    raise fault("uninitialised")
+            elif argument is not None and name in BUILTINS and reads_text(type_):
+                value = yield from self._text(argument, type_)
+            elif argument is not None:
+                value = yield from self.value(argument, type_)
+            places.append(place)
+            values.append(value)
+        if is_value and System.load().functions[name].result == UNKNOWN:
+            raise untyped_result(name)
+        if name in BUILTINS:
+            reply = call(name, values, Surroundings(self.run.random, self.find))
+            result, after = reply.result, reply.arguments
+        else:
+            values = [copied(value) for value in values]
+            paths = [place.path if isinstance(place, Remote) else None for place in places]
+            result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
+        for place, before, value in zip(places, values, after, strict=True):
+            if place is not None and value is not None and value is not before:
+                yield from self.store(place, value)
+        return result
+
+    def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:
+        """A text passed :IN to a predefined function; see `interp.builtins.reads_text`."""
+        if not is_variable(self.frame.unit, node):
+            return (yield from self.value(node, wanted))
+        place = yield from self.place(node)
+        value = yield from self.read(place)
+        is_empty = value is None and is_left_out(place) and reads_text(place.type)
+        return "" if is_empty else known(value)

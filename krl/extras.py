@@ -1,0 +1,47 @@
+"""Packages that only some commands need, and the extras of the package that install them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+
+from krl.door import Unusable
+
+__all__ = ["expected_extras", "need"]
+
+_EXTRA_OF = {
+    "junitparser": "records",
+    "lsprotocol": "lsp",
+    "mujoco": "arm",
+    "numpy": "arm",
+    "pandas": "records",
+    "py_opw_kinematics": "arm",
+    "pyarrow": "records",
+    "pygls": "lsp",
+    "ruckig": "arm",
+    "scipy": "arm",
+}
+
+
+@contextmanager
+def expected_extras() -> Iterator[None]:
+    """Turn the absence of such a package into what the door prints; any other is a defect."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        name = (error.name or "").partition(".")[0]
+        if name not in _EXTRA_OF:
+            raise
+        raise _refused(name) from error
+
+
+def need(name: str) -> None:
+    """Raise `Unusable` where the package is not installed, before any work."""
+    if find_spec(name) is None:
+        raise _refused(name)
+
+
+def _refused(name: str) -> Unusable:
+    extra = _EXTRA_OF[name]
+    return Unusable(
+        f"this needs {name}, which is not installed: pip install 'krl-workbench[{extra}]'"
+    )

@@ -1,0 +1,18 @@
+"""A table in the terminal: words in its first column, figures in the others."""
+
+from collections.abc import Iterable, Sequence
+
+from rich import box
+from rich.table import Table
+
+__all__ = ["figures"]
+
+
+def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> Table:
+    """A table with these headings, whose figures are never broken over lines."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for place, heading in enumerate(columns):
+        table.add_column(heading, justify="right" if place else "left", no_wrap=place > 0)
+    for row in rows:
+        table.add_row(*row)
+    return table

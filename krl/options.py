@@ -1,0 +1,55 @@
+"""Options and arguments that several commands have, said once."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from krl.door import Unusable
+
+__all__ = [
+    "JobsOption",
+    "JobsOrOneOption",
+    "JsonOption",
+    "JsonTooOption",
+    "ProgramsArgument",
+    "programs_or_ours",
+]
+
+#: Where a command's record goes; `krl.writing.check_files` sees to it before the work.
+JsonOption = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+]
+#: The same for commands that have written it into a folder anyway.
+JsonTooOption = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
+]
+JobsOption = Annotated[
+    int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+]
+#: The same where little work is done in this process.
+JobsOrOneOption = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
+]
+#: What a bench measures on; see `programs_or_ours`.
+ProgramsArgument = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="[PATH]...",
+        help="Files, folders, .zip archives; default: the programs in corpus/.",
+    ),
+]
+
+_OURS = (Path("corpus", "programs"), Path("corpus", "open"))
+
+
+def programs_or_ours(paths: list[Path] | None) -> list[Path]:
+    """What was named, or the programs of the corpus in the working folder.
+
+    Raises `Unusable` where nothing was named and there is no corpus.
+    """
+    roots = paths or [folder for folder in _OURS if folder.is_dir()]
+    if not roots:
+        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    return roots
