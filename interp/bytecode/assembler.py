@@ -263,9 +263,10 @@ class _Assembler:
                 if locals_:
                     raise line.error("parameters come before locals")
                 label = line.label()
-                parameters.append(
-                    Parameter(label[0], _MODES[word], *symbols.handed_over(line, _MODES[word]))
-                )
+                type_, dimensions = symbols.handed_over(line, _MODES[word])
+                if type_ >= len(symbols.types):
+                    raise line.error(f"there is no type #{type_}")
+                parameters.append(Parameter(label[0], _MODES[word], type_, dimensions))
                 if line.found("from"):
                     captures.append(line.integer(0))
             elif word == "local":

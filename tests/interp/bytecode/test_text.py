@@ -105,6 +105,7 @@ def test_requests_are_written_as_they_are_nested() -> None:
         ('bytecode 2\ntext T "\\x"\n', 2, "not a text"),
         ('bytecode 2\ntext T "\\ud800"\n', 2, "not a text"),
         ("bytecode 2\nask A Read %\n", 2, "no part"),
+        ('bytecode 2\ncode P routine "p.src" 1\n  in X #9999\n', 3, "no type #9999"),
         (HEAD + BODY.format("  NOTHING"), 5, "no instruction NOTHING"),
         (HEAD + BODY.format("  JUMP L"), 5, "no label L"),
         (HEAD + BODY.format("L:\nL:"), 6, "label L already"),
