@@ -1,5 +1,6 @@
 """Options and arguments that several commands have, said once."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -8,11 +9,13 @@ import typer
 from krl.door import Unusable
 
 __all__ = [
+    "CorpusArgument",
     "JobsOption",
     "JobsOrOneOption",
     "JsonOption",
     "JsonTooOption",
     "ProgramsArgument",
+    "corpus_or_ours",
     "programs_or_ours",
 ]
 
@@ -41,6 +44,16 @@ ProgramsArgument = Annotated[
     ),
 ]
 
+#: What is surveyed; see `corpus_or_ours`.
+CorpusArgument = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="[PATH]...",
+        help="Files, folders, .zip archives of controllers; default: corpus/.",
+    ),
+]
+
+_CORPUS = Path("corpus")
 _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
 
 
@@ -49,7 +62,16 @@ def programs_or_ours(paths: list[Path] | None) -> list[Path]:
 
     Raises `Unusable` where nothing was named and there is no corpus.
     """
-    roots = paths or [folder for folder in _OURS if folder.is_dir()]
+    return paths or _there(_OURS)
+
+
+def corpus_or_ours(paths: list[Path] | None) -> list[Path]:
+    """What was named, or all of the corpus in the working folder; raises as the above."""
+    return paths or _there([_CORPUS])
+
+
+def _there(folders: Iterable[Path]) -> list[Path]:
+    roots = [folder for folder in folders if folder.is_dir()]
     if not roots:
         raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
     return roots

@@ -14,27 +14,20 @@ from rich.text import Text
 
 from krl.constructs import expected_errors
 from krl.door import FINE, Unusable, one_line
-from krl.options import JobsOrOneOption, JsonTooOption
+from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.progress import progress_bar
 from krl.terminal import share
 from krl.writing import check_targets, write_json
 
 __all__ = ["growth"]
 
-_DEFAULT_CORPUS = Path("corpus")
 _DEFAULT_OUT = Path("reports", "out", "growth")
 _BIGGEST = 14
 _LEFT = 5
 
 
 def growth(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives of controllers; default: corpus/.",
-        ),
-    ] = None,
+    paths: CorpusArgument = None,
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Where index.html and growth.json go.")
     ] = _DEFAULT_OUT,
@@ -51,9 +44,7 @@ def growth(
     from recovery.ledger import Ledger, preliminary_of, replay
     from reports import write_growth_page
 
-    roots = paths or [_DEFAULT_CORPUS]
-    if not paths and not _DEFAULT_CORPUS.is_dir():
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    roots = corpus_or_ours(paths)
     if constructs is not None and not constructs.is_dir():
         raise Unusable(f"{constructs}: not a folder")
     check_targets(out, json_file)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.constructs import expected_errors
-from krl.door import FINDINGS, FINE, Unusable
-from krl.options import JobsOrOneOption, JsonTooOption
+from krl.door import FINDINGS, FINE
+from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.progress import progress_bar
 from krl.terminal import print_survey
 from krl.writing import check_targets, write_json
@@ -23,19 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["recover"]
 
-_DEFAULT_CORPUS = Path("corpus")
 _DEFAULT_NEGATIVES = Path("corpus", "negatives")
 _DEFAULT_OUT = Path("reports", "out", "recover")
 
 
 def recover(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Files, folders, .zip archives of controllers; default: corpus/.",
-        ),
-    ] = None,
+    paths: CorpusArgument = None,
     grammar: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="The .g4 to read under; default: the grammar in force."),
@@ -74,9 +67,7 @@ def recover(
     from recovery.negatives import load
     from reports import write_survey_page
 
-    roots = paths or [_DEFAULT_CORPUS]
-    if not paths and not _DEFAULT_CORPUS.is_dir():
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+    roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():

@@ -60,7 +60,7 @@ class Foundry:
         """Some of our programs as images and as text of the bytecode machine."""
         from interp.bytecode.compiler import compile_program
         from interp.bytecode.disassembler import disassemble
-        from interp.bytecode.image import write_image
+        from interp.bytecode.image_writer import write_image
         from interp.faults import LinkError
         from krl.programs import load_program
 

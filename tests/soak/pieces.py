@@ -122,4 +122,6 @@ KINDS = [
     "values that no record has",
     "bombs of TOML and JSON, and other texts that ask much",
     "damaged messages of an editor",
+    "addresses of no scheduler",
+    "what answers at an address and is no scheduler",
 ]

@@ -18,6 +18,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections import Counter
@@ -30,8 +31,9 @@ import pytest
 
 import grammar.g4
 from krl.cli import main
-from tests.soak.entries import ENTRIES, Given, put
+from tests.soak.entries import ENTRIES
 from tests.soak.foundry import Foundry
+from tests.soak.given import Given, put
 from tests.soak.hostile_page import told
 
 pytestmark = [
@@ -150,6 +152,9 @@ def test_nothing_breaks_and_nothing_escapes(
     """Every input ends with 0, 1 or 2, one clear line on stderr for 2, and nothing outside."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "reports"))
+    scratch = tmp_path / "reports" / "scratch"
+    scratch.mkdir(parents=True)
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
     monkeypatch.setattr(grammar.g4, "read", cache(grammar.g4.read))  # the same text thousandfold
     canary = put(tmp_path, "canary", b"alive")
     foundry, watch, guard = Foundry(), Watch(), Guard(tmp_path)
