@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Final, Literal
+from typing import Final, Literal, cast
 
 __all__ = [
     "KINDS",
@@ -207,7 +207,7 @@ def read_expectation(text: str, file: str, line: int) -> Expectation:
 def _when(found: re.Match[str]) -> When:
     if found["relation"]:
         is_exact = found["exactly"] is not None
-        relation: Literal["at", "before", "after"] = found["relation"]  # type: ignore[assignment]
+        relation = cast(Literal["at", "before", "after"], found["relation"])
         return When(relation, _anchor(found["one"]), exactly=is_exact)
     return When("between", _anchor(found["first"]), _anchor(found["last"]))
 

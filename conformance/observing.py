@@ -147,6 +147,7 @@ class _Theirs(Prepared):
         super().__init__(program)
         self._make = make
 
+    # the name is part of what it overrides
     def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:  # noqa: ARG002
         """Theirs, whatever the name."""
         return self._make(self.program, self.routine, limits, sink)

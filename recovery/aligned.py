@@ -58,6 +58,11 @@ def common_phrases(
     The most restrictive first; none where the phrases have too little in common to be one.
     """
     seen: set[tuple[str, ...]] = set()
+    if len(phrases) > 1 and min(map(len, phrases)) > 0 and max(map(len, phrases)) > 1:
+        # what one rule reads in all its forms is that rule, however each would be cut
+        readers = phraser.readers_of_all([tuple(phrase) for phrase in phrases], near)
+        seen |= {(rule,) for rule in readers}
+        yield from sorted(seen)
     for rows in _cuts(phraser, phrases):
         columns = _columns(phraser, rows)
         if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):

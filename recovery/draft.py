@@ -60,7 +60,8 @@ def _cluster(record: Mapping[str, Any], wanted: str) -> Mapping[str, Any]:
         known = ", ".join(str(c["id"]) for c in record.get("clusters", ())[:5])
         what = "is no cluster" if not found else "is more than one cluster"
         raise LedgerError(f"{wanted!r} {what} of this survey; the first are {known or 'none'}")
-    return found[0]  # type: ignore[no-any-return]
+    only: Mapping[str, Any] = found[0]
+    return only
 
 
 def _construct(

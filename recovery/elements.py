@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
-__all__ = ["bare", "choices", "elements", "is_word", "optional", "wider"]
+__all__ = ["bare", "choices", "elements", "is_word", "wider"]
 
 _PIECES = re.compile(r"'(?:[^'\\]|\\.)*'[?*+]?|\(|\)[?*+]?|[^\s()]+")
 _SUFFIXES = "?*+"
@@ -39,13 +38,6 @@ def is_word(text: str) -> bool:
 def bare(element: str) -> str:
     """An element without what says how often it may come."""
     return element.rstrip(_SUFFIXES)
-
-
-def optional(several: Sequence[str]) -> list[str]:
-    """Elements as a part that may be left out; those that may be already stay as they are."""
-    if all(element[-1] in "?*" for element in several):
-        return list(several)
-    return [f"({' '.join(several)})?"] if len(several) > 1 else [f"{several[0]}?"]
 
 
 def wider(one: str, other: str) -> str:

@@ -13,7 +13,7 @@ from difflib import SequenceMatcher
 
 from grammar.edits import AddAlternative, Edit, Insert, Widen
 from recovery.candidates import Candidate
-from recovery.elements import bare, choices, elements, is_word, optional, wider
+from recovery.elements import bare, choices, elements, is_word, wider
 from recovery.joined_edits import main_edits, together
 from recovery.layout import Layout
 from recovery.trial import Outcome
@@ -36,8 +36,8 @@ def one_family(
     """One edit for two forms that a rule lacks and that differ in the word they begin with.
 
     ``SPTP target C_SPL?`` and ``SLIN target with?`` make ``(SLIN | SPTP) target with? C_SPL?``:
-    what only one of them has may be left out. Where one of them is a word more in a choice that is
-    there, the word of the other joins it. ``None`` where they are no forms of one thing.
+    what only one of them has can be left out in it. Where one of them is a word more in a choice
+    that is there, the word of the other joins it. ``None`` where they are no forms of one thing.
     """
     if max(len(main_edits(layout, edits)) for edits in (first, second)) > 1:
         return None
@@ -78,7 +78,8 @@ def with_lead(layout: Layout, edits: Sequence[Edit], word: str) -> tuple[Edit, .
     elif isinstance(main, AddAlternative):
         lead, *rest = elements(main.text)
         words = choices(lead)
-        if len(rest) < _IN_COMMON and not any(_akin(word, known) for known in words):
+        needed = sum(element[-1] not in "?*" for element in rest)
+        if needed < _IN_COMMON and not any(_akin(word, known) for known in words):
             return None
         edit = AddAlternative(main.rule, " ".join((_choice((*words, word)), *rest)))
     else:
@@ -100,7 +101,10 @@ def _choice(words: Sequence[str]) -> str:
 
 
 def _merged(one: Sequence[str], other: Sequence[str]) -> list[str]:
-    """Elements that read what both read; nothing where they have too little in common."""
+    """Elements that read what both read; nothing where they have too little in common.
+
+    What only one of them has must be what may be left out: else they are forms of two things.
+    """
     one, other = _expanded(one, other), _expanded(other, one)
     matcher = SequenceMatcher(None, [*map(bare, one)], [*map(bare, other)], autojunk=False)
     blocks = matcher.get_matching_blocks()
@@ -109,8 +113,10 @@ def _merged(one: Sequence[str], other: Sequence[str]) -> list[str]:
     out: list[str] = []
     here = there = 0
     for a, b, size in blocks:
-        out += optional(one[here:a])
-        out += optional(other[there:b])
+        more = [*one[here:a], *other[there:b]]
+        if not all(element[-1] in "?*" for element in more):
+            return []
+        out += more
         out += map(wider, one[a : a + size], other[b : b + size])
         here, there = a + size, b + size
     return out

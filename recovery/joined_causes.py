@@ -25,6 +25,8 @@ __all__ = ["joined", "sought_together"]
 
 # Causes that a later one is compared with: the first ones hold back most.
 _MOST_JOINED = 40
+# Proposals of a cause, the best of them, that may be one with what is best for another.
+_COMPARED = 3
 # Symbols of an alternative that make it a form of its own, whatever word it begins with.
 _A_FORM = 4
 
@@ -93,7 +95,10 @@ def _as_one(search: Search, first: Cause, second: Cause) -> Cause | None:
     seen: set[tuple[Edit, ...]] = set()
     by_lead = [*_led_by(search, first, second), *_led_by(search, second, first)]
     for one, other in _pairs(first, second):
-        for edits, breadth in (*by_lead, *_for_both(search.finder.layout, one, other)):
+        for edits, breadth in (
+            *by_lead,
+            *_for_both(search.finder.layout, one, other, are_best=(one, other) == best),
+        ):
             if edits in seen:
                 continue
             seen.add(edits)
@@ -119,21 +124,24 @@ def _led_by(search: Search, known: Cause, other: Cause) -> Iterator[tuple[tuple[
 
 def _pairs(first: Cause, second: Cause) -> Iterator[tuple[Proposal, Proposal]]:
     """Proposals of both, the better ones first: one of them is always the best of its cause."""
-    pairs = [(one, second.proposals[0]) for one in first.proposals]
-    pairs += [(first.proposals[0], other) for other in second.proposals[1:]]
+    pairs = [(one, second.proposals[0]) for one in first.proposals[:_COMPARED]]
+    pairs += [(first.proposals[0], other) for other in second.proposals[1:_COMPARED]]
     place = {p.edits: n for cause in (first, second) for n, p in enumerate(cause.proposals)}
     yield from sorted(pairs, key=lambda pair: place[pair[0].edits] + place[pair[1].edits])
 
 
 def _for_both(
-    layout: Layout, one: Proposal, other: Proposal
+    layout: Layout, one: Proposal, other: Proposal, *, are_best: bool
 ) -> Iterator[tuple[tuple[Edit, ...], int]]:
-    """Edits that might do what two proposals do."""
+    """Edits that might do what two proposals do.
+
+    That two words may be of one set counts only where that is the best for each of them.
+    """
     breadth = max(one.breadth, other.breadth)
     if changed_rules(one.edits) == changed_rules(other.edits):
         yield other.edits, other.breadth
     pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
-    for choice in one_choice(pair, partial(_may_be_chosen, layout)):
+    for choice in one_choice(pair, partial(_may_be_chosen, layout, are_best)):
         yield choice.edits, choice.breadth
     for form in (one_form, one_family):
         edits = form(layout, one.edits, other.edits)
@@ -143,7 +151,7 @@ def _for_both(
         yield together(other.edits, one.edits), breadth + 1  # the main one last
 
 
-def _may_be_chosen(layout: Layout, edit: Edit, place: int) -> bool:
+def _may_be_chosen(layout: Layout, are_best: bool, edit: Edit, place: int) -> bool:
     """Whether words there are a choice.
 
     Those that begin alternatives name constructs; rules that are to be gathered are one lost use.
@@ -154,4 +162,4 @@ def _may_be_chosen(layout: Layout, edit: Edit, place: int) -> bool:
     if len(gathered) == 1 and all(c in layout.callers for c in choices(gathered[0])):
         return True
     is_form = len(edit.text.split(" ")) >= _A_FORM
-    return is_form or layout.vocabulary.is_set_of_words(edit.rule)
+    return is_form or (are_best and layout.vocabulary.is_set_of_words(edit.rule))

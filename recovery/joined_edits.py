@@ -42,14 +42,12 @@ def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
     """Whether two edits let in one thing: a phrase, or what alone used a rule.
 
     A few edits at most make one cause: a person has to see at a glance that they are one. A word
-    that the grammar lacks is one thing in all places.
+    that the grammar lacks may be missing in some more places.
     """
     words = [{e.name for e in edits if isinstance(e, AddToken)} for edits in (first, second)]
     most = _MOST_FOR_A_WORD if words[0] & words[1] else _MOST_TOGETHER
     if len({*main_edits(layout, first), *main_edits(layout, second)}) > most:
         return False
-    if words[0] & words[1]:
-        return True
     one, other = first[-1], second[-1]
     if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
         other, Insert | Widen | AddAlternative

@@ -146,10 +146,9 @@ def _read(data: Any) -> Kept:
     return tuple(_failed(f) for f in failures), tuple(_forms(forms))
 
 
-def _failed(values: list[object]) -> Failed:
+def _failed(values: list[Any]) -> Failed:
     line, column, token, source, words, form, follows = values
-    assert isinstance(words, list)
-    return Failed(line, column, token, source, tuple(words), form, follows)  # type: ignore[arg-type]
+    return Failed(line, column, token, source, tuple(words), form, follows)
 
 
 def _forms(forms: list[list[object]]) -> Iterator[Form]:

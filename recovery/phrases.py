@@ -23,6 +23,8 @@ _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
 # Rules that are tried for an operand that stands alone.
 _MOST_READERS = 6
+# Rules that are tried for all of a phrase that falls into several parts.
+_MOST_READERS_OF_PARTS = 2
 _MOST_SPELLINGS = 12
 # What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
 _USUAL = 2
@@ -161,6 +163,17 @@ class Phraser:
             return (token,) if token else ()
         return self._levels_of(rules, near)
 
+    def readers_of_all(
+        self, phrases: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
+    ) -> tuple[str, ...]:
+        """Rules that read each of several phrases as a whole, the narrowest and the widest.
+
+        Rules that gather different things are none of them.
+        """
+        known = self.recognizer.grammar.by_name
+        rules = (r for r in self.rules_for_all(phrases, near) if r in self._wider)
+        return tuple(rule for rule in rules if len(known[rule].alternatives) < HUB)
+
     def phrases(
         self, words: Sequence[Word], near: frozenset[str] = frozenset()
     ) -> Iterator[tuple[str, ...]]:
@@ -192,11 +205,12 @@ class Phraser:
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
             yield from islice(product(*choices), _MOST_SPELLINGS)
-        if len(parts) == 1 and not any(keyword for _, keyword in words):
+        if not any(keyword for _, keyword in words):
             # an operand that is all of a phrase may be whatever reads it, the most used ones first
             rules = self.readers.rules_for(tuple(kind for kind, _ in words))
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
-            yield from ((rule,) for rule in ordered[:_MOST_READERS])
+            most = _MOST_READERS if len(parts) == 1 else _MOST_READERS_OF_PARTS
+            yield from ((rule,) for rule in ordered[:most])
 
     def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
         """The symbols, with what the grammar usually writes where that reads the parts."""

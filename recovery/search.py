@@ -131,7 +131,7 @@ class Search:
         sample = {*_spread(heavy, _FIRST_TRIAL), *_spread(alike, _FIRST_TRIAL)}
         blocks = self._blocks(specimens[0], heavy)
         found = self._ranked(self._found(near, others, sample, blocks), heavy)
-        left = self._half_read(found[0], near) if found else []
+        left = self._half_read(found[0], near) if found and self.thorough else []
         if left:  # what the best reads in part only shows what else there is to be read
             known = {p.edits for p in found}
             more = self._found([*left, *near], others, sample, ())

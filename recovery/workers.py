@@ -116,7 +116,8 @@ def _next(
     """The result of the first task; where whoever did it has died, of another try."""
     task, promise = waiting.popleft()
     try:
-        return promise.result()  # type: ignore[no-any-return]
+        result: _T = promise.result()
+        return result
     except crew.broken:
         _settle(promise for _, promise in waiting)
     found = _alone(function, task, crew)

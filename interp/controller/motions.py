@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from interp import requests
 from interp.controller.messages import message_fault, own_fault
@@ -249,5 +249,5 @@ class MotionBuilder:
     def _place(self, kind: str, position: float, on_start: bool, delay: float) -> Place:
         """``delay`` in ms, as TRIGGER has it [TRG-03]."""
         self._key += 1
-        words = "DISTANCE" if kind == "DISTANCE" else "PATH"
-        return Place(self._key, words, position, on_start, round(delay * 1000))  # type: ignore[arg-type]
+        place: Literal["DISTANCE", "PATH"] = "DISTANCE" if kind == "DISTANCE" else "PATH"
+        return Place(self._key, place, position, on_start, round(delay * 1000))

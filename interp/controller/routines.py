@@ -198,11 +198,12 @@ class Routines:
     def _raise_error(self, _task: Task, request: Invoke) -> Any:
         """ERR_RAISE: the fault that the error tells; without one, nothing (unconfirmed)."""
         error = request.arguments[0]
-        number: Any = error.get("NUMBER") if isinstance(error, StructureValue) else None
-        if number == 0:
+        value = error.get("NUMBER") if isinstance(error, StructureValue) else None
+        if value == 0:
             return None, request.arguments
+        number: Any = known(value)
         try:
-            raise message_fault(known(number))  # type: ignore[arg-type]
+            raise message_fault(number)
         except KeyError:
             own = own_fault("raised")
             raise Fault(own.slug, own.text, number=number, rules=own.rules) from None

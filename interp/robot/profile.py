@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import ruckig  # type: ignore[import-not-found]
+import ruckig
 
 from interp.robot.kinematics import Array
 

@@ -171,6 +171,7 @@ def test_nothing_to_check_is_said(tmp_path: Path) -> None:
 
 
 def _remembered(key: str, value: int | None = None, _memory: dict[str, int] = {}) -> int | None:  # noqa: B006
+    # what a lane remembers lies in its process, here as a default that is kept between calls
     if value is not None:
         _memory[key] = value
     return _memory.get(key)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recovery.elements import bare, choices, elements, is_word, optional, wider
+from recovery.elements import bare, choices, elements, is_word, wider
 
 
 @pytest.mark.parametrize(
@@ -34,14 +34,6 @@ def test_the_words_of_a_choice() -> None:
 def test_a_keyword_is_all_capitals_and_no_kind_of_name() -> None:
     """Rules, signs and NAME are none."""
     assert [True, False, False, False] == [is_word(t) for t in ("PTP_REL", "name", "'='", "NAME")]
-
-
-def test_what_may_be_left_out_once_is_not_made_so_twice() -> None:
-    """Several elements get brackets, one gets a sign, and optional ones stay."""
-    assert ["(A b)?"] == optional(["A", "b"])
-    assert ["A?"] == optional(["A"])
-    assert ["A?", "(b c)*"] == optional(["A?", "(b c)*"])
-    assert [] == optional([])
 
 
 @pytest.mark.parametrize(

@@ -20,10 +20,10 @@ def forms(one: str, other: str, rule: str = "motion") -> tuple[Edit, ...] | None
 def test_forms_that_begin_with_different_words_are_one_alternative() -> None:
     """What only one of them has may be left out, and neither loses the order it has."""
     assert (AddAlternative("motion", "(SLIN | SPTP) target with? C_SPL?"),) == forms(
-        "SPTP target C_SPL?", "SLIN target with? C_SPL"
+        "SPTP target C_SPL?", "SLIN target with? C_SPL?"
     )
     assert (AddAlternative("motion", "(A | B | C) target (',' target)* C_DIS?"),) == forms(
-        "(A | B) target (',' target)*", "C target (',' target)* C_DIS"
+        "(A | B) target (',' target)*", "C target (',' target)* C_DIS?"
     )
 
 
@@ -39,6 +39,7 @@ def test_forms_with_little_in_common_or_of_two_rules_stay_apart() -> None:
     assert forms("GOTO name", "CONFIRM name") is None
     assert forms("SPTP target C_SPL?", "SLIN target C_SPL?", "call") is None
     assert forms("name '=' expression", "SLIN '=' expression") is None
+    assert forms("SPTP target C_SPL?", "SLIN target C_SPL? name") is None
 
 
 def test_a_word_joins_the_choice_where_the_others_stand() -> None:
@@ -53,11 +54,11 @@ def test_a_word_joins_the_choice_where_the_others_stand() -> None:
 
 def test_a_word_is_as_good_as_the_one_a_form_begins_with() -> None:
     """A word the grammar lacks is reserved; short forms take only words that are built alike."""
-    found = with_lead(LAYOUT, [AddAlternative("motion", "SPTP target C_SPL?")], "HOLD")
+    found = with_lead(LAYOUT, [AddAlternative("motion", "SPTP target ',' name")], "HOLD")
     assert found is not None
     assert AddToken("HOLD") in found
-    assert AddAlternative("motion", "(HOLD | SPTP) target C_SPL?") == found[-1]
-    short = [AddAlternative("motion", "PTP_REL target")]
+    assert AddAlternative("motion", "(HOLD | SPTP) target ',' name") == found[-1]
+    short = [AddAlternative("motion", "PTP_REL target C_DIS?")]
     assert with_lead(LAYOUT, short, "HOLD") is None
     assert with_lead(LAYOUT, short, "LIN_REL") is not None
     assert with_lead(LAYOUT, short, "PTP_REL") is None

@@ -1,5 +1,7 @@
 """A word that is reserved may be a name in a file that was read before."""
 
+import pytest
+
 from grammar.edits import AddAlternative, AddToken, Edit
 from grammar.g4 import read
 from grammar.model import Grammar
@@ -45,13 +47,17 @@ def test_a_file_that_has_the_word_as_a_name_is_lost() -> None:
     assert not Readable([plain, named], {"HOLD"}).is_lost(wider, ["KEEP"])
 
 
-def test_a_word_that_files_have_as_a_name_stays_one() -> None:
+@pytest.mark.parametrize(
+    ("others", "expected"), [([], False), ([("n", "HOLD=1\nSTOP HOLD\n")], True)]
+)
+def test_a_word_that_files_have_as_a_name_stays_one(
+    others: list[tuple[str, str]], expected: bool
+) -> None:
     """The best proposal reserves it, and enters it where such words are; else it does not."""
     kept = AddAlternative("name", "HOLD")
-    for others, expected in (([], False), ([("n", "HOLD=1\nSTOP HOLD\n")], True)):
-        texts = dict([*HOLDS, *others])
-        found = survey_texts(list(texts.items()), GRAMMAR)
-        clusters = cluster(found, text_of=lambda file: texts[file.digest])  # noqa: B023
-        best = clusters.ranked[0].proposals[0]
-        assert AddToken("HOLD") in best.edits
-        assert expected == (kept in best.edits)
+    texts = dict([*HOLDS, *others])
+    found = survey_texts(list(texts.items()), GRAMMAR)
+    clusters = cluster(found, text_of=lambda file: texts[file.digest])
+    best = clusters.ranked[0].proposals[0]
+    assert AddToken("HOLD") in best.edits
+    assert expected == (kept in best.edits)
