@@ -28,6 +28,8 @@ __all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "judge_
 
 FORMAT: Final = "krl-recording/1"
 #: Kinds of events that a recording may say it watched; docs/trace.md has all of them.
+#: Millimetres and degrees that nothing reaches.
+_BEYOND: Final = 1e9
 _ENDINGS: Final = ("", "end", "fault", "halt", "running")
 
 
@@ -119,6 +121,8 @@ def _rows(
     rows = np.array(data[key], dtype=np.float64)
     if rows.shape != (len(times), 6):
         raise ValueError(f"{key} has six columns and a row for each time")
+    if not (np.abs(rows) < _BEYOND).all():  # nor is what is no number at all
+        raise ValueError(f"{key} has values that no robot reaches")
     return rows
 
 

@@ -37,10 +37,10 @@ def whole(target: Path) -> Iterator[Path]:
     It lies beside it. A device or a pipe, as /dev/stdout, is itself that file: it is not replaced.
     Folders above are made. Raises `OSError`.
     """
-    target.parent.mkdir(parents=True, exist_ok=True)
     if target.exists() and not target.is_file():
         yield target
         return
+    target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(target.name + ".part")
     try:
         yield part

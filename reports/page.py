@@ -21,10 +21,10 @@ def write_page(page: str, target: Path) -> Path:
     It is written beside its place and then moved there; a device or a pipe is written to itself.
     Raises OSError when its folder cannot be made or written.
     """
-    target.parent.mkdir(parents=True, exist_ok=True)
     if target.exists() and not target.is_file():
         target.write_text(page, encoding="utf-8", newline="\n")
         return target
+    target.parent.mkdir(parents=True, exist_ok=True)
     draft = target.with_name(f".{target.name}-{secrets.token_hex(8)}.tmp")
     try:
         draft.write_text(page, encoding="utf-8", newline="\n")

@@ -87,6 +87,7 @@ def propose(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = LEDGER,
 ) -> int:
     """Write a proposal of a survey as a file ready for review."""
+    from grammar import GrammarError
     from grammar.documents import json_of, read_bytes
     from recovery.construct import LedgerError
     from recovery.draft import propose as write
@@ -96,7 +97,7 @@ def propose(
         typer.echo(one_line(f"wrote {write(record, cluster, number, out).as_posix()}"))
     except FileNotFoundError as error:
         raise Unusable(f"{survey}: no such survey; run krl recover first") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (GrammarError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise Unusable(f"{survey}: not a survey that krl recover wrote") from error
     except LedgerError as error:
         raise Unusable(str(error)) from error

@@ -17,11 +17,12 @@ WORDS = (
 WORDS += ["", "\x1b[31m", "\ud800", "a\x00b"]
 
 
-def words(_folder: Path, foundry: Foundry) -> Given:
+def words(folder: Path, foundry: Foundry) -> Given:
     """A command line of words by chance; what would work for minutes gets little to do."""
     foundry.note("strange words on the command line")
+    os.chdir(folder)  # a word may be the name of a record
     chosen = foundry.chance.choices(WORDS, k=foundry.chance.randrange(1, 5))
-    little = {"fuzz": ["--programs", "2"], "conform": ["nothing"], "bench": ["nothing"]}
+    little = {"fuzz": ["--programs", "2"], "conform": ["nothing"] * 2, "bench": ["nothing"] * 2}
     return krl(*chosen, *little.get(next(iter(little.keys() & set(chosen)), ""), ()))
 
 
