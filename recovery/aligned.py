@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from recovery.elements import elements
 from recovery.habits import last_two
 from recovery.parts import Word
 from recovery.phrases import Phraser
@@ -22,7 +21,6 @@ _MOST_ROWS = 16
 _MOST_COLUMNS = 14
 _MOST_RULES = 3
 _MOST_SHAPES = 6
-_BRACKETS = frozenset("([")
 
 _Span = tuple[Word, ...]
 
@@ -37,9 +35,6 @@ class _Part:
     @property
     def is_operand(self) -> bool:
         return not self.key
-
-
-_Rows = list[tuple[_Part, ...]]
 
 
 @dataclass(slots=True)
@@ -57,46 +52,22 @@ def common_phrases(
 
     The most restrictive first; none where the phrases have too little in common to be one.
     """
-    seen: set[tuple[str, ...]] = set()
-    if len(phrases) > 1 and min(map(len, phrases)) > 0 and max(map(len, phrases)) > 1:
-        # what one rule reads in all its forms is that rule, however each would be cut
-        readers = phraser.readers_of_all([tuple(phrase) for phrase in phrases], near)
-        seen |= {(rule,) for rule in readers}
-        yield from sorted(seen)
-    for rows in _cuts(phraser, phrases):
-        columns = _columns(phraser, rows)
-        if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):
+    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:_MOST_ROWS]
+    if not rows:
+        return
+    columns = _columns(phraser, rows)
+    if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):
+        return
+    seen = set()
+    for level in range(3):
+        narrow = [_written(phraser, column, level, near) for column in columns]
+        if not all(narrow):
             continue
-        for level in range(3):
-            narrow = [_written(phraser, column, level, near) for column in columns]
-            if not all(narrow):
-                continue
-            for written in (_as_usual(phraser, columns, narrow, len(rows)), narrow):
-                symbols = tuple(_grouped(phraser, columns, written, len(rows)))
-                if symbols not in seen:
-                    seen.add(symbols)
-                    yield symbols
-
-
-def _cuts(phraser: Phraser, phrases: Sequence[Sequence[Word]]) -> Iterator[_Rows]:
-    """The phrases cut into parts: first all in the same way, then each as is best for itself.
-
-    Where one of them has a bracket of its own, as ``EXT A (INT)`` has, the bracket of another is
-    none of an operand either, though some rule reads ``B ()``.
-    """
-    rows = _rows(phraser, phrases)
-    apart = frozenset(p.key.strip("'") for row in rows for p in row) & _BRACKETS
-    alike = _rows(phraser, phrases, apart) if apart and len(rows) > 1 else rows
-    for found in (rows,) if alike == rows else (alike, rows):
-        if found:
-            yield found
-
-
-def _rows(
-    phraser: Phraser, phrases: Sequence[Sequence[Word]], apart: frozenset[str] = frozenset()
-) -> _Rows:
-    cut = {tuple(_row(phraser, phrase, apart)) for phrase in phrases}
-    return sorted(cut - {()}, key=_by_length)[:_MOST_ROWS]
+        for written in (_as_usual(phraser, columns, narrow, len(rows)), narrow):
+            symbols = tuple(_grouped(columns, written, len(rows)))
+            if symbols not in seen:
+                seen.add(symbols)
+                yield symbols
 
 
 def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
@@ -112,10 +83,10 @@ def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
     return -len(row), str([(p.key, p.spans) for p in row])
 
 
-def _row(phraser: Phraser, words: Sequence[Word], apart: frozenset[str]) -> list[_Part]:
+def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
     """A phrase cut into parts; ``a , a , a`` is one part."""
     out: list[_Part] = []
-    spans = phraser.cutter.parts(words, apart) or []
+    spans = phraser.cutter.parts(words) or []
     signs = [phraser.sign(span) for span in spans]
     for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
         # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty
@@ -243,12 +214,9 @@ def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
 
 
 def _grouped(
-    phraser: Phraser, columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
+    columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
 ) -> Iterator[str]:
-    """The symbols of all columns, those not in every row made optional or a choice.
-
-    A word that another of a choice reads is none of it: ``FLT`` may be a name.
-    """
+    """The symbols of all columns, those not in every row made optional or a choice."""
     runs: list[tuple[frozenset[int], list[str]]] = []
     for column, symbols in zip(columns, written, strict=True):
         present = frozenset(column.cells)
@@ -267,14 +235,13 @@ def _grouped(
             present |= runs[place][0]
             choice.append(" ".join(runs[place][1]))
             place += 1
-        choice = [c for c in choice if not any(phraser.is_read_by(c, other) for other in choice)]
         text = " | ".join(choice)
         if len(present) == rows:
-            yield text if len(choice) == 1 else f"({text})"
+            yield f"({text})"
         else:
-            yield f"{text}?" if len(choice) == 1 and _is_one(text) else f"({text})?"
+            yield f"{text}?" if len(choice) == 1 and _is_one(body) else f"({text})?"
 
 
-def _is_one(text: str) -> bool:
-    """Whether a text is one symbol that a suffix can be put behind."""
-    return len(elements(text)) == 1 and text[-1] not in "?*+"
+def _is_one(symbols: Sequence[str]) -> bool:
+    """Whether the symbols are one that a suffix can be put behind."""
+    return len(symbols) == 1 and symbols[0][-1] not in "?*+"

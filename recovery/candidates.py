@@ -107,9 +107,6 @@ class CandidateFinder:
             for rank, edits in written:
                 support[edits] |= of_lines.keys()
                 ranks[edits] = min(rank, ranks.get(edits, rank))
-        for edits in ranks:
-            if self.layout.unused_in(getattr(edits[-1], "text", "")):
-                ranks[edits] -= UNLIKELY  # what nothing uses waits to be used
         hopes = {edits: _hope(len(support[edits]), ranks[edits]) for edits in ranks}
         in_rule: Counter[str] = Counter()
         varied: dict[tuple[Edit, ...], float] = {}

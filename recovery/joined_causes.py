@@ -14,8 +14,6 @@ from functools import partial
 from grammar.edits import AddAlternative, Edit
 from recovery.candidates import Candidate
 from recovery.cause import SHOWN, Cause, Proposal
-from recovery.elements import choices, elements
-from recovery.families import one_family, with_lead
 from recovery.joined_edits import one_choice, one_form, reach_the_same, together
 from recovery.layout import Layout
 from recovery.search import Search
@@ -25,8 +23,6 @@ __all__ = ["joined", "sought_together"]
 
 # Causes that a later one is compared with: the first ones hold back most.
 _MOST_JOINED = 40
-# Proposals of a cause, the best of them, that may be one with what is best for another.
-_COMPARED = 3
 # Symbols of an alternative that make it a form of its own, whatever word it begins with.
 _A_FORM = 4
 
@@ -88,78 +84,36 @@ def joined(search: Search, causes: Sequence[Cause]) -> list[Cause]:
 
 def _as_one(search: Search, first: Cause, second: Cause) -> Cause | None:
     """The two as one cause, where one edit mends what the best edits of both mend."""
-    best = first.proposals[0], second.proposals[0]
-    mended = best[0].mended | best[1].mended
-    negatives = best[0].accepts_negatives + best[1].accepts_negatives
+    one, other = first.proposals[0], second.proposals[0]
+    negatives = one.accepts_negatives + other.accepts_negatives
     lines = tuple(sorted({*first.lines, *second.lines}))
-    seen: set[tuple[Edit, ...]] = set()
-    by_lead = [*_led_by(search, first, second), *_led_by(search, second, first)]
-    for one, other in _pairs(first, second):
-        for edits, breadth in (
-            *by_lead,
-            *_for_both(search.finder.layout, one, other, are_best=(one, other) == best),
-        ):
-            if edits in seen:
-                continue
-            seen.add(edits)
-            both = search.proposal(edits, breadth)
-            if both.mended >= mended and both.accepts_negatives <= negatives:
-                others = (p for p in first.proposals if p.edits != both.edits)
-                return Cause(lines, (both, *others)[:SHOWN])
+    for edits, breadth in _for_both(search.finder.layout, one, other):
+        both = search.proposal(edits, breadth)
+        if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
+            others = (p for p in first.proposals if p.edits != both.edits)
+            return Cause(lines, (both, *others)[:SHOWN])
     return None
 
 
-def _led_by(search: Search, known: Cause, other: Cause) -> Iterator[tuple[tuple[Edit, ...], int]]:
-    """What mends one cause, with the word that the lines of another begin with as good as its own.
-
-    Looked at are the proposals that mend all that the best one does.
-    """
-    leads = {search.lead(search.lines[n]) for n in other.lines}
-    for proposal in known.proposals if len(leads) == 1 else ():
-        if proposal.mended >= known.proposals[0].mended:
-            edits = with_lead(search.finder.layout, proposal.edits, *leads)
-            if edits is not None:
-                yield edits, proposal.breadth + 1
-
-
-def _pairs(first: Cause, second: Cause) -> Iterator[tuple[Proposal, Proposal]]:
-    """Proposals of both, the better ones first: one of them is always the best of its cause."""
-    pairs = [(one, second.proposals[0]) for one in first.proposals[:_COMPARED]]
-    pairs += [(first.proposals[0], other) for other in second.proposals[1:_COMPARED]]
-    place = {p.edits: n for cause in (first, second) for n, p in enumerate(cause.proposals)}
-    yield from sorted(pairs, key=lambda pair: place[pair[0].edits] + place[pair[1].edits])
-
-
 def _for_both(
-    layout: Layout, one: Proposal, other: Proposal, *, are_best: bool
+    layout: Layout, one: Proposal, other: Proposal
 ) -> Iterator[tuple[tuple[Edit, ...], int]]:
-    """Edits that might do what two proposals do.
-
-    That two words may be of one set counts only where that is the best for each of them.
-    """
-    breadth = max(one.breadth, other.breadth)
+    """Edits that might do what two proposals do."""
     if changed_rules(one.edits) == changed_rules(other.edits):
         yield other.edits, other.breadth
     pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
-    for choice in one_choice(pair, partial(_may_be_chosen, layout, are_best)):
+    for choice in one_choice(pair, partial(_may_be_chosen, layout)):
         yield choice.edits, choice.breadth
-    for form in (one_form, one_family):
-        edits = form(layout, one.edits, other.edits)
-        if edits is not None:
-            yield edits, breadth + 1
+    form = one_form(layout, one.edits, other.edits)
+    if form is not None:
+        yield form, max(one.breadth, other.breadth) + 1
     if reach_the_same(layout, one.edits, other.edits):
-        yield together(other.edits, one.edits), breadth + 1  # the main one last
+        yield together(one.edits, other.edits), max(one.breadth, other.breadth) + 1
 
 
-def _may_be_chosen(layout: Layout, are_best: bool, edit: Edit, place: int) -> bool:
-    """Whether words there are a choice.
-
-    Those that begin alternatives name constructs; rules that are to be gathered are one lost use.
-    """
+def _may_be_chosen(layout: Layout, edit: Edit, place: int) -> bool:
+    """Whether words there are a choice: those that begin alternatives name constructs."""
     if not isinstance(edit, AddAlternative) or place > 0:
         return True
-    gathered = [e for e in elements(edit.text) if e != layout.line_end]
-    if len(gathered) == 1 and all(c in layout.callers for c in choices(gathered[0])):
-        return True
     is_form = len(edit.text.split(" ")) >= _A_FORM
-    return is_form or (are_best and layout.vocabulary.is_set_of_words(edit.rule))
+    return is_form or layout.vocabulary.is_set_of_words(edit.rule)

@@ -7,20 +7,20 @@ used a rule. Here is what tells so, and what writes such edits as one.
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from grammar.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from recovery.candidates import Candidate
-from recovery.elements import choices, elements
 from recovery.layout import Layout
 
-__all__ = ["main_edits", "one_choice", "one_form", "reach_the_same", "together"]
+__all__ = ["one_choice", "one_form", "reach_the_same", "together"]
 
 _MOST_TOGETHER = 3
-# Edits of one cause where all of them need the same new word.
-_MOST_FOR_A_WORD = 6
+# Words of a text, a choice of words taken for one.
+_WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
 
 def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
@@ -32,7 +32,7 @@ def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     return (*tokens, *places, *(e for e in edits if isinstance(e, AddAlternative)))
 
 
-def main_edits(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
+def _main(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
     """The edits but for those that reserve words."""
     reserving = layout.vocabulary.reserve(e.name for e in edits if isinstance(e, AddToken))
     return [e for e in edits if e not in reserving]
@@ -41,12 +41,9 @@ def main_edits(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
 def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
     """Whether two edits let in one thing: a phrase, or what alone used a rule.
 
-    A few edits at most make one cause: a person has to see at a glance that they are one. A word
-    that the grammar lacks may be missing in some more places.
+    A few edits at most make one cause: a person has to see at a glance that they are one.
     """
-    words = [{e.name for e in edits if isinstance(e, AddToken)} for edits in (first, second)]
-    most = _MOST_FOR_A_WORD if words[0] & words[1] else _MOST_TOGETHER
-    if len({*main_edits(layout, first), *main_edits(layout, second)}) > most:
+    if len({*_main(layout, first), *_main(layout, second)}) > _MOST_TOGETHER:
         return False
     one, other = first[-1], second[-1]
     if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
@@ -74,7 +71,7 @@ def one_form(
     if not isinstance(one, AddAlternative) or not isinstance(other, AddAlternative):
         return None
     words = {edit.text.split(" ")[0] for edit in (one, other)}
-    if len(words) > 1 or one.rule == other.rule or len(main_edits(layout, first)) > 1:
+    if len(words) > 1 or one.rule == other.rule or len(_main(layout, first)) > 1:
         return None
     word = words.pop()
     if not word.isidentifier() or not word[0].isupper() or layout.vocabulary.is_written(word):
@@ -97,7 +94,7 @@ def one_choice(
         edit = candidate.edits[-1]
         if not isinstance(edit, Insert | Widen | AddAlternative):
             continue
-        words = elements(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
+        words = _WORDS.findall(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
         place = () if isinstance(edit, AddAlternative) else edit.at
         for i, word in enumerate(words):
             if allowed(edit, i):
@@ -111,10 +108,15 @@ def one_choice(
     ]
 
 
+def _choices(word: str) -> list[str]:
+    """The words of a choice, or the one word that is none."""
+    return word[1:-1].split(" | ") if word[0] == "(" and word[-1] == ")" else [word]
+
+
 def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:
     assert isinstance(left, tuple)
     assert isinstance(right, tuple)
-    choice = f"({' | '.join(sorted({w for m in members for w in choices(m)}))})"
+    choice = f"({' | '.join(sorted({w for m in members for w in _choices(m)}))})"
     body = " ".join((*left, choice, *right))
     last = next(iter(members.values())).edits[-1]
     edit: Edit

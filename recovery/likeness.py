@@ -11,7 +11,6 @@ from difflib import SequenceMatcher
 from functools import cached_property
 
 from grammar.model import Alternative, Element, Group, Reference, Repeat, Rule
-from recovery.elements import choices
 from recovery.layout import HUB, Layout
 
 __all__ = ["Likeness"]
@@ -53,39 +52,21 @@ class Likeness:
             return 0
         kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
-            if symbols[0] in self.layout.callers:
-                return _LIKE  # each is a token, and this is a rule
             return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
         if self.gathers(rule):
-            if self._is_single(symbols):
-                return self._unlike_gathered(rule, symbols[0], is_alike=_kind(new[0]) in kinds)
-            if self.vocabulary.words_of(rule):
-                return 3 * _LIKE  # each is a word, and this is none
-            return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
+            if not self._is_single(symbols):
+                if self.vocabulary.words_of(rule):
+                    return 3 * _LIKE  # each is a word, and this is none
+                return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
+            if not self.layout.is_free(symbols[0]):
+                return -_LIKE  # it has its place already
+            return -3 * _LIKE if _kind(new[0]) in kinds else -2 * _LIKE
         leads = self._leads(rule)
         if len(leads) == 1 and "" not in leads:
-            if symbols[0] in leads:
-                return -_LIKE
-            # a part of other rules may have one more form; a statement of its own has none
-            is_form = best >= _ALIKE and len(symbols) > 1 and rule not in self._gathered
-            return -round(_LIKE * best) if is_form else 2 * _LIKE
+            return -_LIKE if symbols[0] in leads else 2 * _LIKE
         if best >= _ALIKE and len(known) > 1:
             return -round(_LIKE * best)
         return 2 + max(0, _TOGETHER - len(known))
-
-    def _unlike_gathered(self, rule: str, symbol: str, *, is_alike: bool) -> int:
-        """How little one more rule or token belongs among those that a rule gathers."""
-        if self.layout.is_free(symbol):
-            return -3 * _LIKE if is_alike else -2 * _LIKE
-        # it has its place already
-        return -round(_LIKE * self._share_alike(rule, symbol in self.layout.callers))
-
-    def _share_alike(self, rule: str, is_rule: bool) -> float:
-        """How many alternatives of a rule begin with a rule, or else with a token."""
-        alternatives = self.layout.grammar.by_name[rule].alternatives
-        firsts = [a.elements[0] for a in alternatives if a.elements]
-        rules = sum(isinstance(e, Reference) and not e.is_token for e in firsts)
-        return (rules if is_rule else len(firsts) - rules) / len(alternatives)
 
     def _is_one_of_words(self, rule: str) -> bool:
         """Whether a rule is a choice of words."""
@@ -163,7 +144,8 @@ class Likeness:
         if len(symbols) != 1:
             return False
         known = self.layout.grammar.by_name.get(symbols[0])
-        return known is not None or self._class_of(symbols[0]) != symbols[0]
+        is_rule = known is not None and not known.is_lexer
+        return is_rule or self._class_of(symbols[0]) != symbols[0]
 
     def _leads(self, rule: str) -> frozenset[str]:
         """The reserved words that alternatives begin with; an empty one for those without."""
@@ -199,10 +181,6 @@ class Likeness:
             if len(self.layout.callers[name]) > 1 or name in self.layout.line_ends:
                 return symbol
             return ("block" if name in self.layout.blocks else "kind") + suffix
-        words = choices(name)
-        if len(words) > 1:
-            classes = {self._class_of(word) for word in words}
-            return "keyword" + suffix if classes == {"keyword"} else symbol
         lexer = self.layout.recognizer.lexer
         kind = lexer.kind_of.get(name)
         if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):

@@ -49,23 +49,21 @@ class LineOpenings:
             if rule in layout.line_ends:
                 continue
             rank = layout.width(rule) + 8
-            # it would put lines in an order that no text asks for
-            beside = 2 * UNLIKELY if self._is_beside_lines(site) else 0
+            if self._is_beside_lines(site):
+                rank += 2 * UNLIKELY  # it would put lines in an order that no text asks for
             for place in places_of(self.recognizer, site):
                 if rule != self.grammar.start and layout.is_at_start(rule, place):
                     continue  # what comes before a rule belongs to the rule that calls it
                 if blank:
-                    yield rank + beside, (Insert(rule, place, "NEWLINE*"),)
+                    yield rank, (Insert(rule, place, "NEWLINE*"),)
                     continue
                 for reader in readers:
-                    is_unused = self.phraser.is_unused(reader)
-                    fits = reader in layout.loops or is_unused
+                    fits = reader in layout.loops or self.phraser.is_unused(reader)
                     worth = rank + self.phraser.breadth([reader]) + (0 if fits else UNLIKELY)
-                    worth += 0 if is_unused else beside
                     yield worth, (Insert(rule, place, f"{reader}*"),)
                 if not readers:
                     phrase = tuple(words[:-1])
-                    yield Opening("lines", rule, place, phrase, rank + beside + 2 * UNLIKELY)
+                    yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY)
 
     def _known_elsewhere(self, before: State, readers: tuple[str, ...]) -> Iterator[Ranked]:
         """What reads whole lines elsewhere, as one more kind of the lines that come here."""

@@ -263,9 +263,7 @@ class OpeningFinder:
         kind, keyword = words[0]
         if keyword is None and kind < 0:
             return
-        again = self.phraser.cutter.split(words[1:], words[0])
-        rules_for = self.phraser.readers.rules_for
-        if all(before.name in rules_for(tuple(k for k, _ in part)) for part in again):
+        if before.name in self.phraser.readers.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
             rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
             rank -= self.layout.said_so(text)

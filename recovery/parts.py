@@ -26,78 +26,32 @@ class Cutter:
 
     def __init__(self, readers: Readers) -> None:
         self.readers = readers
-        self._cuts: dict[
-            tuple[tuple[Word, ...], frozenset[str]], list[tuple[Word, ...]] | None
-        ] = {}
+        self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
 
-    def parts(
-        self, words: Sequence[Word], apart: frozenset[str] = frozenset()
-    ) -> list[tuple[Word, ...]] | None:
-        """The words cut into the fewest operands and single tokens, unless they are too many.
-
-        ``apart`` are opening brackets that are to be no part of an operand, nor what closes them,
-        but where they stand within others.
-        """
+    def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
+        """The words cut into the fewest operands and single tokens, unless they are too many."""
         if len(words) > _LONGEST_CUT:
             return None
-        key = (tuple(words), apart)
+        key = tuple(words)
         if key not in self._cuts:
             if len(self._cuts) >= _MOST_REMEMBERED:
                 self._cuts.clear()
-            self._cuts[key] = self._cut(*key)
+            self._cuts[key] = self._cut(key)
         return self._cuts[key]
 
-    def split(self, words: Sequence[Word], sign: Word) -> list[list[Word]]:
-        """The words between signs of one kind; those inside of brackets separate nothing."""
-        out: list[list[Word]] = [[]]
-        depth = 0
-        for word in words:
-            depth += (self._text(word) in _OPENING) - (self._text(word) in _CLOSING)
-            if word == sign and depth == 0:
-                out.append([])
-            else:
-                out[-1].append(word)
-        return out
-
-    def _cut(self, words: tuple[Word, ...], apart: frozenset[str]) -> list[tuple[Word, ...]] | None:
+    def _cut(self, words: tuple[Word, ...]) -> list[tuple[Word, ...]] | None:
         count = len(words)
-        pairs = self._brackets(words)
-        single = {p for pair in pairs.items() if self._text(words[pair[0]]) in apart for p in pair}
         best: list[tuple[int, list[tuple[Word, ...]]] | None] = [None] * count + [(0, [])]
         for start in range(count - 1, -1, -1):
             for end in range(start + 1, count + 1):
-                if end - 1 in single and end - start > 1:
-                    break
-                if start in single and end - start > 1:
-                    break
                 rest, part = best[end], words[start:end]
                 if rest is None or not self._can_be_written(part):
                     continue
-                # what fills brackets is one list, however many operands it has
-                is_full = pairs.get(start - 1) == end
-                seams = 0 if is_full else self._seams(part) + self._comes_behind_value(words, start)
-                cost = rest[0] + (10 if len(part) == 1 else 9 + _LOOSE * seams)
+                cost = rest[0] + (10 if len(part) == 1 else 9 + _LOOSE * self._seams(part))
                 known = best[start]
                 if known is None or cost < known[0]:
                     best[start] = (cost, [part, *rest[1]])
         return best[0][1] if best[0] else None
-
-    def _brackets(self, words: tuple[Word, ...]) -> dict[int, int]:
-        """The outermost opening brackets, each with the place of what closes it."""
-        found: dict[int, int] = {}
-        open_: list[int] = []
-        for place, word in enumerate(words):
-            text = self._text(word)
-            if text in _OPENING:
-                open_.append(place)
-            elif text in _CLOSING and open_:
-                began = open_.pop()
-                if not open_:
-                    found[began] = place
-        return found
-
-    def _text(self, word: Word) -> str:
-        return "" if word[0] < 0 else self.readers.recognizer.lexer.display[word[0]]
 
     def _seams(self, part: tuple[Word, ...]) -> int:
         """Where a part could fall into operands: at commas outside of brackets, between values."""
@@ -118,13 +72,6 @@ class Cutter:
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value
         return seams
-
-    def _comes_behind_value(self, words: tuple[Word, ...], start: int) -> bool:
-        """Whether a word comes right behind a value, so that it is hardly the name of another."""
-        if not start or not self.readers.may_be_a_name(words[start][0]):
-            return False
-        before = words[start - 1]
-        return self._text(before) in _CLOSING or self.readers.is_operand(before[0])
 
     def _can_be_written(self, part: tuple[Word, ...]) -> bool:
         """Whether a part is one token, or what some rule reads."""

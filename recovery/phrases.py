@@ -23,8 +23,6 @@ _LONGEST_PHRASE = 24
 _MOST_SYMBOLS = 8
 # Rules that are tried for an operand that stands alone.
 _MOST_READERS = 6
-# Rules that are tried for all of a phrase that falls into several parts.
-_MOST_READERS_OF_PARTS = 2
 _MOST_SPELLINGS = 12
 # What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
 _USUAL = 2
@@ -103,11 +101,6 @@ class Phraser:
         found = self.readers.rules_for((kind,)) - self.readers.careless
         return any(rule in self._wider[reader] for reader in found)
 
-    def is_read_by(self, word: str, rule: str) -> bool:
-        """Whether a word is a keyword that a rule reads by itself."""
-        kind = self.recognizer.lexer.kind_of.get(word)
-        return kind is not None and word != rule and rule in self.readers.rules_for((kind,))
-
     def is_unused(self, rule: str) -> bool:
         """Whether nothing calls a rule."""
         return not self._uses[rule]
@@ -163,17 +156,6 @@ class Phraser:
             return (token,) if token else ()
         return self._levels_of(rules, near)
 
-    def readers_of_all(
-        self, phrases: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
-    ) -> tuple[str, ...]:
-        """Rules that read each of several phrases as a whole, the narrowest and the widest.
-
-        Rules that gather different things are none of them.
-        """
-        known = self.recognizer.grammar.by_name
-        rules = (r for r in self.rules_for_all(phrases, near) if r in self._wider)
-        return tuple(rule for rule in rules if len(known[rule].alternatives) < HUB)
-
     def phrases(
         self, words: Sequence[Word], near: frozenset[str] = frozenset()
     ) -> Iterator[tuple[str, ...]]:
@@ -205,12 +187,11 @@ class Phraser:
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
             yield from islice(product(*choices), _MOST_SPELLINGS)
-        if not any(keyword for _, keyword in words):
+        if len(parts) == 1 and not any(keyword for _, keyword in words):
             # an operand that is all of a phrase may be whatever reads it, the most used ones first
             rules = self.readers.rules_for(tuple(kind for kind, _ in words))
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
-            most = _MOST_READERS if len(parts) == 1 else _MOST_READERS_OF_PARTS
-            yield from ((rule,) for rule in ordered[:most])
+            yield from ((rule,) for rule in ordered[:_MOST_READERS])
 
     def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
         """The symbols, with what the grammar usually writes where that reads the parts."""

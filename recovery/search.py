@@ -14,7 +14,6 @@ from grammar.edits import AddToken, Edit
 from grammar.recognizer import Recognizer
 from recovery.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
 from recovery.cause import SHOWN, Cause, Judge, Proposal
-from recovery.families import everywhere
 from recovery.joined_edits import one_choice
 from recovery.parts import Word
 from recovery.readable import Readable, nothing_readable
@@ -38,8 +37,6 @@ _VARIED = 6
 _KEPT = 10
 _KEPT_LIGHT = 6
 _KEPT_OF_A_RULE = 3
-# Forms of a block that are tried on all lines where the best of them is written.
-_FORMS = 2
 _MOST_JUDGED = 24
 _MOST_JUDGED_LIGHT = 12
 _ALIKE = 12
@@ -124,58 +121,27 @@ class Search:
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
         specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
+        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
         alike = self._alike(specimens[0])
         led_alike = self._led_alike(specimens[0])
-        near = list(dict.fromkeys((*specimens, *_spread(heavy, _VARIED))))
-        others = [*_spread(alike, _VARIED), *_spread(led_alike, _VARIED)]
-        sample = {*_spread(heavy, _FIRST_TRIAL), *_spread(alike, _FIRST_TRIAL)}
-        blocks = self._blocks(specimens[0], heavy)
-        found = self._ranked(self._found(near, others, sample, blocks), heavy)
-        left = self._half_read(found[0], near) if found and self.thorough else []
-        if left:  # what the best reads in part only shows what else there is to be read
-            known = {p.edits for p in found}
-            more = self._found([*left, *near], others, sample, ())
-            found = self._ranked([*found, *(p for p in more if p.edits not in known)], heavy)
-        return found[:SHOWN]
-
-    def _half_read(self, best: Proposal, near: Collection[int]) -> list[int]:
-        """Some of the lines sought for that the best lets be read further and does not mend.
-
-        None where such lines have been looked at.
-        """
-        left = best.advanced & self._sought
-        if not left or left <= set(near):
-            return []
-        return _spread(sorted(left, key=lambda n: (-self.weights[n], n)), _SPECIMENS)
-
-    def _found(
-        self,
-        near: Sequence[int],
-        others: Sequence[int],
-        sample: Collection[int],
-        blocks: Sequence[tuple[Candidate, int]],
-    ) -> list[Proposal]:
-        """What is found for the lines ``near``, and for ``others`` that may have the same cause.
-
-        First trials look at these lines and at the ``sample``.
-        """
-        varied = list(dict.fromkeys((*near, *others)))
-        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
+        near = dict.fromkeys((*specimens, *_spread(heavy, _VARIED)))
+        varied = dict.fromkeys((*near, *_spread(alike, _VARIED), *_spread(led_alike, _VARIED)))
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
-        sample = {*varied, *sample}
+        sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
+        sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
         first = self._tried(tried, most, sample)
         first += [
             (candidate, self.trial.outcome(candidate.edits, sample))
-            for candidate in (*one_choice([c for c, o in first if o.mended]), *everywhere(first))
+            for candidate in one_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        for candidate, negatives in (*blocks, *self._kept(first)):
+        for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
             outcome = self.trial.outcome(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth
             proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
         kept = [self._names_kept(proposal) for proposal in proposals]
         useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
-        return list(useful.values())
+        return self._ranked(list(useful.values()), heavy)[:SHOWN]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
         """The proposal; where files have a word as a name that it reserves, with that left one."""
@@ -231,10 +197,9 @@ class Search:
         found.sort(
             key=lambda pair: (-pair[0] * BREADTH_COSTS ** pair[1].breadth, str(pair[1].edits))
         )
-        best = [candidate for _, candidate in found]
-        here = [c for c in best if c.place == best[0].place][:_FORMS]
-        kept = [*here, *(c for c in best if c not in here)][:_KEPT_OF_A_RULE]
-        return [(candidate, self.judge(candidate.edits)) for candidate in kept]
+        return [
+            (candidate, self.judge(candidate.edits)) for _, candidate in found[:_KEPT_OF_A_RULE]
+        ]
 
     def lead(self, line: Line) -> str:
         """The keyword or would-be keyword that a line begins with."""

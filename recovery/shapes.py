@@ -105,8 +105,6 @@ class Shaper:
                 beside[word] += 1
                 files[word].add(digest)
                 sides = [s for s in (-1, 1) if self._is_operand_at(form.kinds, place + s)]
-                if not sides and self._begins_an_operand(form.kinds, place + 1):
-                    sides = [1] if place == 0 else []
                 alone[word] += not sides
                 if place == 0 and sides:
                     led[word].add(digest)
@@ -158,9 +156,6 @@ class Shaper:
     def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:
         return 0 <= place < len(kinds) and self._is_operand(kinds[place])
 
-    def _begins_an_operand(self, kinds: tuple[int, ...], place: int) -> bool:
-        return place < len(kinds) and self._display(kinds[place]) in _BEGINS_OPERAND
-
     def _is_operand(self, kind: int | None) -> bool:
         if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
             return False
@@ -171,15 +166,11 @@ class Shaper:
         return kind > 0 and self.lexer.display[kind] == text
 
     def keywords(self, failed: Failed, form: Form) -> tuple[tuple[int, str], ...]:
-        """Would-be keywords on a failing line, with their places.
-
-        One that is known from other lines is one too where no name could come.
-        """
+        """Would-be keywords on a failing line, with their places."""
         return tuple(
             (place, word)
             for place, word in self._names(failed, form)
-            if word in self._keywords
-            and (place == form.index or self._stands_out(form, place, word))
+            if word in self._keywords and self._stands_out(form, place, word)
         )
 
     def shape(self, failed: Failed, form: Form, context: Context) -> Shape:

@@ -63,19 +63,3 @@ def test_a_word_that_is_a_name_elsewhere_is_a_word_between_operands() -> None:
         tuple("variable" if s in ("name", "variable", "expression") else s for s in symbols)
         for symbols in common_phrases(phraser, kinds)
     ]
-
-
-def test_lines_are_cut_alike() -> None:
-    """`A ( )` is a call to some rule; beside `B (INT)`, which is none, its brackets are signs."""
-    assert "SLIN name '(' INT? ')'" in [
-        text.replace("variable", "name") for text in common("SLIN A ( )", "SLIN B ( INT )")
-    ]
-
-
-def test_a_word_that_another_of_a_choice_reads_is_none_of_it() -> None:
-    """FLT may be a name, so `name` says it all."""
-    grammar = Recognizer(read_file(GRAMMAR))
-    kinds = [[(k, None) for k in grammar.kinds(t)[:-1]] for t in ("EXT A (", "EXT FLT (")]
-    found = list(common_phrases(Phraser(grammar), kinds))
-    assert found
-    assert not any("FLT" in symbol for symbols in found for symbol in symbols)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from grammar.edits import AddAlternative, Edit, Widen
+from grammar.edits import Edit, Widen
 from grammar.g4 import read
 from grammar.recognizer import Recognizer
 from recovery.candidates import Line
@@ -82,31 +82,3 @@ def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
     first, _ = apart(searched)
     assert [first, hopeless] == joined(searched, [first, hopeless])
     assert [first, hopeless] == sought_together(searched, [first, hopeless])
-
-
-def test_rules_that_one_place_has_lost_are_one_cause() -> None:
-    """Statements that nothing gathers any more are one choice, whatever word each begins with."""
-    grammar = read("""grammar S;
-program : line* EOF ;
-line : IF NAME NEWLINE | IF NUMBER NEWLINE ;
-hold : HOLD ;
-halt : HALT NAME ;
-IF : 'IF' ;
-HOLD : 'HOLD' ;
-HALT : 'HALT' ;
-NAME : [A-Z]+ ;
-NUMBER : [0-9]+ ;
-NEWLINE : '\\n' ;
-SPACE : ' '+ -> skip ;
-""")
-    found = survey_texts([("1", "HOLD\n"), ("2", "HALT A\n")], grammar)
-    lines = [Line(found.forms[file.failures[0].form], ()) for file in found.files]
-    searched = Search(Recognizer(grammar), lines, [1, 1], no_judge)
-    causes = []
-    for number, rule in enumerate(("hold", "halt")):
-        proposal = searched.proposal((AddAlternative("line", f"{rule} NEWLINE"),), 0)
-        assert {number} == proposal.mended
-        causes.append(Cause((number,), (proposal,)))
-    [one] = joined(searched, causes)
-    assert (AddAlternative("line", "(halt | hold) NEWLINE"),) == one.proposals[0].edits
-    assert (0, 1) == one.lines

@@ -206,18 +206,6 @@ def test_what_comes_right_behind_a_bracket_is_a_title_of_its_own_but_no_shape() 
     assert one == other
 
 
-def test_a_word_before_a_name_and_before_a_brace_is_a_keyword() -> None:
-    """Behind a type comes a name; a word with an aggregate behind it, too, is no type."""
-    assert 2 * ["ASYPTP …"] == titles(*each("ASYPTP A", "ASYPTP {E1 180.0}"))
-    assert only_names(["REAL_T A", "REAL_T A"], "REAL_T")
-
-
-def test_a_word_known_from_other_lines_is_one_where_no_name_could_come() -> None:
-    """STEP behind FOR is known, so STEP behind HALT is meant so too, with nothing behind it."""
-    lines = [f"FOR I=1 TO 9 STEP {n}" for n in "ABCD"]
-    assert "HALT … STEP" == titles(*each(*lines, "HALT STEP"))[-1]
-
-
 def test_a_word_that_alone_comes_behind_a_keyword_is_one() -> None:
     """`BRAKE F` in several files, and never another name there: F is meant as a keyword."""
     assert 4 * ["BRAKE … F"] == titles(*each(*["BRAKE F"] * 4))
