@@ -52,7 +52,7 @@ FILES_WANTED = [
     ("bench programs --every --scripts ? !", ".io"),
     ("bench real-code ?", ".zip"),
     ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --grammar ? !", ".g4"),
-    ("bench mutation --negatives ? !", ".src"),
+    ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --negatives ? !", ".src"),
     ("bench check --sizes= ?", ".src"),
 ]
 
