@@ -291,13 +291,6 @@ class Program:
         return tuple(cells)
 
     @cached_property
-    def image(self) -> bytes:
-        """The program as bytes, made once for all machines that run it."""
-        from interp.bytecode.image_writer import write_image  # which reads and writes programs
-
-        return write_image(self)
-
-    @cached_property
     def frames(self) -> tuple[int, ...]:
         """How many cells a frame of each code object has."""
         return tuple(self.frame_size(code) for code in self.codes)

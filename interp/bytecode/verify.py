@@ -27,9 +27,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.flow import Flow
+from interp.bytecode.image_writer import write_image
 from interp.bytecode.program import Code, CodeKind, Program
 from interp.bytecode.stack_types import Stack
 from interp.bytecode.successors import successors, targets
@@ -40,7 +42,7 @@ __all__ = ["VerificationError", "Verified", "measured", "stacks_needed", "verify
 _LONGEST_STACK = 1 << 16
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, as it keeps its image
 class Verified:
     """A program that keeps the rules.
 
@@ -50,6 +52,11 @@ class Verified:
 
     program: Program
     depths: tuple[tuple[int, ...], ...]
+
+    @cached_property
+    def image(self) -> bytes:
+        """The program as bytes, made once for all machines that run it."""
+        return write_image(self.program)
 
 
 def verify(program: Program) -> Verified:

@@ -84,7 +84,7 @@ class Machine:
         self._random = random or Randomness()
         self._program = program
         self._together: list[Machine] = [] if beside is None else beside._together
-        self._state = self._made_state(program, limits)
+        self._state = self._made_state(limits)
         self._together.append(self)
         self._services = Services(program, self._state, limits, sink, self._random)
         self._services.leave_action, self._services.finish = self._leave_action, self._finish
@@ -97,8 +97,9 @@ class Machine:
 
     # ----------------------------------------------------------------------- what it is made of
 
-    def _made_state(self, program: Program, limits: Limits) -> State:
+    def _made_state(self, limits: Limits) -> State:
         """The cells; ``self._together`` are the machines that have the data lists already."""
+        program = self._program
         count, data = len(self._together), program.addresses[-1]
         if count == 0:
             return State(list(program.cells), limits.depth, data, MAX_CELLS)

@@ -15,7 +15,6 @@ from typing import Any, cast
 
 from interp.bytecode import vm
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.image_writer import write_image
 from interp.bytecode.program import Program
 from interp.bytecode.services import Services
 from interp.bytecode.state import Completion, Operation, State
@@ -226,10 +225,9 @@ class Machine(vm.Machine):
         self._told = sum(bit for kind, bit in _TOLD.items() if wanting(sink, kind) is not None)
         super().__init__(verified, routine, limits, sink, random, beside=beside)
 
-    def _made_state(self, program: Program, limits: Limits) -> State:
+    def _made_state(self, limits: Limits) -> State:
         beside = cast("_State", self._together[0]._state) if self._together else None
-        image = write_image(program)
-        return cast("State", _State(image, self._told, limits.depth, beside))
+        return cast("State", _State(self._verified.image, self._told, limits.depth, beside))
 
     def _made_ready(self, program: Program) -> Threads:
         state = cast("_State", self._state)
