@@ -29,6 +29,7 @@ __all__ = [
     "is_complete_parameter",
     "is_referable",
     "mismatched",
+    "signal_ends",
     "too_large",
     "untyped",
     "untyped_parameter",
@@ -172,3 +173,18 @@ def first_values(
                         yield line, ast.Variable(declarator.span, declarator.name), declarator.value
             case ast.Assignment():
                 yield line, item.target, item.value
+
+
+def signal_ends(symbol: SignalSymbol) -> Iterator[tuple[ast.Name, list[int]]]:
+    """What a signal begins and ends with: the name of a variable, and the index of an element.
+
+    What is neither, which the check refuses, is left out [IOT-03].
+    """
+    for node in (symbol.first, symbol.last):
+        match node:
+            case ast.Variable(name=name):
+                yield name, []
+            case ast.Subscript(
+                base=ast.Variable(name=name), indices=(ast.IntegerLiteral(value=number),)
+            ):
+                yield name, [number]

@@ -20,7 +20,13 @@ from interp.tree.names import find_text
 from interp.tree.places import Local, Place, Remote, element, member, of_type
 from interp.tree.run import Frame, Run, Steps
 from interp.values import Value, copied, index
-from interp.variables import is_complete, is_complete_parameter, untyped, untyped_value
+from interp.variables import (
+    is_complete,
+    is_complete_parameter,
+    signal_ends,
+    untyped,
+    untyped_value,
+)
 
 __all__ = ["Designators"]
 
@@ -104,20 +110,9 @@ class Designators(ABC):
         assert found.module is not None, "the controller's signals are variables"
         unit = self.run.program.units[found.module]
         ends: list[Remote] = []
-        for node in (symbol.first, symbol.last):
-            match node:
-                case ast.Variable():
-                    root, numbers = node, []
-                case ast.Subscript(
-                    base=ast.Variable() as root, indices=(ast.IntegerLiteral() as number,)
-                ):
-                    numbers = [number.value]
-                case _:
-                    continue
-            means = unit.found(root.name)
-            place = (
-                self.declared(means, signals + 1) if means else Remote((root.name.key,), UNKNOWN)
-            )
+        for name, numbers in signal_ends(symbol):
+            means = unit.found(name)
+            place = self.declared(means, signals + 1) if means else Remote((name.key,), UNKNOWN)
             place = element(place, numbers) if numbers else place
             if isinstance(place, Remote):
                 ends.append(place)

@@ -31,7 +31,7 @@ from interp.bytecode.compiler.places import (
     View,
 )
 from interp.faults import LinkError
-from interp.variables import untyped
+from interp.variables import signal_ends, untyped
 
 __all__ = ["Designators", "literal"]
 
@@ -107,20 +107,9 @@ class Designators(Memory, ABC):
         assert found.module is not None, "the controller's signals are variables"
         unit = self.context.program.units[found.module]
         ends: list[Remote] = []
-        for node in (symbol.first, symbol.last):
-            match node:
-                case ast.Variable():
-                    root, numbers = node, list[int]()
-                case ast.Subscript(
-                    base=ast.Variable() as root, indices=(ast.IntegerLiteral() as number,)
-                ):
-                    numbers = [number.value]
-                case _:
-                    continue
-            means = unit.found(root.name)
-            place = (
-                self.declared(means, signals + 1) if means else Remote((root.name.key,), UNKNOWN)
-            )
+        for name, numbers in signal_ends(symbol):
+            means = unit.found(name)
+            place = self.declared(means, signals + 1) if means else Remote((name.key,), UNKNOWN)
             if isinstance(place, Remote):
                 ends.append(_remote_element(place, tuple(numbers)) if numbers else place)
         if not ends:
