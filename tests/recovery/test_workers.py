@@ -5,11 +5,13 @@ import signal
 import socket
 import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
 from krl.cli import main
+from recovery import workers
 from recovery.workers import WorkersError, code_digest, in_order, meet
 
 
@@ -86,3 +88,46 @@ def test_what_answers_and_is_no_scheduler_is_told(
         assert time.monotonic() - began < 5
         replying.join()
         callers[0].close()
+
+
+class _Death(Exception):
+    """Whoever did a task has died."""
+
+
+class _Told:
+    """Takes tasks and tells of it; whoever is first given 0 dies of it."""
+
+    ahead = 4
+    chances = 1
+    broken: tuple[type[BaseException], ...] = (_Death,)
+
+    def __init__(self) -> None:
+        self.log: list[tuple[str, int]] = []
+
+    def submit(self, _function: object, task: tuple[int]) -> "_Result":
+        is_deadly = task == (0,) and ("out", 0) not in self.log
+        self.log.append(("out", task[0]))
+        return _Result(self.log, task[0], is_deadly)
+
+    def renew(self) -> None:
+        """Nobody new is needed."""
+
+
+class _Result:
+    def __init__(self, log: list[tuple[str, int]], number: int, is_deadly: bool) -> None:
+        self._log, self._number, self._is_deadly = log, number, is_deadly
+
+    def result(self) -> int:
+        self._log.append(("back", self._number))
+        if self._is_deadly:
+            raise _Death
+        return self._number
+
+
+def test_what_died_is_tried_again_when_nothing_else_is_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then it is known whether the task itself kills, and nobody beside it is taken along."""
+    crew = _Told()
+    monkeypatch.setattr(workers, "_crew", lambda _jobs, _scheduler: nullcontext(crew))
+    assert [0, 1, 2] == list(in_order(abs, ((n,) for n in range(3)), jobs=2))
+    again = len(crew.log) - 1 - crew.log[::-1].index(("out", 0))
+    assert {("back", 1), ("back", 2)} <= set(crew.log[:again])
