@@ -42,12 +42,12 @@ check: $(DEV)
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-logo
-	@$(BIN)/python -m grammar.generate --check
+	@$(BIN)/python -m grammar.notation.generate --check
 	@$(BIN)/krl construct replay --check
 
 grammar: $(DEV)
 	@command -v java >/dev/null || { echo 'make grammar: ANTLR needs Java, and there is no java on the PATH' >&2; exit 2; }
-	@$(BIN)/python -m grammar.generate
+	@$(BIN)/python -m grammar.notation.generate
 
 conformance: $(DEV)
 	@$(BIN)/krl conform --html reports/out/conformance --json reports/out/conformance/conform.json $(ARGS)

@@ -6,15 +6,15 @@ import runpy
 import sys
 from pathlib import Path
 
-from grammar.source import Source
-from interp.bytecode.assembler import assemble
+from grammar.syntax.source import Source
+from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.image_writer import write_image
+from interp.bytecode.image.writer import write_image
 from interp.bytecode.program import Program
-from interp.bytecode.verify import verify
-from interp.faults import LinkError
-from interp.program import load
-from recovery.ingest import decode
+from interp.bytecode.verifier.verify import verify
+from interp.program.load import load
+from interp.values.faults import LinkError
+from support.files.discovery import decode
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Small images are damaged sooner where it matters.

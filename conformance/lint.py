@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from conformance.case import CASES, ENDINGS, Case, CaseError, find_cases
-from conformance.expectations import KINDS
-from conformance.observing import PROFILES
-from conformance.registry import Rule, registry
-from conformance.verdicts import KnownFailures
-from grammar.build import read_module
-from interp.controller.script import Script, ScriptError
+from conformance.judging.observe import PROFILES
+from conformance.judging.verdicts import KnownFailures
+from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
+from conformance.suite.expectations import KINDS
+from conformance.suite.registry import Rule, registry
+from grammar.syntax.build import read_module
+from interp.controller.input_script import Script, ScriptError
 
 __all__ = ["SUITES", "Coverage", "coverage", "lint"]
 

@@ -12,14 +12,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from conformance.case import Case
+from conformance.judging.observation import Observation
+from conformance.judging.path_geometry import drawn
+from conformance.judging.verdicts import VERDICTS
 from conformance.lint import SUITES, coverage
-from conformance.observation import Observation
-from conformance.registry import registry
 from conformance.runner import CaseResult, Result
-from conformance.shapes import drawn
-from conformance.verdicts import VERDICTS
-from interp.robot.following import PathRecord
+from conformance.suite.case import Case
+from conformance.suite.registry import registry
+from interp.robot.simulation.tracking import PathRecord
 
 __all__ = ["record_of"]
 

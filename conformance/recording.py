@@ -15,14 +15,14 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from conformance.case import Case
-from conformance.judging import judge
-from conformance.observation import Event, Finding, Observation
-from conformance.registry import registry
+from conformance.judging.judge import judge
+from conformance.judging.observation import Event, Finding, Observation
+from conformance.judging.verdicts import verdict_of
 from conformance.runner import CaseResult, Result
-from conformance.verdicts import verdict_of
-from grammar.documents import json_of, read_bytes
-from interp.robot.following import PathRecord
+from conformance.suite.case import Case
+from conformance.suite.registry import registry
+from interp.robot.simulation.tracking import PathRecord
+from support.files.untrusted import json_of, read_bytes
 
 __all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "judge_recording"]
 

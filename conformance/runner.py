@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 from platform import node
 from typing import Final
 
-from conformance.case import Case
-from conformance.comparison import Divergence, first_divergence
-from conformance.judging import Check, judge
-from conformance.observation import Observation
-from conformance.observing import FRONT, Setup, missing, observe
-from conformance.verdicts import KnownFailures, Verdict, verdict_of
-from recovery.workers import WorkersError, in_order
+from conformance.judging.comparison import Divergence, first_divergence
+from conformance.judging.judge import Check, judge
+from conformance.judging.observation import Observation
+from conformance.judging.observe import FRONT, Setup, missing, observe
+from conformance.judging.verdicts import KnownFailures, Verdict, verdict_of
+from conformance.suite.case import Case
+from support.parallel.executor import WorkersError, in_order
 
 __all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
 
@@ -137,7 +137,8 @@ def run_cases(
 
     ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is told how
     many cases were finished. A case that takes its process with it has failed, and no other with
-    it. Raises `recovery.workers.WorkersError`, also where a worker lacks what there is here.
+    it. Raises `support.parallel.executor.WorkersError`, also where a worker lacks what there is
+    here.
     """
     listed = known if known is not None else KnownFailures.load()
     setups = tuple(Setup(executor, robot) for robot in robots for executor in executors)

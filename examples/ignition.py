@@ -10,16 +10,16 @@ the motion be stopped on its way, the gas goes off as well.
 
 import sys
 
+from interp.robot.api.commands import MotionCommand, OutputCommand, Transaction
+from interp.robot.api.control_core import ControlCore
+from interp.robot.api.motions import Motions
 from interp.robot.arm import Approximation, Place, Settings
-from interp.robot.commands import MotionCommand, OutputCommand, Transaction
-from interp.robot.core import ControlCore
-from interp.robot.following import Following
-from interp.robot.frames import Pose
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
-from interp.robot.motions import Motions
-from interp.robot.placement import Placement
-from interp.robot.planned_arm import PlannedArm
-from interp.robot.robots import ROBOTS, make_robot
+from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.simulation.robots import ROBOTS, make_robot
+from interp.robot.simulation.tracking import Following
 
 CYCLE = 12_000  # µs: the interpolation cycle
 HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)

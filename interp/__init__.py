@@ -1,8 +1,7 @@
-"""The cell: a checked program goes in, a trace comes out.
+"""From a checked program to a trace: executors, the controller they share, and the simulated arm.
 
-Two interpreters of different construction, a tree interpreter and a bytecode machine, will stand
-here, with the controller that they share (clock, advance run, interrupts, triggers, submit) and the
-simulated arm that it moves. Nothing of it is built yet.
+Executors (`tree`, `bytecode`, `native`) and the controller with its robot know nothing of one
+another: between them stand the requests and events of `port`. `session` puts them together.
 """
 
 __all__: list[str] = []

@@ -8,13 +8,13 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from interp.events import Sink
-from interp.executor import Executor
-from interp.faults import LinkError
-from interp.program import CheckedProgram, Limits
+from interp.port.events import Sink
+from interp.port.executor import Executor
+from interp.program.load import CheckedProgram, Limits
+from interp.values.faults import LinkError
 
 if TYPE_CHECKING:
-    from interp.bytecode.verify import Verified
+    from interp.bytecode.verifier.verify import Verified
 
 __all__ = ["EXECUTORS", "Prepared", "available"]
 
@@ -43,7 +43,7 @@ class Prepared:
     def verified(self) -> Verified:
         """As bytecode that was verified; raises `LinkError`."""
         from interp.bytecode.compiler import compile_program
-        from interp.bytecode.verify import verify
+        from interp.bytecode.verifier.verify import verify
 
         return verify(compile_program(self.program).program)
 
@@ -55,7 +55,7 @@ class Prepared:
 
                 return TreeExecutor(self.program, self.routine, limits, sink)
             case "vm":
-                from interp.bytecode.vm import Machine
+                from interp.bytecode.vm.executor import Machine
 
                 return Machine(self.verified, self.start, limits, sink)
             case "native":

@@ -12,23 +12,23 @@ from functools import partial
 from typing import Any, Literal
 
 from interp.controller.controller import HOUR, Controller, Outcome
+from interp.controller.input_script import Script
 from interp.controller.profile import Profile
-from interp.controller.script import Script
 from interp.controller.trace import Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
-from interp.faults import Fault, LinkError
-from interp.program import CheckedProgram, Limits
-from interp.requests import Value
-from interp.robot.batch import BatchCore
-from interp.robot.core import ControlCore, Switch
-from interp.robot.data_list import DataListError
-from interp.robot.following import Following, PathRecord
-from interp.robot.machine import ROBOT_AXES, Machine, MachineDataError, read_machine
+from interp.port.requests import Value
+from interp.program.load import CheckedProgram, Limits
+from interp.robot.api.batch import BatchCore
+from interp.robot.api.control_core import ControlCore, Switch
+from interp.robot.kinematics.data_list import DataListError
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDataError, read_machine
 from interp.robot.models import default_machine, model_file
-from interp.robot.planned_arm import PlannedArm
-from interp.robot.robots import Robot, RobotName, make_robot
+from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.simulation.robots import Robot, RobotName, make_robot
+from interp.robot.simulation.tracking import Following, PathRecord
 from interp.tree import system_values
-from interp.values import StructureValue
+from interp.values.faults import Fault, LinkError
+from interp.values.values import StructureValue
 
 __all__ = ["EXECUTORS", "Run", "Setup", "available", "machine_of_program", "run_program"]
 
@@ -94,8 +94,8 @@ def run_program(
 
     ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
     virtual time now and then. Raises `LinkError` for a program that cannot begin,
-    `interp.controller.script.ScriptError` for a script about what does not exist, and `ImportError`
-    for a robot that is not installed.
+    `interp.controller.input_script.ScriptError` for a script about what does not exist, and
+    `ImportError` for a robot that is not installed.
     """
     if isinstance(prepared, CheckedProgram):
         prepared = Prepared(prepared, setup.routine)

@@ -6,14 +6,14 @@ from typing import Annotated
 
 import typer
 
-from krl import door
+from krl import errors
 from krl.commands import bench, construct, corpus, growth, recover, robot
+from krl.commands.bytecode import assemble_file, compile_file, disassemble_image
 from krl.commands.check import check
 from krl.commands.conform import conform
 from krl.commands.format import format_programs
 from krl.commands.fuzz import fuzz
 from krl.commands.lsp import lsp
-from krl.commands.machine import assemble_file, compile_file, disassemble_image
 from krl.commands.nightly import nightly
 from krl.commands.run import run
 
@@ -67,4 +67,4 @@ def _krl(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
-    return door.run(app, arguments)
+    return errors.run(app, arguments)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 
-from krl.door import Unusable
+from krl.errors import Unusable
 
 __all__ = ["expected_extras", "need"]
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from krl.door import Unusable
+from krl.errors import Unusable
 
 __all__ = [
     "CorpusArgument",
@@ -19,7 +19,7 @@ __all__ = [
     "programs_or_ours",
 ]
 
-#: Where a command's record goes; `krl.writing.check_files` sees to it before the work.
+#: Where a command's record goes; `krl.output_files.check_files` sees to it before the work.
 JsonOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
 ]

@@ -12,16 +12,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from recovery.answers import answered
-from recovery.cause import no_judge
-from recovery.cluster import cluster
-from recovery.growth import Steps
-from recovery.judge import judge_of
-from recovery.memory import Memory, key_of
-from recovery.negatives import Negative
-from recovery.progress import Progress, unheard
-from recovery.record import record_of
-from recovery.survey import Survey
+from recovery.clustering.cause import no_judge
+from recovery.clustering.cluster import cluster
+from recovery.clustering.negative_score import judge_of
+from recovery.growth.answers import answered
+from recovery.growth.growth import Steps
+from recovery.negatives.negatives import Negative
+from recovery.survey.result_cache import Memory, key_of
+from recovery.survey.survey import Survey
+from recovery.survey_record import record_of
+from support.parallel.progress import Progress, unheard
 
 __all__ = ["analyse", "with_answers"]
 
@@ -35,7 +35,7 @@ def analyse(
     on_found: Progress = unheard,
     on_done: Progress = unheard,
 ) -> dict[str, Any]:
-    """The record of a survey (`recovery.record`); ``negatives`` judge the proposals.
+    """The record of a survey (`recovery.survey_record`); ``negatives`` judge the proposals.
 
     ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
     """
@@ -67,7 +67,7 @@ def with_answers(
     """The record of the restrictive start as part of another: what the ledger made of it.
 
     ``record`` is that of ``found``, the survey of the start. Each cluster gets ``answered_by``, and
-    ``constructs`` are those that answered (`recovery.answers`).
+    ``constructs`` are those that answered (`recovery.growth.answers`).
     """
     answers = answered(
         record["clusters"],

@@ -3,7 +3,7 @@
 from reports.claims_page import write_claims_page
 from reports.conform_page import write_conformance_page
 from reports.growth_page import write_growth_page
-from reports.night_page import write_night_page
+from reports.nightly_page import write_night_page
 from reports.run_page import write_run_page
 from reports.survey_page import write_survey_page
 

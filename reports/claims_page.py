@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.claims_view import claims_view
-from reports.embed import embedded_json
+from reports.embedding import embedded_json
 from reports.page import render, write_page
 
 __all__ = ["write_claims_page"]

@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from reports.fields import Record, count, nested, number, records, text
-from reports.plain import shown
-from reports.spelling import Figure, counted, percent, share
+from reports.number_format import Figure, counted, percent, share
+from reports.record_fields import Record, count, nested, number, records, text
+from reports.sanitizing import shown
 
 __all__ = ["Bar", "Claim", "ClaimsView", "Curve", "LeftOut", "claims_view"]
 

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from reports.conform_view import VERDICTS, conform_view
-from reports.embed import embedded_json
-from reports.fields import Record, count, nested, number, records, text, texts
+from reports.embedding import embedded_json
 from reports.page import render, source, write_page
-from reports.plain import plain, shown
+from reports.record_fields import Record, count, nested, number, records, text, texts
+from reports.sanitizing import plain, shown
 
 __all__ = ["write_conformance_page"]
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.fields import Record, count, nested, number, records, text, texts
-from reports.plain import shown
-from reports.spelling import Figure, counted, moment, percent, share
+from reports.number_format import Figure, counted, moment, percent, share
+from reports.record_fields import Record, count, nested, number, records, text, texts
+from reports.sanitizing import shown
 
 __all__ = ["VERDICTS", "Cell", "ConformView", "Row", "conform_view"]
 

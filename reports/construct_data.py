@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from reports.embed import printable
-from reports.fields import Record, count, nested, text, texts
-from reports.spelling import clip
+from reports.embedding import printable
+from reports.number_format import clip
+from reports.record_fields import Record, count, nested, text, texts
 
 __all__ = ["anchor", "clipped", "construct_data"]
 

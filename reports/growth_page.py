@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from reports.construct_data import clipped, construct_data
-from reports.embed import embedded_json, printable
-from reports.fields import Record, count, nested, number, records, text, texts
+from reports.embedding import embedded_json, printable
 from reports.growth_view import growth_view
+from reports.number_format import clip
 from reports.page import render, source, write_page
-from reports.spelling import clip
+from reports.record_fields import Record, count, nested, number, records, text, texts
 
 _MAX_STEPS = 2000
 _MAX_FILES = 100

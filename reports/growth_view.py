@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from reports.construct_data import anchor
-from reports.embed import printable
-from reports.fields import Record, count, nested, number, records, text, texts
-from reports.spelling import Figure, clip, counted, moment, percent, share, size
+from reports.embedding import printable
+from reports.number_format import Figure, clip, counted, moment, percent, share, size
+from reports.record_fields import Record, count, nested, number, records, text, texts
 
 _BIGGEST = 40
 _MAX_FILES = 400

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.fields import Record, count, nested, number, records, text
+from reports.record_fields import Record, count, nested, number, records, text
 
 __all__ = ["append_night", "changes", "known_before", "night_of", "read_nights"]
 

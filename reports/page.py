@@ -9,8 +9,8 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
-from reports.embed import inline_source, script_hash
-from reports.spelling import counted
+from reports.embedding import inline_source, script_hash
+from reports.number_format import counted
 
 __all__ = ["render", "write_page"]
 
@@ -37,8 +37,8 @@ def write_page(page: str, target: Path) -> Path:
 def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
     """The page of a template, with our ``script`` and style sheets inside it.
 
-    ``data`` is what the script reads, as `reports.embed.embedded_json` made it; ``view`` is what
-    the template shows. Foreign text is escaped.
+    ``data`` is what the script reads, as `reports.embedding.embedded_json` made it; ``view`` is
+    what the template shows. Foreign text is escaped.
     """
     environment = Environment(
         loader=FunctionLoader(source),

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.embed import embedded_json, printable
-from reports.fields import Record, count, nested, number, records, text
+from reports.embedding import embedded_json, printable
+from reports.number_format import clip
 from reports.page import render, source, write_page
-from reports.plain import plain
+from reports.record_fields import Record, count, nested, number, records, text
 from reports.run_view import run_view
-from reports.spelling import clip
+from reports.sanitizing import plain
 
 __all__ = ["write_run_page"]
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.embed import printable
-from reports.fields import Record, count, nested, number, records, text
-from reports.spelling import Figure, clip, counted, moment
+from reports.embedding import printable
+from reports.number_format import Figure, clip, counted, moment
+from reports.record_fields import Record, count, nested, number, records, text
 
 __all__ = ["RunView", "run_view"]
 

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from reports.embed import printable
-from reports.fields import Record, count, nested, optional_count, records, text, texts
-from reports.spelling import clip
+from reports.embedding import printable
+from reports.number_format import clip
+from reports.record_fields import Record, count, nested, optional_count, records, text, texts
 
 Json = dict[str, Any]
 

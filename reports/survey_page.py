@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from reports.construct_data import construct_data
-from reports.embed import embedded_json
-from reports.fields import Record, nested, records, text
+from reports.embedding import embedded_json
 from reports.page import render, source, write_page
+from reports.record_fields import Record, nested, records, text
 from reports.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
 from reports.survey_section import Section
 from reports.survey_view import survey_view

@@ -7,9 +7,9 @@ text has passed through `printable`.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.embed import printable
-from reports.fields import Record, count, records, text
-from reports.spelling import clip, percent, share
+from reports.embedding import printable
+from reports.number_format import clip, percent, share
+from reports.record_fields import Record, count, records, text
 from reports.survey_cluster import cluster_id, is_follower, title_of
 
 __all__ = ["ClusterRow", "MendingStep", "Section", "section"]

@@ -6,9 +6,9 @@ Everything here is text ready to print; all foreign text has passed through `pri
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.embed import printable
-from reports.fields import Record, count, nested, number, optional_count, records, text
-from reports.spelling import Figure, clip, counted, moment, percent, share, size
+from reports.embedding import printable
+from reports.number_format import Figure, clip, counted, moment, percent, share, size
+from reports.record_fields import Record, count, nested, number, optional_count, records, text
 from reports.survey_section import Section, section
 
 _MAX_CLUSTERS = 2000

@@ -16,7 +16,7 @@ from krl.cli import app
 
 ROOT = Path(__file__).parents[1]
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-PACKAGES = ["krl", "grammar", "recovery", "interp", "conformance", "reports"]
+PACKAGES = ["krl", "grammar", "recovery", "interp", "conformance", "reports", "support"]
 
 TOP_LEVEL = {
     *(".ci", ".editorconfig", ".gitattributes", ".github", ".gitignore"),

@@ -32,7 +32,7 @@ were made before them. Faults are provoked in some programs, and then seldom.
 """
 
 from conformance.differential.campaign import Finding, Findings, fuzz
-from conformance.differential.code import Size
-from conformance.differential.programs import Sample, generate, seeded
+from grammar.generation.programs.code import Size
+from grammar.generation.programs.programs import Sample, generate, seeded
 
 __all__ = ["Finding", "Findings", "Sample", "Size", "fuzz", "generate", "seeded"]

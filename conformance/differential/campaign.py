@@ -11,14 +11,14 @@ from itertools import count
 from platform import node
 from typing import Any, Final
 
-from conformance.differential.coverage import Counts, counted, language, missing
+from conformance.differential.construct_coverage import Counts, counted, language, missing
 from conformance.differential.divergence import Difference, Files, difference, prepared
-from conformance.differential.programs import seeded
 from conformance.differential.reduction import reduce_program
 from conformance.differential.runs import EXECUTORS, Prepared, available, trace_of
-from grammar.build import builder
-from interp.faults import LinkError
-from recovery.workers import WorkersError, in_order
+from grammar.generation.programs.programs import seeded
+from grammar.syntax.build import builder
+from interp.values.faults import LinkError
+from support.parallel.executor import WorkersError, in_order
 
 __all__ = ["Finding", "Findings", "fuzz", "record_of"]
 
@@ -91,8 +91,8 @@ def fuzz(
     ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
     address; reducing what was found is left to the process that asks. ``on_done`` is told how many
     programs were done since it was told last. The result depends on ``programs``, ``seed`` and
-    ``executors`` alone. Raises `recovery.workers.WorkersError`, also where a worker has not these
-    executors.
+    ``executors`` alone. Raises `support.parallel.executor.WorkersError`, also where a worker has
+    not these executors.
     """
     names = tuple(executors)
     shards = [

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from conformance.differential.runs import EXECUTORS, Prepared, trace_of
 from conformance.differential.traces import Fact, shown
-from grammar.source import Source
-from interp.program import load
+from grammar.syntax.source import Source
+from interp.program.load import load
 
 __all__ = ["Difference", "Files", "difference", "examine", "prepared"]
 
@@ -53,7 +53,7 @@ def _kind(fact: Fact | None) -> str:
 
 
 def prepared(files: Files) -> Prepared:
-    """A program ready for executors; raises `interp.faults.LinkError`."""
+    """A program ready for executors; raises `interp.values.faults.LinkError`."""
     return Prepared(load([Source(text, path) for path, text in files], files[0][0]))
 
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from conformance.differential.divergence import Files
-from grammar import ast
-from grammar.build import read_module
-from grammar.source import Source
-from grammar.walk import children, walk
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+from grammar.syntax.walk import children, walk
 
 __all__ = ["Reduced", "reduce_program", "statements_of"]
 

@@ -11,15 +11,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from conformance.differential.random_world import RandomWorld
 from conformance.differential.traces import Fact, Trace
-from conformance.differential.worlds import RandomWorld
 from interp import executors
-from interp.events import Sink
-from interp.executor import Executor
 from interp.executors import Prepared, available
-from interp.faults import LinkError, RuntimeFailure
-from interp.program import Limits
-from interp.requests import (
+from interp.port.events import Sink
+from interp.port.executor import Executor
+from interp.port.requests import (
     Code,
     Crash,
     DeclareInterrupt,
@@ -34,6 +32,8 @@ from interp.requests import (
     SwitchInterrupt,
     SwitchSignal,
 )
+from interp.program.load import Limits
+from interp.values.faults import LinkError, RuntimeFailure
 
 __all__ = ["EXECUTORS", "Factory", "Prepared", "available", "trace_of"]
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from interp.events import EVERY_KIND
-from interp.requests import At, Code, Path, Request, Value
-from interp.values import ArrayValue, EnumValue, StructureValue
+from interp.port.events import EVERY_KIND
+from interp.port.requests import At, Code, Path, Request, Value
+from interp.values.values import ArrayValue, EnumValue, StructureValue
 
 __all__ = ["Fact", "Trace", "place_of", "plain", "shown"]
 
@@ -87,7 +87,7 @@ class Trace:
                 return (type(value).__name__, str(value))
             case tuple():
                 return tuple(self._plain(one) for one in value)
-            case _ if type(value).__module__ == "interp.requests":
+            case _ if type(value).__module__ == "interp.port.requests":
                 return self._fact(value)
         return plain(value)
 

@@ -17,6 +17,6 @@ faults that all executors share.
 """
 
 from conformance.metamorphic.law import Attempt, Law, run_law
-from conformance.metamorphic.survey import Standing, laws, record_of, try_laws
+from conformance.metamorphic.trial import Standing, laws, record_of, try_laws
 
 __all__ = ["Attempt", "Law", "Standing", "laws", "record_of", "run_law", "try_laws"]

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from random import Random
 
-from conformance.metamorphic.comparing import Compare
-from conformance.metamorphic.program import Program, Run
+from conformance.metamorphic.comparison import Compare
+from conformance.metamorphic.subject import Program, Run
 
 __all__ = ["Attempt", "Law", "run_law"]
 

@@ -15,7 +15,7 @@ could see from outside are no faults and are left out.
 """
 
 from conformance.sensitivity.bench import measure, speed_of
-from conformance.sensitivity.planting import Fault
+from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 
 __all__ = ["Fault", "Verdict", "measure", "speed_of", "try_faults"]

@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any, Final
 
-from conformance.case import Case
-from conformance.observing import Setup
+from conformance.judging.observe import Setup
+from conformance.judging.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.planting import Fault
+from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
-from conformance.verdicts import KnownFailures
+from conformance.suite.case import Case
 
 __all__ = ["AIM", "measure", "record_of", "speed_of"]
 

@@ -14,18 +14,24 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
-from conformance.case import Case
-from conformance.comparison import first_divergence
-from conformance.observation import Observation
-from conformance.observing import Setup, prepared
+from conformance.judging.comparison import first_divergence
+from conformance.judging.observation import Observation
+from conformance.judging.observe import Setup, prepared
+from conformance.judging.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity import ahead, interrupting, machine, path, timing
-from conformance.sensitivity.planting import Fault, on, several
-from conformance.verdicts import KnownFailures
+from conformance.sensitivity import (
+    advance_run_faults,
+    instruction_faults,
+    interrupt_faults,
+    path_faults,
+    timing_faults,
+)
+from conformance.sensitivity.planted_fault import Fault, on, several
+from conformance.suite.case import Case
 from interp.controller.controller import Controller
-from interp.faults import LinkError
-from interp.robot.core import ControlCore
-from recovery.workers import in_order
+from interp.robot.api.control_core import ControlCore
+from interp.values.faults import LinkError
+from support.parallel.executor import in_order
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
 
@@ -51,11 +57,11 @@ class Verdict:
 def all_faults() -> tuple[Fault, ...]:
     """Every fault there is, group by group."""
     return (
-        *timing.faults(),
-        *ahead.faults(),
-        *interrupting.faults(),
-        *path.faults(),
-        *machine.faults(),
+        *timing_faults.faults(),
+        *advance_run_faults.faults(),
+        *interrupt_faults.faults(),
+        *path_faults.faults(),
+        *instruction_faults.faults(),
     )
 
 
@@ -124,7 +130,11 @@ def _instructions(case: Case) -> frozenset[str]:
     """The instructions that a case has on a machine; none where it cannot be compiled."""
     program = prepared(case)
     try:
-        return frozenset() if isinstance(program, LinkError) else machine.instructions(program)
+        return (
+            frozenset()
+            if isinstance(program, LinkError)
+            else instruction_faults.instructions(program)
+        )
     except LinkError:
         return frozenset()
 

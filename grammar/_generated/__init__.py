@@ -1,1 +1,1 @@
-"""Generated from grammar/KRL.g4 by ANTLR; do not edit (python -m grammar.generate)."""
+"""Generated from grammar/KRL.g4 by ANTLR; do not edit (make grammar)."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grammar import ast
-from grammar.assignability import index, initial
-from grammar.operations import component, subscript
-from grammar.types import INT, UNKNOWN, Aggregate, Structure, Type
+from grammar.semantics.assignability import index, initial
+from grammar.semantics.operations import component, subscript
+from grammar.semantics.types import INT, UNKNOWN, Aggregate, Structure, Type
+from grammar.syntax import ast
 
 if TYPE_CHECKING:
     from grammar.check.expressions import Typer

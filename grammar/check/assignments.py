@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from grammar import ast
+from grammar.check.constant_folding import constant
 from grammar.check.expressions import Typer, root_of
-from grammar.check.folding import constant
-from grammar.check.sides import side_of
-from grammar.predefined import Variable
-from grammar.symbols import Kind, SignalSymbol
+from grammar.check.signal_direction import side_of
+from grammar.semantics.predefined import Variable
+from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.syntax import ast
 
 __all__ = ["assign"]
 

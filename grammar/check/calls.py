@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grammar import ast
-from grammar.assignability import passable
-from grammar.check.sides import side_of
-from grammar.scopes import Found, Scope, SystemScope
-from grammar.symbols import Kind, ParameterSymbol, RoutineSymbol
-from grammar.types import UNKNOWN, Type, Verdict
+from grammar.check.signal_direction import side_of
+from grammar.semantics.assignability import passable
+from grammar.semantics.scopes import Found, Scope, SystemScope
+from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
+from grammar.semantics.types import UNKNOWN, Type, Verdict
+from grammar.syntax import ast
 
 if TYPE_CHECKING:
     from grammar.check.expressions import Typer

@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from grammar import ast
-from grammar.ast import Node, Span
-from grammar.check.hints import Hints
-from grammar.codes import Severity, code, of_message
-from grammar.diagnostics import Diagnostic, Fix, Region, diagnose
-from grammar.link import Project
-from grammar.predefined import System
-from grammar.resolve import Resolution
-from grammar.rules import is_confirmed
-from grammar.scopes import Found, Module, Scope
-from grammar.source import Source
-from grammar.symbols import ModuleTable, RoutineTable
-from grammar.types import Enumeration, Type, Verdict
+from grammar.check.name_hints import Hints
+from grammar.diagnostics.codes import Severity, code, of_message
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.semantics.link import Project
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution
+from grammar.semantics.rules import is_confirmed
+from grammar.semantics.scopes import Found, Module, Scope
+from grammar.semantics.symbols import ModuleTable, RoutineTable
+from grammar.semantics.types import Enumeration, Type, Verdict
+from grammar.syntax import ast
+from grammar.syntax.ast import Node, Span
+from grammar.syntax.source import Source
 
 __all__ = ["Context", "Placed", "RoutineBody", "placed"]
 
@@ -119,7 +119,7 @@ class Context:
         is_unconfirmed: bool = False,
         fix: Fix | None = None,
     ) -> Diagnostic:
-        """A finding at a node or a span of the text; the rest as `grammar.diagnostics.diagnose`.
+        """A finding at a node or a span; the rest as `grammar.diagnostics.diagnostic.diagnose`.
 
         What rests on unconfirmed rules alone is no error.
         """

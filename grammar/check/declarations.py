@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from grammar import ast
-from grammar.assignability import declarable
+from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
 from grammar.check.expressions import Typer
-from grammar.check.folding import constant
 from grammar.check.signals import check_signal
-from grammar.diagnostics import Diagnostic
-from grammar.scopes import NotFound
-from grammar.symbols import Kind
-from grammar.types import INT, REAL, UNKNOWN
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.assignability import declarable
+from grammar.semantics.scopes import NotFound
+from grammar.semantics.symbols import Kind
+from grammar.semantics.types import INT, REAL, UNKNOWN
+from grammar.syntax import ast
 
 __all__ = ["check"]
 

@@ -4,7 +4,7 @@ A `Typer` goes through the expressions of one file, each once, and notes what it
 context: types, and the enumerations that constants belong to, which follow from where they stand
 [TYP-16]. What does not fit is told once: its type is `UNKNOWN` from there on.
 
-Recursion goes as deep as an expression, which `grammar.plans.MAX_DEPTH` limits.
+Recursion goes as deep as an expression, which `grammar.syntax.node_plans.MAX_DEPTH` limits.
 """
 
 from __future__ import annotations
@@ -12,16 +12,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from grammar import ast
-from grammar.assignability import assignable, index
-from grammar.ast import Node, Span
 from grammar.check.aggregates import aggregate
 from grammar.check.calls import call
+from grammar.check.constant_folding import integer_of
 from grammar.check.context import Context
-from grammar.check.folding import integer_of
-from grammar.codes import Severity
-from grammar.diagnostics import Diagnostic, Fix
-from grammar.operations import (
+from grammar.diagnostics.codes import Severity
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.semantics.assignability import assignable, index
+from grammar.semantics.operations import (
     BITWISE,
     EQUALITY,
     LOGICAL,
@@ -31,9 +29,9 @@ from grammar.operations import (
     subscript,
     unary,
 )
-from grammar.scopes import Found, Scope, SystemScope
-from grammar.symbols import Kind, Symbol
-from grammar.types import (
+from grammar.semantics.scopes import Found, Scope, SystemScope
+from grammar.semantics.symbols import Kind, Symbol
+from grammar.semantics.types import (
     BOOL,
     INT,
     INT_MAX,
@@ -49,6 +47,8 @@ from grammar.types import (
     is_number,
     without_index,
 )
+from grammar.syntax import ast
+from grammar.syntax.ast import Node, Span
 
 __all__ = ["Judge", "Typer", "root_of", "stripped"]
 

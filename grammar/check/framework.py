@@ -9,31 +9,31 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from grammar import ast
-from grammar.ast import Node
 from grammar.check import (
+    control_flow,
     declarations,
-    entries,
-    flow,
-    initials,
-    limits,
-    names,
-    places,
+    duplicate_names,
+    entry_points,
+    initial_values,
+    misplaced_statements,
+    name_limits,
     splines,
     statements,
-    twice,
-    unknowns,
+    undeclared_names,
+    value_limits,
 )
+from grammar.check.constant_folding import Value
 from grammar.check.context import Context
-from grammar.check.folding import Value
-from grammar.check.unknowns import Reference
-from grammar.diagnostics import Diagnostic, in_order
-from grammar.link import Project, Workspace
-from grammar.predefined import System
-from grammar.resolve import Resolution, resolve
-from grammar.scopes import Module
-from grammar.source import Source
-from grammar.types import Enumeration, Type
+from grammar.check.undeclared_names import Reference
+from grammar.diagnostics.diagnostic import Diagnostic, in_order
+from grammar.semantics.link import Project, Workspace
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution, resolve
+from grammar.semantics.scopes import Module
+from grammar.semantics.types import Enumeration, Type
+from grammar.syntax import ast
+from grammar.syntax.ast import Node
+from grammar.syntax.source import Source
 
 __all__ = [
     "CHECKS",
@@ -51,16 +51,16 @@ Check = Callable[[Context], Iterator[Diagnostic]]
 #: In this order: the first two type the expressions, for all that follow.
 CHECKS: tuple[Check, ...] = (
     statements.check,
-    initials.check,
+    initial_values.check,
     declarations.check,
-    twice.check,
-    unknowns.check,
-    names.check,
-    flow.check,
-    places.check,
+    duplicate_names.check,
+    undeclared_names.check,
+    name_limits.check,
+    control_flow.check,
+    misplaced_statements.check,
     splines.check,
-    limits.check,
-    entries.check,
+    value_limits.check,
+    entry_points.check,
 )
 
 
@@ -95,7 +95,7 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     return Checked(
         module,
-        Findings(tuple(found), unknowns.references(context)),
+        Findings(tuple(found), undeclared_names.references(context)),
         context.resolution,
         context.types,
         context.enumerations,
@@ -107,7 +107,7 @@ def check_project(findings: Iterable[Findings]) -> list[Diagnostic]:
     """All findings of a project, from those of its files, in order."""
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
-    found += unknowns.of_project(reference for one in kept for reference in one.references)
+    found += undeclared_names.of_project(reference for one in kept for reference in one.references)
     return in_order(found)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from grammar import ast
+from grammar.check.constant_folding import integer_of
 from grammar.check.expressions import Typer
-from grammar.check.folding import integer_of
-from grammar.check.sides import written_side
+from grammar.check.signal_direction import written_side
+from grammar.syntax import ast
 
 __all__ = ["check_signal"]
 

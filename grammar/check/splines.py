@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar import ast
 from grammar.check.context import Context, Placed
-from grammar.diagnostics import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.syntax import ast
 
 __all__ = ["check"]
 

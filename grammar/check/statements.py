@@ -10,22 +10,22 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from grammar import ast
-from grammar.assignability import case_label, condition, integer, number, selector, target
 from grammar.check.aggregates import aggregate
 from grammar.check.assignments import assign
 from grammar.check.calls import call
+from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
 from grammar.check.expressions import Judge, Typer, stripped
-from grammar.check.folding import constant
-from grammar.diagnostics import Diagnostic
-from grammar.types import (
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.assignability import case_label, condition, integer, number, selector, target
+from grammar.semantics.types import (
     REAL,
     UNKNOWN,
     Structure,
     Type,
     Verdict,
 )
+from grammar.syntax import ast
 
 __all__ = ["check"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from grammar.types import Array, Type
-from interp.bytecode.cells import kind_at, path_to
+from grammar.semantics.types import Array, Type
+from interp.bytecode.cell_layout import kind_at, path_to
 from interp.bytecode.program import Code, Mode, Parameter, Program, Slot
-from interp.bytecode.stack_types import Held, Refused, handed_over
+from interp.bytecode.verifier.stack_types import Held, Refused, handed_over
 
 __all__ = ["CellTypes"]
 

@@ -5,7 +5,7 @@ The first types are the four scalars; they are not written anywhere. A cell of t
 its address, counted from 0 through all variables in order; a cell of a frame its offset: first the
 parameters, then the locals.
 
-Nothing here is checked: that is the affair of `interp.bytecode.verify`.
+Nothing here is checked: that is the affair of `interp.bytecode.verifier.verify`.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
-from grammar.types import SCALARS, Type
+from grammar.semantics.types import SCALARS, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Raw, kind_at, raw_of_word, size
+from interp.bytecode.cell_layout import Raw, kind_at, raw_of_word, size
 
 __all__ = [
     "BASIC_TYPES",
@@ -128,7 +128,7 @@ class Items:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A request within a request, or another record of `interp.requests`, by its name.
+    """A request within a request, or another record of `interp.port.requests`, by its name.
 
     ``line`` is where it stands in the source, 0 where the record has no place.
     """

@@ -5,9 +5,9 @@ world around it does, `Profile` what release the controller has.
 """
 
 from interp.controller.controller import Controller, Ending, Outcome
-from interp.controller.moving import PlannedPoint
+from interp.controller.input_script import Script, ScriptError
+from interp.controller.motion_queue import PlannedPoint
 from interp.controller.profile import Profile, ProfileError, profile_names
-from interp.controller.script import Script, ScriptError
 from interp.controller.trace import KINDS, TaskSink, Trace, TraceEvent
 
 __all__ = [

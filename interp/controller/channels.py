@@ -13,14 +13,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from grammar.predefined import System
-from grammar.types import CHAR, REAL, Array, Enumeration, Structure
+from grammar.semantics.predefined import System
+from grammar.semantics.types import CHAR, REAL, Array, Enumeration, Structure
 from interp.controller.clock import Clock, microseconds
 from interp.controller.messages import own_fault
-from interp.faults import fault
-from interp.formats import sread, swrite
-from interp.requests import Value
-from interp.values import (
+from interp.port.requests import Value
+from interp.values.faults import fault
+from interp.values.formats import sread, swrite
+from interp.values.values import (
     ArrayValue,
     EnumValue,
     StructureValue,

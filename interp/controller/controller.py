@@ -13,21 +13,21 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final, Literal
 
-from interp.controller.answering import Answering
+from interp.controller.input_script import Script
 from interp.controller.interrupts import Interrupts, interrupt_list
 from interp.controller.profile import Profile
-from interp.controller.script import Script
+from interp.controller.request_handling import Answering
 from interp.controller.tasks import Blocked, Task
 from interp.controller.trace import TaskSink, Trace
 from interp.controller.variables import Computed
 from interp.controller.world import Setup
-from interp.executor import Executor
-from interp.faults import BudgetExhausted, RuntimeFailure
-from interp.requests import At, Crash, End, Fail, Request, SplineStop, Value
-from interp.robot.core import ControlCore, Switch
-from interp.robot.following import Following
-from interp.robot.machine import Machine
-from interp.robot.robots import RobotFault
+from interp.port.executor import Executor
+from interp.port.requests import At, Crash, End, Fail, Request, SplineStop, Value
+from interp.robot.api.control_core import ControlCore, Switch
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.simulation.robots import RobotFault
+from interp.robot.simulation.tracking import Following
+from interp.values.faults import BudgetExhausted, RuntimeFailure
 
 __all__ = ["Controller", "Ending", "Outcome"]
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Final, Literal
 
-from grammar.predefined import System
-from grammar.types import Array, Structure
+from grammar.semantics.predefined import System
+from grammar.semantics.types import Array, Structure
 from interp.controller.messages import own_fault
-from interp.requests import At, Code, DeclareInterrupt
-from interp.values import ArrayValue, StructureValue, set_text, zero
+from interp.port.requests import At, Code, DeclareInterrupt
+from interp.values.values import ArrayValue, StructureValue, set_text, zero
 
 __all__ = ["Interrupt", "Interrupts", "interrupt_list", "is_usable", "module_name"]
 

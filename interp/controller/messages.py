@@ -1,7 +1,7 @@
 """Messages of the controller by number, faults made of them, and the messages of programs.
 
-The numbers and what they mean are data in `grammar.predefined` [MSG-01 to MSG-31]. What a program
-shows by SET_KRLMSG and SET_KRLDLG stays until it is taken away or answered [FCT-10].
+The numbers and what they mean are data in `grammar.semantics.predefined` [MSG-01 to MSG-31]. What a
+program shows by SET_KRLMSG and SET_KRLDLG stays until it is taken away or answered [FCT-10].
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from grammar.predefined import System
-from interp.faults import Fault
+from grammar.semantics.predefined import System
+from interp.values.faults import Fault
 
 __all__ = ["Board", "Dialogue", "message_fault", "own_fault"]
 

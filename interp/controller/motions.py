@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
-from interp import requests
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.positions import pose_of
 from interp.controller.variables import Snapshot, Variables
-from interp.requests import At, Move, MoveSpline, SetTrigger, SplineStop, Value
+from interp.port import requests
+from interp.port.requests import At, Move, MoveSpline, SetTrigger, SplineStop, Value
 from interp.robot.arm import (
     Approximation,
     Motion,
@@ -24,9 +24,9 @@ from interp.robot.arm import (
     SplineRange,
     Target,
 )
-from interp.robot.frames import IDENTITY, Pose
-from interp.robot.placement import IpoMode, Placement
-from interp.values import ArrayValue, EnumValue, StructureValue
+from interp.robot.kinematics.frames import IDENTITY, Pose
+from interp.robot.kinematics.placement import IpoMode, Placement
+from interp.values.values import ArrayValue, EnumValue, StructureValue
 
 __all__ = ["Built", "MotionBuilder", "is_complete", "placement_of", "target_of"]
 

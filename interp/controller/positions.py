@@ -12,17 +12,17 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
-from grammar.predefined import System
-from grammar.types import Structure
+from grammar.semantics.predefined import System
+from grammar.semantics.types import Structure
 from interp.controller.variables import Computed, Variables
-from interp.faults import fault
-from interp.requests import Path, Value
-from interp.robot.frames import Pose
-from interp.robot.kinematics import Arm as Kinematics
-from interp.robot.machine import ROBOT_AXES, Machine
-from interp.robot.placement import Placement
-from interp.robot.targets import turn_of
-from interp.values import StructureValue, empty, single
+from interp.port.requests import Path, Value
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.placement import Placement
+from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.targets import turn_of
+from interp.values.faults import fault
+from interp.values.values import StructureValue, empty, single
 
 __all__ = ["Positions", "Where", "axes_value", "pose_of", "pose_value"]
 

@@ -15,8 +15,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from grammar.documents import DocumentError, read_text, toml_of
-from interp.faults import RuntimeFailure
+from interp.values.faults import RuntimeFailure
+from support.files.untrusted import DocumentError, read_text, toml_of
 
 __all__ = ["Profile", "ProfileError", "profile_names"]
 
@@ -43,7 +43,8 @@ class Profile:
     is the date at which the virtual clock begins. ``runs_coincidence``: the first motion is a block
     coincidence run, which ends exactly and holds the program until it is started again [ADV-14].
     ``submit_every`` is in cycles. ``sizes`` are those of arrays, ``most`` how many there may be of
-    something at once. ``values`` are initial values by name, as `interp.rendering` writes them.
+    something at once. ``values`` are initial values by name, as `interp.values.json_form` writes
+    them.
     """
 
     name: str

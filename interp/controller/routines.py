@@ -1,7 +1,7 @@
 """Predefined routines that act on the world: PULSE, channels, messages, errors, kinematics.
 
 What is not simulated is a fault of its own, `unsupported`, never silence. Which of them stop the
-advance run is data (`grammar.predefined`) [ADV-04, ADV-07].
+advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
 """
 
 from __future__ import annotations
@@ -9,20 +9,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
-from grammar.predefined import System
-from grammar.types import INT, Enumeration
+from grammar.semantics.predefined import System
+from grammar.semantics.types import INT, Enumeration
+from interp.controller.activation import Entering
 from interp.controller.channels import Waiting
-from interp.controller.entering import Entering
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.motions import target_of
 from interp.controller.positions import axes_value, pose_value
 from interp.controller.tasks import Blocked, Task
-from interp.faults import Fault, fault
-from interp.requests import Invoke, Path, Request, Value
-from interp.robot.frames import Pose
-from interp.robot.kinematics import Arm as Kinematics
-from interp.robot.targets import solve, turn_of
-from interp.values import (
+from interp.port.requests import Invoke, Path, Request, Value
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.targets import solve, turn_of
+from interp.values.faults import Fault, fault
+from interp.values.values import (
     EnumValue,
     StructureValue,
     constant,

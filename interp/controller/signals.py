@@ -12,9 +12,9 @@ from typing import Final
 
 from interp.controller.clock import Appointment, Clock
 from interp.controller.profile import Profile
-from interp.faults import fault
-from interp.requests import Path, Value
-from interp.values import single
+from interp.port.requests import Path, Value
+from interp.values.faults import fault
+from interp.values.values import single
 
 __all__ = ["ALWAYS_FALSE", "ALWAYS_TRUE", "Signals"]
 

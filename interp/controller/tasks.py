@@ -13,9 +13,9 @@ from typing import Any, Final, Literal
 from interp.controller.interrupts import Interrupt, Interrupts
 from interp.controller.trace import Task as TaskName
 from interp.controller.trace import TaskSink
-from interp.executor import Executor
-from interp.requests import At, Request, SetTrigger, SwitchSignal, Value
-from interp.robot.commands import CallCommand
+from interp.port.executor import Executor
+from interp.port.requests import At, Request, SetTrigger, SwitchSignal, Value
+from interp.robot.api.commands import CallCommand
 
 __all__ = ["ALWAYS", "Blocked", "Level", "LevelKind", "Task"]
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from interp.controller.clock import Clock
-from interp.faults import fault
-from interp.requests import Path, Value
-from interp.values import StructureValue
+from interp.port.requests import Path, Value
+from interp.values.faults import fault
+from interp.values.values import StructureValue
 
 __all__ = ["Timers", "date_members"]
 

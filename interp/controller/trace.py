@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
-from interp.events import EVERY_KIND, Kind
-from interp.rendering import to_json
-from interp.requests import At, Path, Value
+from interp.port.events import EVERY_KIND, Kind
+from interp.port.requests import At, Path, Value
+from interp.values.json_form import to_json
 
 __all__ = ["KINDS", "Task", "TaskSink", "Trace", "TraceEvent", "path_text"]
 

@@ -2,8 +2,8 @@
 
 Which variables there are, their types, who may write them, their limits, their twins in the main
 run [ADV-10] and whether an access stops the advance run [ADV-05 to ADV-07] are data, the tables of
-`grammar.predefined`. Variables that are more than a value (inputs, timers, positions) are answered
-by a `Live` that is given for them.
+`grammar.semantics.predefined`. Variables that are more than a value (inputs, timers, positions) are
+answered by a `Live` that is given for them.
 
 A motion takes a `Snapshot` of the advance values along. When it starts, that becomes what the
 ``_C`` variables show.
@@ -16,13 +16,13 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any, Final, Protocol
 
-from grammar.predefined import System, Variable
-from grammar.types import INT, UNKNOWN, Array, Structure, Type
+from grammar.semantics.predefined import System, Variable
+from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
 from interp.controller.profile import Profile, ProfileError
-from interp.faults import Fault, LinkError, fault
-from interp.rendering import from_json
-from interp.requests import Path, Value
-from interp.values import (
+from interp.port.requests import Path, Value
+from interp.values.faults import Fault, LinkError, fault
+from interp.values.json_form import from_json
+from interp.values.values import (
     ArrayValue,
     StructureValue,
     converted,

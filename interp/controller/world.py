@@ -9,30 +9,30 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from grammar.predefined import System
-from grammar.types import Enumeration, Structure
+from grammar.semantics.predefined import System
+from grammar.semantics.types import Enumeration, Structure
+from interp.controller.automatic_inputs import Fulfilling
 from interp.controller.channels import COMMANDS, Channels
 from interp.controller.clock import Agenda, Appointment, Clock
-from interp.controller.fulfilling import Fulfilling
+from interp.controller.input_script import Script
 from interp.controller.messages import Board
 from interp.controller.motions import placement_of
-from interp.controller.playing import Player
 from interp.controller.positions import Positions, Where, pose_of
 from interp.controller.profile import Profile
-from interp.controller.script import Script
+from interp.controller.script_player import Player
 from interp.controller.signals import Signals
 from interp.controller.timers import Timers, date_members
 from interp.controller.trace import Task as TaskName
 from interp.controller.trace import Trace
 from interp.controller.variables import Computed, Variables
-from interp.rendering import to_json
-from interp.requests import At, Path, Value
-from interp.robot.core import ControlCore
-from interp.robot.following import Following
-from interp.robot.frames import IDENTITY, Pose
-from interp.robot.machine import Machine
-from interp.robot.placement import Placement
-from interp.values import EnumValue, StructureValue, constant, empty, single
+from interp.port.requests import At, Path, Value
+from interp.robot.api.control_core import ControlCore
+from interp.robot.kinematics.frames import IDENTITY, Pose
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.placement import Placement
+from interp.robot.simulation.tracking import Following
+from interp.values.json_form import to_json
+from interp.values.values import EnumValue, StructureValue, constant, empty, single
 
 __all__ = ["Setup", "World"]
 

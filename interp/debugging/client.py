@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from interp.requests import At
-from interp.values import Value
+from interp.port.requests import At
+from interp.values.values import Value
 
 __all__ = [
     "Backward",

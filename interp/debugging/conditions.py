@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 
-from grammar import ast
-from grammar.build import read_module
-from grammar.types import Enumeration
-from interp.executor import Reader
-from interp.faults import LinkError
-from interp.inspection import Seen
-from interp.operators import apply, apply_unary
-from interp.requests import Path
-from interp.values import (
+from grammar.semantics.types import Enumeration
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from interp.port.executor import Reader
+from interp.port.inspection import Seen
+from interp.port.requests import Path
+from interp.values.faults import LinkError
+from interp.values.operators import apply, apply_unary
+from interp.values.values import (
     EnumValue,
     Value,
     constant,
@@ -54,7 +54,8 @@ def root_of(node: ast.Expression) -> str | None:
 def evaluated(node: ast.Expression, look: _Look, read: Reader | None = None) -> Value:
     """The value; ``read`` is for variables of the controller.
 
-    Raises `interp.faults.Fault` as the program would, and `LinkError` for what is not known here.
+    Raises `interp.values.faults.Fault` as the program would, and `LinkError` for what is not known
+    here.
     """
     return _Evaluation(look, read).value(node)
 

@@ -12,8 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from interp.blocks import routine_at, statement_lines
-from interp.debugging.backward import Record
+from interp.debugging.backward_motions import Record
 from interp.debugging.client import (
     Backward,
     Breakpoint,
@@ -27,12 +26,13 @@ from interp.debugging.client import (
 from interp.debugging.conditions import evaluated, parsed, root_of
 from interp.debugging.open_routines import OpenRoutines
 from interp.debugging.selection import reason_against
-from interp.events import Sink
-from interp.executor import Executor, Reader
-from interp.faults import Fault, LinkError, RuntimeFailure
-from interp.inspection import Inspectable
-from interp.program import CheckedProgram, Limits
-from interp.requests import At, Code, End, Fail, Move, MoveSpline, Request, Slice, Value
+from interp.port.events import Sink
+from interp.port.executor import Executor, Reader
+from interp.port.inspection import Inspectable
+from interp.port.requests import At, Code, End, Fail, Move, MoveSpline, Request, Slice, Value
+from interp.program.load import CheckedProgram, Limits
+from interp.program.statement_paths import routine_at, statement_lines
+from interp.values.faults import Fault, LinkError, RuntimeFailure
 
 __all__ = ["Client", "Debugger", "Make"]
 
@@ -62,7 +62,7 @@ class _Stepping:
 
 
 class Debugger:
-    """Runs what ``make`` makes, and calls ``client`` where it stops; see `interp.executor`.
+    """Runs what ``make`` makes, and calls ``client`` where it stops; see `interp.port.executor`.
 
     ``read`` gives the values of system variables for conditions and watches, where they are to be
     looked at. It stops before the first statement.
@@ -204,7 +204,7 @@ class Debugger:
         return self._inner.companion(routine, sink)
 
     def look(self, text: str) -> Any:
-        """What the executor inside knows of a variable; see `interp.inspection`."""
+        """What the executor inside knows of a variable; see `interp.port.inspection`."""
         return self._inner.look(text)
 
     # ----------------------------------------------------------------------- what goes by

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from interp.debugging.client import Frame
-from interp.events import Kind, Sink
-from interp.requests import At, Path, Value
+from interp.port.events import Kind, Sink
+from interp.port.requests import At, Path, Value
 
 __all__ = ["OpenRoutines"]
 

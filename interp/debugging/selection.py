@@ -6,9 +6,9 @@ the official implementation allows beyond that is not told by any rule (unconfir
 
 from __future__ import annotations
 
-from grammar import ast
-from interp.blocks import way_to
-from interp.program import Routine
+from grammar.syntax import ast
+from interp.program.load import Routine
+from interp.program.statement_paths import way_to
 
 __all__ = ["reason_against"]
 

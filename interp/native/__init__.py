@@ -1,4 +1,4 @@
-"""The bytecode machine in C: the same images, requests and events as `interp.bytecode.vm`.
+"""The bytecode machine in C: the same images, requests and events as `interp.bytecode.vm.executor`.
 
 =================== ================================================================================
 file                what it is

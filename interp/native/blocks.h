@@ -36,7 +36,7 @@ static inline void krl_blank_cells(krl_cell *target, int32_t count)
     memset(target, 0, (size_t)count * sizeof *target);
 }
 
-/* As interp.values.fill does it with arrays; gives a fault. */
+/* As interp.values.values.fill does it with arrays; gives a fault. */
 static inline int krl_fill_array(krl_cell *cells, const krl_cell *target, const krl_cell *source,
                                  int32_t width, int32_t dimensions)
 {

@@ -1,4 +1,4 @@
-/* Functions of numbers and poses, as interp/builtins.py and interp/frames.py have them.
+/* Functions of numbers and poses, as interp/values/builtins.py and interp/values/frames.py have them.
  *
  * All is computed in double, in the order written there, and each result is rounded to single once.
  */

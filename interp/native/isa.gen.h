@@ -1,4 +1,4 @@
-/* Made from interp/bytecode/instructions.tsv by python -m interp.bytecode.isa --write. */
+/* Made from interp/bytecode/instructions.tsv by python -m interp.bytecode.instruction_set --write. */
 #ifndef KRL_ISA_GEN_H
 #define KRL_ISA_GEN_H
 

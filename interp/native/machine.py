@@ -1,10 +1,10 @@
 """The machine in C as an executor.
 
 C carries out the instructions; what reaches beyond the cells is done by the same Python code as for
-`interp.bytecode.vm`: requests and replies, the trace, the functions that C does not know, counting
-from one slice to the next. So both machines say the same. For that code the memory in C looks like
-the state of the machine in Python, and a run in C like an operation: it goes on until something is
-to be done outside, and gives the operation that does it.
+`interp.bytecode.vm.executor`: requests and replies, the trace, the functions that C does not know,
+counting from one slice to the next. So both machines say the same. For that code the memory in C
+looks like the state of the machine in Python, and a run in C like an operation: it goes on until
+something is to be done outside, and gives the operation that does it.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Any, cast
 
-from interp.bytecode import vm
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.program import Program
-from interp.bytecode.services import Services
-from interp.bytecode.state import Completion, Operation, State
-from interp.bytecode.threads import Threads
-from interp.bytecode.verify import Verified
-from interp.events import Kind, Sink, wanting
-from interp.executor import Reader
-from interp.faults import FAULTS, LinkError, fault
+from interp.bytecode.verifier.verify import Verified
+from interp.bytecode.vm import executor as vm
+from interp.bytecode.vm.services import Services
+from interp.bytecode.vm.state import Completion, Operation, State
+from interp.bytecode.vm.threaded_code import Threads
 from interp.native._core import Core
-from interp.program import Limits
-from interp.requests import Request
+from interp.port.events import Kind, Sink, wanting
+from interp.port.executor import Reader
+from interp.port.requests import Request
+from interp.program.load import Limits
+from interp.values.faults import FAULTS, LinkError, fault
 
 __all__ = ["Machine"]
 
@@ -98,7 +98,7 @@ class _Calls:
 
 
 class _State(Core):
-    """What the machine works on, which lies in C, as `interp.bytecode.state.State` shows it."""
+    """What the machine works on, which lies in C, as `interp.bytecode.vm.state.State` shows it."""
 
     __slots__ = ("calls", "completion", "reader", "request", "stack")
 
@@ -131,7 +131,7 @@ class _Body:
 
 
 class _Threads:
-    """Runs in C, in place of `interp.bytecode.threads.Threads`."""
+    """Runs in C, in place of `interp.bytecode.vm.threaded_code.Threads`."""
 
     def __init__(self, program: Program, state: _State, services: Services) -> None:
         self._program = program
@@ -210,7 +210,7 @@ def _then(act: Callable[[], None], after: Operation) -> Operation:
 
 
 class Machine(vm.Machine):
-    """Runs a verified program in C; else like `interp.bytecode.vm.Machine`."""
+    """Runs a verified program in C; else like `interp.bytecode.vm.executor.Machine`."""
 
     def __init__(
         self,

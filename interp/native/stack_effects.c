@@ -1,5 +1,5 @@
 /* What each instruction takes from the stack and leaves there, for the verifier; as
- * interp/bytecode/stack_effects.py has it. */
+ * interp/bytecode/verifier/stack_effects.py has it. */
 #include "flow.h"
 
 enum { NO_TYPE = -1 };

@@ -1,4 +1,4 @@
-/* The functions on texts that programs call in loops, as interp/texts.py has them; the others are
+/* The functions on texts that programs call in loops, as interp/values/texts.py has them; the others are
  * carried out in Python. */
 #include "machine.h"
 

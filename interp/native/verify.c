@@ -1,6 +1,6 @@
 /* Whether a program keeps the rules that the machine relies on, so that no image can do harm.
  *
- * The same is asked as by interp/bytecode/verify.py, as far as memory and time depend on it: what
+ * The same is asked as by interp/bytecode/verifier/verify.py, as far as memory and time depend on it: what
  * lies on the stack at every instruction, that references and views lead to cells of their type, that
  * no way falls off the end, and that every circle has a statement in it. Names, and whether the parts
  * of a request fit its fields, are left to the verifier in Python: nothing here uses them.

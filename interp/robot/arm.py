@@ -17,9 +17,9 @@ from typing import Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from interp.requests import At
-from interp.robot.frames import Pose
-from interp.robot.placement import Placement
+from interp.port.requests import At
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.placement import Placement
 
 __all__ = [
     "Approximation",
@@ -204,8 +204,8 @@ class Arm(Protocol):
         Returns the numbers of messages that stop nothing, such as 3171 for a motion that goes
         nowhere [MOT-11].
 
-        Raises `interp.faults.Fault` (a point out of reach, a software limit, a degenerate circle
-        and so on [MOT-10 to MOT-15]); then nothing is appended.
+        Raises `interp.values.faults.Fault` (a point out of reach, a software limit, a degenerate
+        circle and so on [MOT-10 to MOT-15]); then nothing is appended.
         """
         ...
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from interp.robot.kinematics import Arm
-from interp.robot.targets import solve_many, turn_of
+from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.targets import solve_many, turn_of
 
 __all__ = ["RoundTrips", "round_trips"]
 

@@ -7,20 +7,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from grammar import ast
-from grammar.predefined import System
-from grammar.scopes import Found
-from grammar.symbols import Space
-from grammar.types import UNKNOWN, Type
-from interp.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
-from interp.faults import LinkError, fault
-from interp.phrases import is_variable
-from interp.requests import Invoke
-from interp.tree.expressions import Expressions
-from interp.tree.places import Local, Place, Remote, fresh, is_left_out, sized
-from interp.tree.run import Call, Steps
-from interp.values import Value, copied, known
-from interp.variables import (
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Space
+from grammar.semantics.types import UNKNOWN, Type
+from grammar.syntax import ast
+from interp.port.requests import Invoke
+from interp.program.reads import is_variable
+from interp.program.variables import (
     is_complete,
     is_complete_parameter,
     is_referable,
@@ -28,6 +22,12 @@ from interp.variables import (
     untyped_parameter,
     untyped_result,
 )
+from interp.tree.expressions import Expressions
+from interp.tree.places import Local, Place, Remote, fresh, is_left_out, sized
+from interp.tree.run import Call, Steps
+from interp.values.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
+from interp.values.faults import LinkError, fault
+from interp.values.values import Value, copied, known
 
 __all__ = ["Calls"]
 
@@ -125,7 +125,7 @@ class Calls(Expressions):
         return result
 
     def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:
-        """A text passed :IN to a predefined function; see `interp.builtins.reads_text`."""
+        """A text passed :IN to a predefined function; see `interp.values.builtins.reads_text`."""
         if not is_variable(self.frame.unit, node):
             return (yield from self.value(node, wanted))
         place = yield from self.place(node)

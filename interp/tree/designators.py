@@ -9,24 +9,24 @@ from abc import ABC, abstractmethod
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from grammar import ast
-from grammar.scopes import Found
-from grammar.symbols import Kind, SignalSymbol, Space
-from grammar.types import BOOL, INT, UNKNOWN, Type
-from interp.faults import LinkError, fault
-from interp.inspection import Seen
-from interp.requests import At, Read, StopAdvance, Write
-from interp.tree.names import find_text
-from interp.tree.places import Local, Place, Remote, element, member, of_type
-from interp.tree.run import Frame, Run, Steps
-from interp.values import Value, copied, index
-from interp.variables import (
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind, SignalSymbol, Space
+from grammar.semantics.types import BOOL, INT, UNKNOWN, Type
+from grammar.syntax import ast
+from interp.port.inspection import Seen
+from interp.port.requests import At, Read, StopAdvance, Write
+from interp.program.variables import (
     is_complete,
     is_complete_parameter,
     signal_ends,
     untyped,
     untyped_value,
 )
+from interp.tree.names import find_text
+from interp.tree.places import Local, Place, Remote, element, member, of_type
+from interp.tree.run import Frame, Run, Steps
+from interp.values.faults import LinkError, fault
+from interp.values.values import Value, copied, index
 
 __all__ = ["Designators"]
 
@@ -145,7 +145,7 @@ class Designators(ABC):
     # ----------------------------------------------------------------------- by text
 
     def look(self, text: str) -> Seen | None:
-        """A variable of the program or a part of one, as `interp.inspection` has it."""
+        """A variable of the program or a part of one, as `interp.port.inspection` has it."""
         found = self.find(text)
         answer = self.frame.scope.find(
             Space.VALUE, text.partition("[")[0].partition(".")[0].upper()

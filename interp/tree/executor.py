@@ -10,17 +10,28 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from interp.blocks import routine_at, way_to
-from interp.events import Sink
-from interp.executor import Reader
-from interp.faults import Fault, LinkError, RuntimeFailure, fault
-from interp.inspection import Seen
-from interp.program import CheckedProgram, Limits
-from interp.requests import At, Code, Crash, End, Fail, Read, Request, Slice, StopAdvance, Value
+from interp.port.events import Sink
+from interp.port.executor import Reader
+from interp.port.inspection import Seen
+from interp.port.requests import (
+    At,
+    Code,
+    Crash,
+    End,
+    Fail,
+    Read,
+    Request,
+    Slice,
+    StopAdvance,
+    Value,
+)
+from interp.program.load import CheckedProgram, Limits
+from interp.program.statement_paths import routine_at, way_to
+from interp.program.variables import MOST_CELLS, too_large
 from interp.tree.memory import fill_data
 from interp.tree.run import Call, Frame, Guard, Run, Steps
 from interp.tree.statements import Resumed, Selected, Statements
-from interp.variables import MOST_CELLS, too_large
+from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 
 __all__ = ["TreeExecutor"]
 
@@ -49,7 +60,7 @@ class _Active:
 
 
 class TreeExecutor:
-    """Runs a checked program from a routine of its first file on; see `interp.executor.Executor`.
+    """Runs a checked program from a routine of its first file (`interp.port.executor.Executor`).
 
     ``routine`` is the first one where it is not given. ``beside`` is an executor of the same
     program whose data lists it shares. Raises `LinkError` where it cannot begin.
@@ -123,7 +134,7 @@ class TreeExecutor:
         self._final = None
 
     def evaluate(self, code: Code, read: Reader) -> Value:
-        """The value of a condition; raises `interp.faults.Fault`.
+        """The value of a condition; raises `interp.values.faults.Fault`.
 
         What a condition calls may compute and read; `LinkError` where it does more.
         """
@@ -165,11 +176,11 @@ class TreeExecutor:
         self._open, self._is_asked, self._resumed = None, False, Resumed()
 
     def look(self, text: str) -> Seen | None:
-        """A variable where the program is; see `interp.inspection`."""
+        """A variable where the program is; see `interp.port.inspection`."""
         return Statements(self._run, self._stack[-1].frame).look(text)
 
     def select(self, line: int) -> None:
-        """Go on at a line of the routine that runs; see `interp.inspection`."""
+        """Go on at a line of the routine that runs; see `interp.port.inspection`."""
         frame = self._stack[-1].frame
         routine = routine_at(self._run.program, frame.unit.module.path, frame.name)
         way = () if routine is None else way_to(routine, line)

@@ -10,14 +10,23 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from grammar import ast
-from grammar.types import BOOL, INT, REAL, UNKNOWN, Aggregate, Enumeration, Structure, Type
-from interp.faults import LinkError, fault
-from interp.operators import apply, apply_unary
+from grammar.semantics.types import (
+    BOOL,
+    INT,
+    REAL,
+    UNKNOWN,
+    Aggregate,
+    Enumeration,
+    Structure,
+    Type,
+)
+from grammar.syntax import ast
 from interp.tree.designators import Designators
 from interp.tree.places import Local, member
 from interp.tree.run import Steps
-from interp.values import (
+from interp.values.faults import LinkError, fault
+from interp.values.operators import apply, apply_unary
+from interp.values.values import (
     EnumValue,
     Value,
     constant,

@@ -9,17 +9,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from weakref import WeakKeyDictionary
 
-from grammar import ast
-from grammar.link import Project
-from grammar.scopes import Found
-from grammar.symbols import Symbol
-from interp.faults import LinkError
-from interp.program import CheckedProgram, Unit
+from grammar.semantics.link import Project
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Symbol
+from grammar.syntax import ast
+from interp.program.load import CheckedProgram, Unit
+from interp.program.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
 from interp.tree.calls import Calls
 from interp.tree.places import Local, Place, fresh
 from interp.tree.run import Frame, Run, at_once
-from interp.values import Value, copied
-from interp.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
+from interp.values.faults import LinkError
+from interp.values.values import Value, copied
 
 __all__ = ["fill_data", "system_values"]
 

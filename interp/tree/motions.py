@@ -1,14 +1,12 @@
 """Motions, triggers, interrupts and cyclic signals: statements that only ask the world.
 
-What is to be done or looked at later is handed over as a `interp.requests.Code`.
+What is to be done or looked at later is handed over as a `interp.port.requests.Code`.
 """
 
 from __future__ import annotations
 
-from grammar import ast
-from interp.faults import LinkError
-from interp.phrases import is_constant_output, signal_name
-from interp.requests import (
+from grammar.syntax import ast
+from interp.port.requests import (
     BrakeArm,
     DeclareInterrupt,
     Move,
@@ -23,10 +21,12 @@ from interp.requests import (
     SwitchInterrupt,
     SwitchSignal,
 )
+from interp.program.reads import is_constant_output, signal_name
 from interp.tree.calls import Calls
 from interp.tree.places import Remote, of_type
 from interp.tree.run import Steps
-from interp.values import Value, copied, text_of
+from interp.values.faults import LinkError
+from interp.values.values import Value, copied, text_of
 
 __all__ = ["Motions"]
 

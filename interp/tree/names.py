@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from grammar.types import Type
-from interp.faults import Fault, LinkError
+from grammar.semantics.types import Type
 from interp.tree.places import Local, Place, element, member
-from interp.values import Value
+from interp.values.faults import Fault, LinkError
+from interp.values.values import Value
 
 __all__ = ["find_text"]
 

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from grammar.types import UNKNOWN, Array, Structure, Type
-from interp.faults import LinkError, fault
-from interp.requests import Path
-from interp.values import (
+from grammar.semantics.types import UNKNOWN, Array, Structure, Type
+from interp.port.requests import Path
+from interp.values.faults import LinkError, fault
+from interp.values.values import (
     ArrayValue,
     StructureValue,
     Value,

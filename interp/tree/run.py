@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, TypeVar
 
-from grammar import ast
-from grammar.scopes import Scope
-from grammar.symbols import Symbol
-from grammar.types import Type
-from interp.builtins import Randomness
-from interp.events import Sink, wanting
-from interp.faults import BudgetExhausted, LinkError
-from interp.program import CheckedProgram, Limits, Routine, Unit
-from interp.requests import At, Code, Request, Slice
+from grammar.semantics.scopes import Scope
+from grammar.semantics.symbols import Symbol
+from grammar.semantics.types import Type
+from grammar.syntax import ast
+from interp.port.events import Sink, wanting
+from interp.port.requests import At, Code, Request, Slice
+from interp.program.load import CheckedProgram, Limits, Routine, Unit
+from interp.program.variables import cells_of_routine
 from interp.tree.places import Local, Place, Remote
-from interp.variables import cells_of_routine
+from interp.values.builtins import Randomness
+from interp.values.faults import BudgetExhausted, LinkError
 
 __all__ = ["Call", "Frame", "Guard", "Handed", "Run", "Steps", "at_once"]
 

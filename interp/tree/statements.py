@@ -11,17 +11,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from grammar import ast
-from grammar.types import INT, Array
-from interp import requests
-from interp.faults import Fault, LinkError, fault
-from interp.operators import apply
-from interp.requests import Poll, Wait, Write
+from grammar.semantics.types import INT, Array
+from grammar.syntax import ast
+from interp.port import requests
+from interp.port.requests import Poll, Wait, Write
+from interp.program.variables import is_complete
 from interp.tree.motions import Motions
 from interp.tree.places import Remote, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
-from interp.values import Value, known
-from interp.variables import is_complete
+from interp.values.faults import Fault, LinkError, fault
+from interp.values.operators import apply
+from interp.values.values import Value, known
 
 __all__ = ["Resumed", "Selected", "Statements"]
 

@@ -14,11 +14,11 @@ from krl.commands.bench_mutation import mutation
 from krl.commands.bench_programs import programs
 from krl.commands.bench_real_code import real_code
 from krl.commands.bench_vm import bench_vm
-from krl.door import FINE, Unusable
-from krl.figures import figures
+from krl.errors import FINE, Unusable
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 __all__ = ["app"]
 
@@ -57,9 +57,9 @@ def recover(
     One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
     """
     from grammar import GrammarError, read_file
-    from grammar.generate import GRAMMAR
-    from recovery.ingest import IngestError
-    from recovery.speed import measure, steps
+    from grammar.notation.generate import GRAMMAR
+    from recovery.bench.survey_speed import measure, steps
+    from support.files.discovery import IngestError
 
     check_files(json_file)
     wanted = _sizes(sizes)
@@ -90,8 +90,8 @@ def check(
     ] = "1,10",
 ) -> int:
     """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more."""
-    from recovery.check_speed import measure_check, steps
-    from recovery.ingest import IngestError
+    from recovery.bench.check_speed import measure_check, steps
+    from support.files.discovery import IngestError
 
     check_files(json_file)
     wanted = _sizes(sizes)

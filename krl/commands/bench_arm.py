@@ -6,12 +6,12 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.door import FINE
+from krl.errors import FINE
 from krl.extras import expected_extras
-from krl.figures import figures
 from krl.options import JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 __all__ = ["arm"]
 
@@ -28,7 +28,7 @@ def arm(
     """
     check_files(json_file)
     with expected_extras():
-        from interp.robot.benchmark import STEPS, measure
+        from interp.bench.arm import STEPS, measure
     with progress_bar("measuring", STEPS) as advance:
         record = {"bench": "arm", **measure(motions, advance)}
     if json_file is not None:

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.door import FINE, Unusable
+from krl.errors import FINE, Unusable
 from krl.extras import expected_extras
-from krl.figures import figures
 from krl.options import JobsOption, JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 __all__ = ["conform"]
 
@@ -32,9 +32,9 @@ def conform(
     """
     check_files(json_file)
     with expected_extras():
-        from conformance.case import CaseError, find_cases
         from conformance.sensitivity import measure, speed_of
         from conformance.sensitivity.trial import all_faults
+        from conformance.suite.case import CaseError, find_cases
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in groups:

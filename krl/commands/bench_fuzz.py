@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from krl.door import FINE
+from krl.errors import FINE
 from krl.options import JobsOption, JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
 
 __all__ = ["fuzz"]
 
@@ -27,8 +27,8 @@ def fuzz(
     The faults are made from the table of instructions: operands exchanged, results a little off,
     jumps that go the wrong way, faults that are not raised.
     """
-    from conformance.differential.hunt import hunt, record_of
-    from conformance.differential.mutants import mutants
+    from conformance.differential.fault_catalogue import mutants
+    from conformance.differential.fault_detection import hunt, record_of
 
     check_files(json_file)
     with progress_bar("hunting mutants", len(mutants())) as bar:

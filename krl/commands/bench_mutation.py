@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from krl.door import FINE, Unusable
-from krl.figures import figures
+from krl.errors import FINE, Unusable
 from krl.options import JobsOption, JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 __all__ = ["mutation"]
 
@@ -61,12 +61,12 @@ def mutation(
 ) -> int:
     """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
     from grammar import GrammarError, read_file
-    from grammar.generate import GRAMMAR
-    from recovery.assessment import examine
-    from recovery.ingest import IngestError
-    from recovery.negatives import NegativeError, load
-    from recovery.specimens import choose, material_for
-    from recovery.stability import rankings, same_ranking
+    from grammar.notation.generate import GRAMMAR
+    from recovery.bench.assessment import examine
+    from recovery.bench.specimens import choose, material_for
+    from recovery.bench.stability import rankings, same_ranking
+    from recovery.negatives.negatives import NegativeError, load
+    from support.files.discovery import IngestError
 
     check_files(json_file)
     try:

@@ -12,15 +12,15 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.run import Executor, Robot
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
-from krl.programs import sources_below
+from krl.output_files import check_files, write_json
+from krl.program_loading import sources_below
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
-    from grammar.source import Source
-    from interp.main_programs import MainProgram
+    from grammar.syntax.source import Source
+    from interp.bench.main_programs import MainProgram
 
 __all__ = ["programs"]
 
@@ -65,9 +65,9 @@ def programs(
     The inputs that a WAIT FOR waits for come after 1 s, but for those that a script sets itself. A
     program waits when its arm has stood for 20 s. Exit status 1 after a defect of ours.
     """
-    from interp.controller.script import ScriptError
+    from interp.bench.main_programs import main_programs, run_main, survey_profile
+    from interp.controller.input_script import ScriptError
     from interp.executors import available
-    from interp.main_programs import main_programs, run_main, survey_profile
     from interp.session import Setup
 
     check_files(json_file)

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.door import FINDINGS, FINE, Unusable, one_line
-from krl.figures import figures
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
-from krl.programs import sources_below
+from krl.output_files import check_files, write_json
+from krl.program_loading import sources_below
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 if TYPE_CHECKING:
-    from interp.trials import Trial, Unread
+    from interp.bench.routine_trials import Trial, Unread
 
 __all__ = ["real_code"]
 
@@ -58,8 +58,8 @@ def real_code(
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
     actions entered, and some requests fail. Exit status 1 where executors differ.
     """
+    from interp.bench.routine_trials import Effort, Trial, Unread, trials
     from interp.executors import available
-    from interp.trials import Effort, Trial, Unread, trials
 
     check_files(json_file)
     chosen = list(dict.fromkeys(executors or available()))

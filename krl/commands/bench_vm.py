@@ -8,11 +8,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.door import FINE, Unusable
-from krl.figures import figures
+from krl.errors import FINE, Unusable
 from krl.options import JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
+from krl.text_table import figures
 
 __all__ = ["bench_vm"]
 
@@ -39,8 +39,8 @@ def bench_vm(
 
     Slow executors get less of the same work; the figures are times for a unit of it.
     """
-    from interp.kernels import KERNELS
-    from interp.speed import MeasurementError, measure_executors, steps
+    from interp.bench.executor_speed import MeasurementError, measure_executors, steps
+    from interp.bench.kernels import KERNELS
 
     check_files(json_file)
     names = [name.strip() for name in kernels.split(",") if name.strip()] or list(KERNELS)

@@ -14,15 +14,15 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JobsOption
+from krl.output_files import check_files, whole
 from krl.progress import progress_bar
-from krl.writing import check_files, whole
 
 if TYPE_CHECKING:
-    from grammar.diagnostics import Diagnostic
-    from grammar.suppression import Selection
-    from recovery.checkup import Checkup
+    from grammar.check.batch import Checkup
+    from grammar.diagnostics.diagnostic import Diagnostic
+    from grammar.diagnostics.suppression import Selection
 
 __all__ = ["check"]
 
@@ -80,9 +80,9 @@ def check(
     Exit status 1 where there are errors or warnings; notes alone leave it 0. A comment
     '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file.
     """
-    from grammar.suppression import Selection
-    from recovery.checkup import Wishes, checkup
-    from recovery.ingest import IngestError
+    from grammar.check.batch import Wishes, checkup
+    from grammar.diagnostics.suppression import Selection
+    from support.files.discovery import IngestError
 
     check_files(out)
     try:
@@ -162,9 +162,9 @@ def _write(kept: "list[Diagnostic]", found: "Checkup", format_: Format, out: Pat
 def _written(
     kept: "list[Diagnostic]", lines: Mapping[tuple[str, int], str], format_: Format
 ) -> Iterator[str]:
-    from grammar.diagnostics import records
-    from grammar.rendering import rendered
-    from grammar.sarif import sarif
+    from grammar.diagnostics.diagnostic import records
+    from grammar.diagnostics.rendering import rendered
+    from grammar.diagnostics.sarif import sarif
 
     if format_ is Format.TEXT:
         yield from rendered(kept, lambda path, number: lines.get((path, number), ""))
@@ -207,8 +207,8 @@ def _coloured(line: str) -> Text:
 
 def _sum_up(kept: "Iterable[Diagnostic]", found: "Checkup") -> None:
     """What was checked and found, on one line of stderr, and what was left out."""
-    from grammar.diagnostics import Diagnostic
-    from grammar.rendering import summary
+    from grammar.diagnostics.diagnostic import Diagnostic
+    from grammar.diagnostics.rendering import summary
 
     told: list[Diagnostic] = list(kept)
     for skipped in found.skipped[:_SKIPPED_SHOWN]:

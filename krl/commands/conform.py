@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable, one_line, shown
+from krl.errors import FINDINGS, FINE, Unusable, one_line, shown
 from krl.extras import expected_extras, need
 from krl.options import JobsOption, JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
-    from conformance.case import Case
     from conformance.runner import CaseResult
+    from conformance.suite.case import Case
 
 __all__ = ["conform"]
 
@@ -107,7 +107,7 @@ def conform(
 @contextmanager
 def _expected_errors() -> Iterator[None]:
     """What is not installed, here or on workers, and workers that cannot do the work."""
-    from recovery.workers import WorkersError
+    from support.parallel.executor import WorkersError
 
     try:
         with expected_extras():
@@ -167,7 +167,7 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
 
 
 def _cases(words: Sequence[str]) -> "list[Case]":
-    from conformance.case import CASES, CaseError, find_cases, selected
+    from conformance.suite.case import CASES, CaseError, find_cases, selected
 
     outside = [Path(word) for word in words if Path(word).exists()]
     try:
@@ -181,13 +181,13 @@ def _cases(words: Sequence[str]) -> "list[Case]":
 
 
 def _one_case(path: Path) -> "list[Case]":
-    from conformance.case import read_case
+    from conformance.suite.case import read_case
 
     return [read_case(path, path.parent)]
 
 
 def _chosen(wanted: list[str] | None, what: str) -> list[str]:
-    from conformance.observing import EXECUTORS, ROBOTS, Setup, missing
+    from conformance.judging.observe import EXECUTORS, ROBOTS, Setup, missing
 
     known = EXECUTORS if what == "executor" else ROBOTS
     if not wanted:
@@ -207,8 +207,8 @@ def _run(
     jobs: int | None,
     scheduler: str | None,
 ) -> "list[CaseResult]":
+    from conformance.judging.verdicts import KnownFailures
     from conformance.runner import run_cases
-    from conformance.verdicts import KnownFailures
 
     try:
         known = KnownFailures.load()
@@ -252,8 +252,8 @@ def _write(
 
 def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
     """What failed, case by case, then the figures."""
+    from conformance.judging.verdicts import VERDICTS
     from conformance.lint import coverage
-    from conformance.verdicts import VERDICTS
 
     failed = [one for one in results if one.verdict == "fail"]
     for one in failed[:_SHOWN]:
@@ -288,8 +288,8 @@ def _tell_failure(one: "CaseResult") -> None:
 
 
 def _lint(words: Iterable[str]) -> int:
-    from conformance.case import CASES
     from conformance.lint import lint
+    from conformance.suite.case import CASES
 
     folders = [Path(word) for word in words] or [CASES]
     for folder in folders:
@@ -304,9 +304,9 @@ def _lint(words: Iterable[str]) -> int:
 
 def _import(words: Sequence[str], json_file: Path | None) -> int:
     """Judge a recording: what it fails, and what it says of rules that are unconfirmed."""
-    from conformance.case import CaseError, find_cases
     from conformance.record import record_of
     from conformance.recording import Recording, RecordingError, answers, judge_recording
+    from conformance.suite.case import CaseError, find_cases
 
     if len(words) != 1:
         raise Unusable("krl conform import takes one file")

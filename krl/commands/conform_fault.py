@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from krl.door import Unusable
+from krl.errors import Unusable
 
 if TYPE_CHECKING:
     from conformance.sensitivity import Fault

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.door import FINDINGS, FINE, one_line
+from krl.errors import FINDINGS, FINE, one_line
+from krl.output_files import write_json
 from krl.progress import progress_bar
-from krl.writing import write_json
 
 if TYPE_CHECKING:
-    from conformance.case import Case
+    from conformance.suite.case import Case
 
 __all__ = ["check_laws"]
 

@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 
 from krl.commands import construct_accept, construct_oracle
-from krl.constructs import LEDGER, PRELIMINARY, expected_errors, print_table, there
-from krl.door import FINE, Unusable, one_line
-from krl.writing import check_files, write_json
+from krl.construct_ledger import LEDGER, PRELIMINARY, expected_errors, print_table, there
+from krl.errors import FINE, Unusable, one_line
+from krl.output_files import check_files, write_json
 
 __all__ = ["app"]
 
@@ -29,9 +29,9 @@ def show_all(
     ] = None,
 ) -> int:
     """List the constructs of the ledger, and those that wait for the verdict of an oracle."""
-    from recovery.ledger import Ledger
-    from recovery.oracle import reason_to_ask
-    from recovery.overview import row_of
+    from recovery.ledger.ledger import Ledger
+    from recovery.ledger.oracle import reason_to_ask
+    from recovery.ledger.overview import row_of
 
     check_files(json_file)
     with expected_errors():
@@ -62,9 +62,9 @@ def show(
     wanted: Annotated[str, typer.Argument(metavar="ID", help="Its number, ID or name.")],
 ) -> int:
     """Show everything about a construct: edits and their difference, evidence, examples, effect."""
-    from recovery.ingest import printable
-    from recovery.ledger import Ledger, preliminary_of
-    from recovery.overview import difference, page_of
+    from recovery.ledger.ledger import Ledger, preliminary_of
+    from recovery.ledger.overview import difference, page_of
+    from support.files.discovery import printable
 
     with expected_errors():
         ledger = Ledger.read(there(LEDGER))
@@ -88,9 +88,9 @@ def propose(
 ) -> int:
     """Write a proposal of a survey as a file ready for review."""
     from grammar import GrammarError
-    from grammar.documents import json_of, read_bytes
-    from recovery.construct import LedgerError
-    from recovery.draft import propose as write
+    from recovery.ledger.construct import LedgerError
+    from recovery.ledger.draft import propose as write
+    from support.files.untrusted import json_of, read_bytes
 
     try:
         record = json_of(read_bytes(survey).decode("utf-8"))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.constructs import (
+from krl.construct_ledger import (
     GENERATED,
     GRAMMAR,
     LEDGER,
@@ -16,15 +16,15 @@ from krl.constructs import (
     print_refusals,
     there,
 )
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JobsOrOneOption
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
     from grammar import Grammar
-    from recovery.acceptance import Acceptance, Home
-    from recovery.ledger import Ledger
-    from recovery.standing import Corpora
+    from recovery.ledger.acceptance import Acceptance, Home
+    from recovery.ledger.baseline import Corpora
+    from recovery.ledger.ledger import Ledger
 
 __all__ = ["accept", "replay", "weigh"]
 
@@ -58,9 +58,9 @@ def weigh(
 
     Several are weighed one upon the other. Exit status 1 when something would be refused.
     """
-    from recovery.construct_file import text_of
-    from recovery.ledger import Ledger
-    from recovery.together import write_together
+    from recovery.ledger.construct_file import text_of
+    from recovery.ledger.ledger import Ledger
+    from support.files.transaction import write_together
 
     with expected_errors():
         found = _weighed(Ledger.read(there(LEDGER)), files, corpus, jobs)
@@ -87,8 +87,8 @@ def accept(
     was accepted before is weighed again at its place. Exit status 1 when something is refused.
     """
     from grammar import read_file
-    from recovery.acceptance import Refused, write
-    from recovery.ledger import Ledger
+    from recovery.ledger.acceptance import Refused, write
+    from recovery.ledger.ledger import Ledger
 
     home = _home()
     if shutil.which("java") is None:
@@ -123,8 +123,8 @@ def replay(
     ] = None,
 ) -> int:
     """Rebuild the grammar: the restrictive start and every accepted construct, in order."""
-    from recovery.ledger import Ledger, findings, preliminary_of
-    from recovery.ledger import replay as replayed
+    from recovery.ledger.ledger import Ledger, findings, preliminary_of
+    from recovery.ledger.ledger import replay as replayed
 
     if check and (out is not None or until is not None):
         raise Unusable("--check goes with neither --out nor --until")
@@ -150,7 +150,7 @@ def replay(
 
 
 def _home() -> "Home":
-    from recovery.acceptance import Home
+    from recovery.ledger.acceptance import Home
 
     return Home(PRELIMINARY, GRAMMAR, GENERATED, LEDGER)
 
@@ -162,8 +162,8 @@ def _weighed(
     jobs: int | None,
     current: "Grammar | None" = None,
 ) -> "Acceptance":
-    from recovery.acceptance import enter
-    from recovery.ledger import preliminary_of
+    from recovery.ledger.acceptance import enter
+    from recovery.ledger.ledger import preliminary_of
 
     given = list({c.file: c for c in map(ledger.take, files)}.values())
     preliminary, corpora = preliminary_of(there(PRELIMINARY)), _corpora(corpus, jobs)
@@ -172,8 +172,8 @@ def _weighed(
 
 
 def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
-    from recovery.negatives import load
-    from recovery.standing import Corpora
+    from recovery.ledger.baseline import Corpora
+    from recovery.negatives.negatives import load
 
     if not paths:
         paths = [_OPEN] if _OPEN.is_dir() else []

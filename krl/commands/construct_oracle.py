@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.constructs import LEDGER, expected_errors, print_table, there
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.construct_ledger import LEDGER, expected_errors, print_table, there
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
-    from recovery.construct import Construct
-    from recovery.oracle import Oracle
+    from recovery.ledger.construct import Construct
+    from recovery.ledger.oracle import Oracle
 
 __all__ = ["oracle"]
 
@@ -51,9 +51,9 @@ def oracle(
 
     Exit status 1 when an answer differs from the ledger.
     """
-    from recovery.ledger import Ledger
-    from recovery.oracle import CommandOracle, OracleError, programs_of, reason_to_ask
-    from recovery.verdicts import RecordedOracle, write_bundle
+    from recovery.ledger.ledger import Ledger
+    from recovery.ledger.oracle import CommandOracle, OracleError, programs_of, reason_to_ask
+    from recovery.ledger.verdicts import RecordedOracle, write_bundle
 
     if sum(option is not None for option in (bundle, record, command)) > 1:
         raise Unusable("only one of --bundle, --record and --command")
@@ -91,9 +91,9 @@ def oracle(
 
 def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
     """Ask about constructs, write the verdicts into their files, say what was answered."""
-    from recovery.construct_file import text_of
-    from recovery.oracle import judged
-    from recovery.together import write_together
+    from recovery.ledger.construct_file import text_of
+    from recovery.ledger.oracle import judged
+    from support.files.transaction import write_together
 
     with progress_bar("asking", len(constructs)) as bar:
         found = []

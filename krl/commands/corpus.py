@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable, one_line, shown
+from krl.errors import FINDINGS, FINE, Unusable, one_line, shown
 
 if TYPE_CHECKING:
-    from recovery.sources import PublicSource
+    from recovery.corpus.public import PublicSource
 
 __all__ = ["app"]
 
@@ -27,7 +27,7 @@ app = typer.Typer(help="List the programs of the corpus, fetch the public ones, 
 @app.command("list")
 def show() -> int:
     """Show our own cells and the public repositories, and how much of them is here."""
-    from recovery.sources import absent
+    from recovery.corpus.public import absent
 
     sources = _sources()
     typer.echo(f"Own programs in {CORPUS / 'programs'}")
@@ -63,7 +63,7 @@ def fetch(
     The files belong to other people. Exit status 1 when some could not be had.
     """
     from krl.progress import progress_bar
-    from recovery import sources as room
+    from recovery.corpus import public as room
 
     sources = _sources()
     if shutil.which("git") is None:
@@ -109,8 +109,8 @@ def synth(
 
     The same size and seed give the same files everywhere. They are no evidence for any grammar.
     """
+    from grammar.generation.cells import write_cells
     from krl.progress import progress_bar
-    from recovery.synth import write_cells
 
     wanted = _bytes(size)
     folder = out or _SYNTHETIC / f"{wanted}-{seed}"
@@ -138,7 +138,7 @@ def _bytes(text: str) -> int:
 
 
 def _sources() -> "tuple[PublicSource, ...]":
-    from recovery.sources import SourceListError, read_sources
+    from recovery.corpus.public import SourceListError, read_sources
 
     if not CORPUS.is_dir():
         raise Unusable(f"no {CORPUS} folder here: run this in a checkout of the workbench")

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.door import FINDINGS, FINE, UNUSABLE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, UNUSABLE, Unusable, one_line
 
 if TYPE_CHECKING:
-    from recovery.ingest import Found, Skipped
+    from support.files.discovery import Found, Skipped
 
 __all__ = ["format_programs"]
 
@@ -49,7 +49,7 @@ def format_programs(
     are. Exit status 1 where a file has syntax errors and was left alone, and where one would change
     but may not be written: with --check, and in archives.
     """
-    from recovery.ingest import IngestError, discover
+    from support.files.discovery import IngestError, discover
 
     counts: Counter[_Outcome] = Counter()
     try:
@@ -69,8 +69,8 @@ def format_programs(
 
 def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     """Format one file, and say on one line what is not as it should be."""
-    from grammar.layout import LayoutDefect, layouter
-    from recovery.ingest import Skipped, decode, read
+    from grammar.syntax.formatter import LayoutDefect, layouter
+    from support.files.discovery import Skipped, decode, read
 
     data = found if isinstance(found, Skipped) else read(found)
     source = data.reason if isinstance(data, Skipped) else decode(data)

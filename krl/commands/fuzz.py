@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from krl.door import FINDINGS, FINE, Unusable
+from krl.errors import FINDINGS, FINE, Unusable
 from krl.options import JobsOption, JsonOption
+from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.writing import check_files, write_json
 
 if TYPE_CHECKING:
     from conformance.differential.campaign import Finding, Findings
@@ -47,7 +47,7 @@ def fuzz(
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of
-    from recovery.workers import WorkersError
+    from support.parallel.executor import WorkersError
 
     check_files(json_file)
     names = _chosen(executor or [])
@@ -81,7 +81,7 @@ def _chosen(wanted: list[str]) -> list[str]:
 
 
 def _tell(found: "Findings", seconds: float) -> None:
-    from conformance.differential.coverage import missing
+    from conformance.differential.construct_coverage import missing
 
     console = Console(highlight=False)
     ends = ", ".join(f"{count:,} with {word}" for word, count in sorted(found.ends.items()))

@@ -12,12 +12,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from krl.constructs import expected_errors
-from krl.door import FINE, Unusable, one_line
+from krl.construct_ledger import expected_errors
+from krl.errors import FINE, Unusable, one_line
 from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
+from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
-from krl.terminal import share
-from krl.writing import check_targets, write_json
+from krl.survey_summary import share
 
 __all__ = ["growth"]
 
@@ -39,9 +39,9 @@ def growth(
     ] = None,
 ) -> int:
     """Replay the ledger over KRL source: parse rate and metrics of the grammar, step by step."""
-    from grammar.generate import GRAMMAR
-    from recovery.growth import growth as replayed
-    from recovery.ledger import Ledger, preliminary_of, replay
+    from grammar.notation.generate import GRAMMAR
+    from recovery.growth.growth import growth as replayed
+    from recovery.ledger.ledger import Ledger, preliminary_of, replay
     from reports import write_growth_page
 
     roots = corpus_or_ours(paths)

@@ -6,7 +6,7 @@ from typing import Annotated, BinaryIO, cast
 
 import typer
 
-from krl.door import FINE, Unusable
+from krl.errors import FINE, Unusable
 from krl.extras import expected_extras
 
 __all__ = ["lsp"]
@@ -26,7 +26,7 @@ def lsp(
     """
     logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.CRITICAL)
     with expected_extras():
-        from krl.language.server import server
+        from krl.language_server.server import server
     server().start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)))
     return FINE
 

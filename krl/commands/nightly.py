@@ -18,8 +18,8 @@ from typing import IO, Annotated, Any
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable, one_line
-from krl.writing import write_json
+from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.output_files import write_json
 
 __all__ = ["nightly"]
 
@@ -252,7 +252,7 @@ def _pass_on(stream: IO[bytes], said: list[str], is_seen: bool) -> None:
 
 def _record(folder: Path, name: str) -> dict[str, Any] | None:
     """The record of a step; ``None`` where there is none that can be read."""
-    from grammar.documents import json_of, read_bytes
+    from support.files.untrusted import json_of, read_bytes
 
     try:
         record = json_of(read_bytes(folder / f"{name}.json").decode("utf-8"))

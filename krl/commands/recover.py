@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.constructs import expected_errors
-from krl.door import FINDINGS, FINE
+from krl.construct_ledger import expected_errors
+from krl.errors import FINDINGS, FINE
 from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
+from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
-from krl.terminal import print_survey
-from krl.writing import check_targets, write_json
+from krl.survey_summary import print_survey
 
 if TYPE_CHECKING:
     from grammar import Grammar
-    from recovery.growth import Steps
-    from recovery.negatives import Negative
-    from recovery.survey import Survey
+    from recovery.growth.growth import Steps
+    from recovery.negatives.negatives import Negative
+    from recovery.survey.survey import Survey
 
 __all__ = ["recover"]
 
@@ -62,9 +62,9 @@ def recover(
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
     from grammar import read_file
-    from grammar.generate import GRAMMAR
-    from recovery.ledger import Ledger, replay
-    from recovery.negatives import load
+    from grammar.notation.generate import GRAMMAR
+    from recovery.ledger.ledger import Ledger, replay
+    from recovery.negatives.negatives import load
     from reports import write_survey_page
 
     roots = corpus_or_ours(paths)
@@ -133,7 +133,7 @@ class _Surveyor:
             )
 
     def _survey(self, grammar: "Grammar", label: str) -> "Survey":
-        from recovery.survey import survey
+        from recovery.survey.survey import survey
 
         with progress_bar(label) as bar:
             return survey(

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.door import FINE, Unusable
+from krl.errors import FINE, Unusable
 from krl.extras import expected_extras
 
 if TYPE_CHECKING:
-    from interp.robot.frames import Pose
-    from interp.robot.kinematics import Arm
+    from interp.robot.kinematics.frames import Pose
+    from interp.robot.kinematics.solver import Arm
 
 __all__ = ["app"]
 
@@ -81,10 +81,10 @@ class _Point:
 
 def _arm(path: Path) -> "Arm":
     """The arm of a $machine.dat; imports are late because they take longer than most commands."""
-    from grammar.documents import read_bytes
-    from interp.robot.data_list import DataListError
-    from interp.robot.machine import MachineDataError, read_machine
-    from recovery.decode import decode
+    from interp.robot.kinematics.data_list import DataListError
+    from interp.robot.kinematics.machine_data import MachineDataError, read_machine
+    from support.files.decode import decode
+    from support.files.untrusted import read_bytes
 
     source = decode(read_bytes(path))
     if isinstance(source, str):
@@ -94,7 +94,7 @@ def _arm(path: Path) -> "Arm":
     except (DataListError, MachineDataError) as error:
         raise Unusable(str(error)) from error
     with expected_extras():
-        from interp.robot.kinematics import Arm
+        from interp.robot.kinematics.solver import Arm
     try:
         return Arm(machine)
     except MachineDataError as error:
@@ -102,9 +102,9 @@ def _arm(path: Path) -> "Arm":
 
 
 def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
-    from interp.faults import Fault
-    from interp.robot.placement import Placement
-    from interp.robot.targets import solve
+    from interp.robot.kinematics.placement import Placement
+    from interp.robot.kinematics.targets import solve
+    from interp.values.faults import Fault
 
     placement = Placement(point.base or base, point.tool or tool, arm.machine.robroot)
     answer: dict[str, object] = {"id": point.name, "reachable": False, "joints": None}
@@ -122,7 +122,7 @@ def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, 
 
 
 def _read_points(path: Path) -> list[_Point]:
-    from grammar.documents import read_bytes
+    from support.files.untrusted import read_bytes
 
     try:
         text = read_bytes(path).decode("utf-8-sig")
@@ -139,7 +139,7 @@ def _read_points(path: Path) -> list[_Point]:
 
 
 def _point(where: str, given: object) -> _Point:
-    from interp.robot.frames import Pose
+    from interp.robot.kinematics.frames import Pose
 
     members = _members(where, given)
     if "id" not in members:
@@ -156,7 +156,7 @@ def _point(where: str, given: object) -> _Point:
 
 def _frame(where: str, given: object) -> "Pose | None":
     """A frame; components left out are 0."""
-    from interp.robot.frames import Pose
+    from interp.robot.kinematics.frames import Pose
 
     if given is None:
         return None
@@ -201,7 +201,7 @@ def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
 
 def _listed(option: str, text: str) -> "Pose":
     """A frame from six numbers with commas between them."""
-    from interp.robot.frames import Pose
+    from interp.robot.kinematics.frames import Pose
 
     try:
         numbers = [float(part) for part in text.split(",")]

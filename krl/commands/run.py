@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
-from krl.door import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.extras import expected_extras
-from krl.programs import load_program
+from krl.output_files import check_files, whole
+from krl.program_loading import load_program
 from krl.progress import progress_bar
-from krl.writing import check_files, whole
 
 if TYPE_CHECKING:
     from interp.controller.trace import TraceEvent
-    from interp.program import CheckedProgram
+    from interp.program.load import CheckedProgram
     from interp.session import Run, Setup
 
 __all__ = ["run"]
@@ -113,8 +113,8 @@ def run(
     its end or to a HALT, 1 after a fault or where its time or budget was used up.
     """
     with _expected_errors():
+        from interp.controller.input_script import Script
         from interp.controller.profile import Profile
-        from interp.controller.script import Script
         from interp.session import Setup, available
 
         chosen = executor.value if executor is not None else available()[-1]
@@ -147,7 +147,7 @@ def run(
 @contextmanager
 def _expected_errors() -> Iterator[None]:
     """Turn what the rooms raise about input into what the door prints."""
-    from interp.faults import RuntimeFailure
+    from interp.values.faults import RuntimeFailure
 
     try:
         with expected_extras():
@@ -157,7 +157,7 @@ def _expected_errors() -> Iterator[None]:
 
 
 def _text(file: Path) -> str:
-    from grammar.documents import read_text
+    from support.files.untrusted import read_text
 
     if file.is_dir():
         raise Unusable(f"{file}: a folder, not a file")
@@ -179,7 +179,7 @@ def _check_targets(
             "--path: the robot none takes no set-points; say --robot kinematic or mujoco"
         )
     if video is not None:
-        from interp.robot.video import VideoError, check
+        from interp.robot.simulation.video import VideoError, check
 
         if robot is not Robot.MUJOCO:
             raise Unusable("--video: only the MuJoCo arm can be filmed; say --robot mujoco")
@@ -240,7 +240,7 @@ def _write(
 
 
 def _film(done: "Run", target: Path) -> None:
-    from interp.robot.video import VideoError, frame_count, write_video
+    from interp.robot.simulation.video import VideoError, frame_count, write_video
 
     assert done.path is not None
     shown = done.path.axes if done.path.axes_measured is None else done.path.axes_measured
@@ -265,7 +265,7 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
 
 def _record(done: "Run", program: "CheckedProgram", setup: "Setup") -> dict[str, Any]:
     """What the page of a run is made of; see `reports.run_page.write_run_page`."""
-    from interp.session_record import record_of
+    from interp.run_record import record_of
 
     return {
         **record_of(done, program, setup),

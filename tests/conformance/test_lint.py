@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from conformance.case import CASES, find_cases
+from conformance.judging.verdicts import KnownFailures
 from conformance.lint import SUITES, coverage, lint
-from conformance.registry import registry
-from conformance.verdicts import KnownFailures
+from conformance.suite.case import CASES, find_cases
+from conformance.suite.registry import registry
 
 GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
 

@@ -6,12 +6,12 @@ from random import Random
 import pytest
 
 from conformance.differential import Sample
-from conformance.metamorphic import Law, laws, of_cell, record_of, run_law, try_laws
-from conformance.metamorphic.comparing import same_axes, same_effects, same_geometry, same_trace
-from conformance.metamorphic.moving import moving_program
-from conformance.metamorphic.program import Program, Run
-from conformance.metamorphic.rewriting import integer, rewritten
-from grammar import ast
+from conformance.metamorphic import Law, laws, motion_laws, record_of, run_law, try_laws
+from conformance.metamorphic.comparison import same_axes, same_effects, same_geometry, same_trace
+from conformance.metamorphic.motion_programs import moving_program
+from conformance.metamorphic.subject import Program, Run
+from conformance.metamorphic.tree_rewriting import integer, rewritten
+from grammar.syntax import ast
 
 COMPUTES = """\
 DEF PROG()
@@ -134,7 +134,7 @@ def test_a_base_shifted_without_its_points_is_caught() -> None:
     """The law about frames fails when the points stay."""
 
     def change(program: Program, random: Random) -> Program | None:
-        found = of_cell._shifted(program, random)
+        found = motion_laws._shifted(program, random)
         assert found is not None
         back = {f"{n - 24:.4f}": f"{n:.4f}" for n in (500, 560, 480)}
         text = found.case.sources[0].text

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from junitparser import JUnitXml
 
-from conformance.case import find_cases, selected
+from conformance.judging.verdicts import Known, KnownFailures
 from conformance.junit import write_junit
 from conformance.record import record_of
 from conformance.runner import CaseResult, run_cases
-from conformance.verdicts import Known, KnownFailures
+from conformance.suite.case import find_cases, selected
 
 NAMES = ["control/exit_for", "control/exit_while", "syntax/advance_six", "motion/lin_is_straight"]
 KNOWN = KnownFailures((Known("control/exit_while", "for the sake of the test"),))

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from conformance.case import Case, find_cases, selected
-from conformance.observing import Setup, observe
+from conformance.judging.observe import Setup, observe
 from conformance.recording import Recording, RecordingError, answers, judge_recording
+from conformance.suite.case import Case, find_cases, selected
 
 NAMES = ("io/pulse_length", "control/for_end_once", "data/round_up", "syntax/declaration_late")
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from conformance.case import Case, read_case
-from conformance.comparison import first_divergence
-from conformance.observation import Event, Observation
-from conformance.observing import Setup, missing, observe
+from conformance.judging.comparison import first_divergence
+from conformance.judging.observation import Event, Observation
+from conformance.judging.observe import Setup, missing, observe
+from conformance.judging.verdicts import Known, KnownFailures
 from conformance.runner import run_case, run_cases
-from conformance.verdicts import Known, KnownFailures
+from conformance.suite.case import Case, read_case
 
 TREE, VM = Setup("tree", "none"), Setup("vm", "none")
 NOTHING_KNOWN = KnownFailures()

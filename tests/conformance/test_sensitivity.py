@@ -2,12 +2,18 @@
 
 import pytest
 
-from conformance.case import find_cases
-from conformance.sensitivity import ahead, bench, interrupting, path, timing
-from conformance.sensitivity.planting import Fault, constant, entry, on, several
+from conformance.sensitivity import (
+    advance_run_faults,
+    bench,
+    interrupt_faults,
+    path_faults,
+    timing_faults,
+)
+from conformance.sensitivity.planted_fault import Fault, constant, entry, on, several
 from conformance.sensitivity.trial import all_faults, try_faults
+from conformance.suite.case import find_cases
 from interp.controller.clock import Clock
-from interp.robot import blending
+from interp.robot.planning import blending
 
 
 def _fault(words: str) -> Fault:
@@ -46,7 +52,12 @@ def test_plants_are_put_back_in_any_combination() -> None:
 
 def test_there_are_enough_faults_and_each_has_its_name() -> None:
     """Besides those of the machine there are sixty and more; no two are called the same."""
-    own = [*timing.faults(), *ahead.faults(), *interrupting.faults(), *path.faults()]
+    own = [
+        *timing_faults.faults(),
+        *advance_run_faults.faults(),
+        *interrupt_faults.faults(),
+        *path_faults.faults(),
+    ]
     assert len(own) >= 60
     names = [(one.group, one.words) for one in all_faults()]
     assert len(names) == len(set(names))

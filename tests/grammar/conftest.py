@@ -7,10 +7,19 @@ from random import Random
 
 import pytest
 
-from grammar.g4 import read, read_file
-from grammar.generate import GRAMMAR
-from grammar.model import CharSet, Element, Grammar, Group, Literal, Reference, Repeat, Rule
-from grammar.recognizer import Recognizer
+from grammar.notation.g4 import read, read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import (
+    CharSet,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+)
+from grammar.parser.recognizer import Recognizer
 
 CORPUS = GRAMMAR.parents[1] / "corpus"
 SUFFIXES = frozenset({".src", ".dat", ".sub"})

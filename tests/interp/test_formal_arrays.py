@@ -6,22 +6,22 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.source import Source
-from grammar.types import Array
-from interp.agreement import Observed, difference, observe
+from grammar.semantics.types import Array
+from grammar.syntax.source import Source
+from interp.bench.executor_comparison import Observed, difference, observe
+from interp.bench.stub_world import StubWorld
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.program import Program
-from interp.bytecode.verify import verify
-from interp.bytecode.vm import Machine
-from interp.events import Event, Sink
-from interp.executor import Executor
-from interp.faults import Fault
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.program import CheckedProgram, load
-from interp.rendering import to_json
-from interp.requests import DeclareInterrupt, End, Fail
-from interp.stub import StubWorld
+from interp.port.events import Event, Sink
+from interp.port.executor import Executor
+from interp.port.requests import DeclareInterrupt, End, Fail
+from interp.program.load import CheckedProgram, load
 from interp.tree import TreeExecutor
+from interp.values.faults import Fault
+from interp.values.json_form import to_json
 
 Maker = Callable[[Sink | None], Executor]
 

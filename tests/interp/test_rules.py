@@ -13,21 +13,21 @@ from typing import Any
 
 import pytest
 
-from grammar.source import Source
-from interp.builtins import BUILTINS
+from grammar.syntax.source import Source
+from interp.bench.stub_world import StubWorld, run
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.verify import Verified, verify
-from interp.bytecode.vm import Machine
-from interp.events import Recorder, Sink
-from interp.executor import Executor
-from interp.faults import Fault
+from interp.bytecode.verifier.verify import Verified, verify
+from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.operators import BINARY, UNARY
-from interp.program import CheckedProgram, load
-from interp.rendering import to_json
-from interp.requests import Fail
-from interp.stub import StubWorld, run
+from interp.port.events import Recorder, Sink
+from interp.port.executor import Executor
+from interp.port.requests import Fail
+from interp.program.load import CheckedProgram, load
 from interp.tree import TreeExecutor
+from interp.values.builtins import BUILTINS
+from interp.values.faults import Fault
+from interp.values.json_form import to_json
+from interp.values.operators import BINARY, UNARY
 
 _TABLE = Path(__file__).parent / "data" / "rules.tsv"
 _ROWS = [line.split("\t") for line in _TABLE.read_text(encoding="utf-8").splitlines()[1:]]

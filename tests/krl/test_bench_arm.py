@@ -33,6 +33,6 @@ def test_without_mujoco(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Where MuJoCo is not installed the bench says so and measures the others."""
-    monkeypatch.setattr("interp.robot.benchmark.find_spec", lambda _: None)
+    monkeypatch.setattr("interp.bench.arm.find_spec", lambda _: None)
     assert 0 == main(["bench", "arm", "--motions", "3"])
     assert "MuJoCo is not installed" in capsys.readouterr().out

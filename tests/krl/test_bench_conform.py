@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance import case as cases
+from conformance.suite import case as cases
 from krl.cli import main
 
 pytest.importorskip("py_opw_kinematics")
@@ -43,13 +43,13 @@ def test_laws_are_told_one_by_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each law has its line and its place in the record; a broken one is status 1."""
-    from conformance.metamorphic import law, survey
+    from conformance.metamorphic import law, trial
 
-    right = survey.laws()[0]
+    right = trial.laws()[0]
     wrong = law.Law("wrong", "", (), lambda _left, _right: "they differ", right.change)
     for made, status in (((right,), 0), ((right, wrong), 1)):
-        monkeypatch.setattr(survey, "laws", lambda made=made: made)
-        monkeypatch.setattr("conformance.metamorphic.laws", survey.laws)
+        monkeypatch.setattr(trial, "laws", lambda made=made: made)
+        monkeypatch.setattr("conformance.metamorphic.laws", trial.laws)
         target = tmp_path / f"{status}.json"
         words = ["conform", "control/if_else", "--metamorphic", "1", "--jobs", "1"]
         assert status == main([*words, "--json", str(target)])

@@ -14,16 +14,16 @@ from typing import Any
 import pytest
 
 from conformance import runner
-from conformance.case import find_cases, selected
 from conformance.differential import campaign
 from conformance.runner import CaseResult, Result, run_cases
+from conformance.suite.case import find_cases, selected
 from grammar import read_file
-from grammar.generate import GRAMMAR
+from grammar.generation.cells import write_cells
+from grammar.notation.generate import GRAMMAR
 from krl.cli import main
-from recovery import workers
-from recovery.survey import survey
-from recovery.synth import write_cells
-from recovery.workers import WorkersError, in_order, meet
+from recovery.survey.survey import survey
+from support.parallel import executor
+from support.parallel.executor import WorkersError, in_order, meet
 
 pytest.importorskip("distributed")
 
@@ -34,7 +34,7 @@ _SAME_RELEASE = "from recovery import workers; workers.code_digest = lambda: 'ou
 
 @pytest.fixture(autouse=True)
 def _same_release(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "code_digest", lambda: "ours")
+    monkeypatch.setattr(executor, "code_digest", lambda: "ours")
 
 
 class _Cluster:
@@ -274,7 +274,7 @@ def test_workers_that_all_go_are_one_clear_line(
     of_two: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Work does not wait for ever where nobody is left to do it."""
-    monkeypatch.setattr(workers, "_PATIENCE", 1.0)
+    monkeypatch.setattr(executor, "_PATIENCE", 1.0)
     results = in_order(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
     assert 18 == next(results)
     of_two.kill_a_worker()
@@ -287,6 +287,6 @@ def test_workers_of_another_release_are_refused(
     cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What other code finds is not mixed with ours."""
-    monkeypatch.setattr(workers, "code_digest", lambda: "another")
+    monkeypatch.setattr(executor, "code_digest", lambda: "another")
     with pytest.raises(WorkersError, match="has another release of krl than this"):
         meet(cluster.address)

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from grammar import g4
-from grammar.edits import apply, from_data
-from grammar.recognizer import Recognizer
+from grammar.notation import g4
+from grammar.notation.edits import apply, from_data
+from grammar.parser.recognizer import Recognizer
 from krl.cli import main
 
-PRELIMINARY = Path(g4.__file__).with_name("preliminary.g4")
+PRELIMINARY = Path(g4.__file__).parents[1].joinpath("preliminary.g4")
 
 
 @pytest.fixture(scope="module")

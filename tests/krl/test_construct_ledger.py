@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from grammar import g4
-from grammar.edits import AddAlternative, AddToken, Insert
+from grammar.notation import g4
+from grammar.notation.edits import AddAlternative, AddToken, Insert
 from krl.cli import main
-from recovery.construct import Construct, Effect, Evidence
-from recovery.construct_file import read, text_of
+from recovery.ledger.construct import Construct, Effect, Evidence
+from recovery.ledger.construct_file import read, text_of
 
 REPOSITORY = Path(__file__).parents[2]
-GRAMMAR = Path(g4.__file__).parent
+GRAMMAR = Path(g4.__file__).parents[1]
 LOOP = "FOR I=1 TO 9 STEP 2\nENDFOR\n"
 STEP = Construct(
     name="for-step",

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from interp.controller.script import Script
+from interp.controller.input_script import Script
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared, available
 from interp.session import Run, Setup, run_program
-from krl.programs import load_program
+from krl.program_loading import load_program
 
 PROGRAMS = Path(__file__).parents[2] / "corpus" / "programs"
 WAYS = [("tree", "none"), ("vm", "kinematic"), (available()[-1], "mujoco")]

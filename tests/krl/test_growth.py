@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from grammar.edits import AddAlternative, AddToken, Edit, Insert
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert
 from krl.cli import main
-from recovery.construct import Construct, Evidence
-from recovery.construct_file import text_of
+from recovery.ledger.construct import Construct, Evidence
+from recovery.ledger.construct_file import text_of
 
 STEP = "DEF A()\nFOR I=1 TO 9 STEP 2\nENDFOR\nEND\n"
 FILES = {

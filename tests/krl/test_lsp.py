@@ -15,7 +15,7 @@ pytest.importorskip("pygls")
 
 from pygls.lsp.client import LanguageClient  # noqa: E402 - only where it is installed
 
-from grammar.layout import layouter  # noqa: E402 - behind the one above
+from grammar.syntax.formatter import layouter  # noqa: E402 - behind the one above
 
 PROGRAM = """DEF Cell()
   ; »ä𝄞« before the name

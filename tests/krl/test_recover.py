@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from grammar.edits import AddToken, Insert, apply
-from grammar.g4 import read_file
-from grammar.generate import GRAMMAR
+from grammar.notation.edits import AddToken, Insert, apply
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
 from krl.cli import main
-from recovery.construct import Construct, Evidence
-from recovery.construct_file import text_of
+from recovery.ledger.construct import Construct, Evidence
+from recovery.ledger.construct_file import text_of
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
 FINE = b"DEF A()\nHALT\nEND\n"
@@ -383,7 +383,7 @@ def grown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     start = read_file(PRELIMINARY)
     (home / "preliminary.g4").write_bytes(start.text.encode())
     (home / "KRL.g4").write_bytes(apply(start, edits).text.encode())
-    monkeypatch.setattr("grammar.generate.GRAMMAR", home / "KRL.g4")
+    monkeypatch.setattr("grammar.notation.generate.GRAMMAR", home / "KRL.g4")
     return home
 
 

@@ -9,7 +9,7 @@ from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
 
-from grammar.generate import GRAMMAR
+from grammar.notation.generate import GRAMMAR
 from krl.cli import main
 
 FILES = {

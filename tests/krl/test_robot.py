@@ -210,7 +210,7 @@ def test_points_that_are_not_there(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_without_the_extra(ask: Ask, monkeypatch: pytest.MonkeyPatch, package: str) -> None:
     """Where the packages for the arm are not installed, one line says how to get them."""
     monkeypatch.setitem(sys.modules, package, None)
-    monkeypatch.delitem(sys.modules, "interp.robot.kinematics", raising=False)
+    monkeypatch.delitem(sys.modules, "interp.robot.kinematics.solver", raising=False)
     status, _, err = ask([])
     assert 2 == status
     assert f"needs {package}" in err

@@ -37,7 +37,7 @@ def _events() -> list[Json]:
 
 
 def run_record() -> Json:
-    """A run of a second, as `interp.session_record` tells it."""
+    """A run of a second, as `interp.run_record` tells it."""
     times = list(range(0, 912_000, 12_000))
     tool = [[500 + n, 10 * math.sin(n / 9), 600.0] for n in range(len(times))]
     return {

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from reports.spelling import percent, size
+from reports.number_format import percent, size
 from reports.survey_view import SurveyView, survey_view
 
 RecordBuilder = Callable[[str], dict[str, Any]]

@@ -58,11 +58,11 @@ class Foundry:
     @cached_property
     def compiled(self) -> list[tuple[bytes, str]]:
         """Some of our programs as images and as text of the bytecode machine."""
+        from interp.bytecode.assembly.disassembler import disassemble
         from interp.bytecode.compiler import compile_program
-        from interp.bytecode.disassembler import disassemble
-        from interp.bytecode.image_writer import write_image
-        from interp.faults import LinkError
-        from krl.programs import load_program
+        from interp.bytecode.image.writer import write_image
+        from interp.values.faults import LinkError
+        from krl.program_loading import load_program
 
         made = []
         for file in sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src")):

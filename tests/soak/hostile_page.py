@@ -14,8 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from grammar import documents
-from recovery import archives
+from support.files import archives, untrusted
 from tests.soak.entries import ENTRIES
 from tests.soak.pieces import KINDS
 
@@ -148,8 +147,8 @@ def _limits() -> Iterator[tuple[str, str]]:
     yield "the directory of an archive", f"{archives.MAX_DIRECTORY_BYTES // MB} MB"
     yield "archives in archives", "one level; nothing is unpacked to disk"
     yield "members of an archive that share bytes", "the first of them"
-    yield "a grammar, construct, profile, recording, record", f"{documents.MOST_BYTES // MB} MB"
-    yield "a TOML text", f"{documents.MOST_TOML:,} characters, {documents.MOST_DOTS} dots a line"
+    yield "a grammar, construct, profile, recording, record", f"{untrusted.MOST_BYTES // MB} MB"
+    yield "a TOML text", f"{untrusted.MOST_TOML:,} characters, {untrusted.MOST_DOTS} dots a line"
     yield "nesting of JSON and TOML", "what Python reads without a deeper stack, some hundreds"
     yield "a run", "`--max-time` of virtual time, and a budget of statements that pass none"
     yield "a step of a night", "its share of `--minutes`"

@@ -58,7 +58,7 @@ def recording(folder: Path, foundry: Foundry) -> Given:
 @cache
 def _cases() -> list[tuple[str, str]]:
     """The names of all cases, with their digests."""
-    from conformance.case import find_cases
+    from conformance.suite.case import find_cases
 
     return [(case.name, case.digest) for case in find_cases()]
 

@@ -57,8 +57,8 @@ def _home(folder: Path) -> Path:
 @cache
 def _replayed() -> str:
     """The grammar of the short ledger."""
-    from recovery.construct_file import read
-    from recovery.ledger import in_force, preliminary_of
+    from recovery.ledger.construct_file import read
+    from recovery.ledger.ledger import in_force, preliminary_of
 
     return in_force(preliminary_of(PRELIMINARY), [read(file) for file in CONSTRUCTS[:4]]).text
 
@@ -97,7 +97,7 @@ def _sent(folder: Path, foundry: Foundry) -> tuple[str | Path, ...]:
 @cache
 def _proposal(record: str) -> str:
     """The text of a construct that a survey proposes."""
-    from recovery.draft import propose as write
+    from recovery.ledger.draft import propose as write
 
     known = json.loads(record)
     with tempfile.TemporaryDirectory() as folder:

@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-from recovery.synth import write_cells
+from grammar.generation.cells import write_cells
 
 pytestmark = pytest.mark.soak
 
@@ -219,9 +219,9 @@ def test_an_acceptance_that_is_killed_is_made_or_not(tmp_path: Path) -> None:
 
 def _weave() -> str:
     """A construct that an acceptance takes, as its file."""
-    from grammar.edits import AddAlternative, AddToken
-    from recovery.construct import Construct, Evidence
-    from recovery.construct_file import text_of
+    from grammar.notation.edits import AddAlternative, AddToken
+    from recovery.ledger.construct import Construct, Evidence
+    from recovery.ledger.construct_file import text_of
 
     return text_of(
         Construct(

@@ -1,1 +1,1 @@
-"""Made from ``instructions.tsv`` by ``python -m interp.bytecode.isa --write``; do not edit."""
+"""Made from ``instructions.tsv`` (``python -m interp.bytecode.instruction_set``); do not edit."""

@@ -1,6 +1,6 @@
 """The opcodes.
 
-Made from interp/bytecode/instructions.tsv by python -m interp.bytecode.isa --write.
+Made from interp/bytecode/instructions.tsv by python -m interp.bytecode.instruction_set --write.
 """
 
 from enum import IntEnum

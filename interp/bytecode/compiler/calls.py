@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from grammar import ast
-from grammar.scopes import Found
-from grammar.symbols import Space
-from grammar.types import CHAR, Array, Type
-from grammar.walk import walk
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Space
+from grammar.semantics.types import CHAR, Array, Type
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain
+from interp.bytecode.cell_layout import Plain
+from interp.bytecode.compiler.array_bounds import Bound
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -33,10 +34,9 @@ from interp.bytecode.compiler.places import (
     is_view_of,
 )
 from interp.bytecode.compiler.predefined_calls import PredefinedCalls
-from interp.bytecode.compiler.rooms import Bound
-from interp.phrases import is_variable
-from interp.program import Routine
-from interp.variables import (
+from interp.program.load import Routine
+from interp.program.reads import is_variable
+from interp.program.variables import (
     MOST_CELLS,
     cells_of_routine,
     is_complete,

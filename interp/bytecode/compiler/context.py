@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from grammar.scopes import Scope
-from grammar.symbols import Symbol
-from grammar.types import Type
+from grammar.semantics.scopes import Scope
+from grammar.semantics.symbols import Symbol
+from grammar.semantics.types import Type
+from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.places import Place
 from interp.bytecode.compiler.tables import Tables
-from interp.bytecode.compiler.writer import Writer
-from interp.program import CheckedProgram, Unit
+from interp.program.load import CheckedProgram, Unit
 
 if TYPE_CHECKING:
     from interp.bytecode.compiler.project import Project

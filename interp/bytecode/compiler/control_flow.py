@@ -9,15 +9,15 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
 
-from grammar import ast
-from grammar.types import CHAR, INT, REAL, Enumeration, Type
+from grammar.semantics.types import CHAR, INT, REAL, Enumeration, Type
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain
+from interp.bytecode.cell_layout import Plain
+from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.motions import Motions
 from interp.bytecode.compiler.places import Cells, DataCells, Formal, Place, Scalar
-from interp.bytecode.compiler.writer import Label
-from interp.values import letters
+from interp.values.values import letters
 
 __all__ = ["ControlFlow"]
 

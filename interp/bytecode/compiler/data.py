@@ -6,24 +6,24 @@ time of compiling, and what it leaves in the cells is written into the program.
 
 from __future__ import annotations
 
-from grammar import ast
-from grammar.scopes import Found
-from grammar.symbols import Access
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Access
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import word_of
+from interp.bytecode.cell_layout import word_of
 from interp.bytecode.compiler.calls import Calls
+from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.places import Remote
 from interp.bytecode.compiler.tables import Tables
-from interp.bytecode.compiler.writer import Writer
-from interp.bytecode.isa import MAX_CELLS
+from interp.bytecode.instruction_set import MAX_CELLS
 from interp.bytecode.program import CodeKind, Program
-from interp.bytecode.verify import Verified
-from interp.bytecode.vm import Machine
-from interp.faults import Fault, LinkError, fault
-from interp.program import CheckedProgram
-from interp.requests import Fail
-from interp.variables import data_lists, data_variables, first_values
+from interp.bytecode.verifier.verify import Verified
+from interp.bytecode.vm.executor import Machine
+from interp.port.requests import Fail
+from interp.program.load import CheckedProgram
+from interp.program.variables import data_lists, data_variables, first_values
+from interp.values.faults import Fault, LinkError, fault
 
 __all__ = ["declare_data", "initial_values"]
 

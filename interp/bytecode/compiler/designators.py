@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 
-from grammar import ast
-from grammar.scopes import Found
-from grammar.symbols import Kind, SignalSymbol
-from grammar.types import BOOL, INT, INT_MAX, UNKNOWN, Array, Type
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.semantics.types import BOOL, INT, INT_MAX, UNKNOWN, Array, Type
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import array_sizes, elements
+from interp.bytecode.cell_layout import array_sizes, elements
 from interp.bytecode.compiler.memory import Memory
 from interp.bytecode.compiler.places import (
     Block,
@@ -30,8 +30,8 @@ from interp.bytecode.compiler.places import (
     Value,
     View,
 )
-from interp.faults import LinkError
-from interp.variables import signal_ends, untyped
+from interp.program.variables import signal_ends, untyped
+from interp.values.faults import LinkError
 
 __all__ = ["Designators", "literal"]
 

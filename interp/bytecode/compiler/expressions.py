@@ -11,8 +11,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from grammar import ast
-from grammar.types import (
+from grammar.semantics.types import (
     BOOL,
     CHAR,
     INT,
@@ -25,8 +24,10 @@ from grammar.types import (
     Structure,
     Type,
 )
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import bits_of
+from interp.bytecode.cell_layout import bits_of
+from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.designators import Designators, literal
 from interp.bytecode.compiler.places import (
     Block,
@@ -38,10 +39,9 @@ from interp.bytecode.compiler.places import (
     Text,
     Value,
 )
-from interp.bytecode.compiler.writer import Label
-from interp.faults import Fault, LinkError
-from interp.operators import Primitive, Selection, kind_of, select
-from interp.values import constant, letters, position_type, single
+from interp.values.faults import Fault, LinkError
+from interp.values.operators import Primitive, Selection, kind_of, select
+from interp.values.values import constant, letters, position_type, single
 
 __all__ = ["Expressions"]
 

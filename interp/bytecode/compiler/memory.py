@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-from grammar.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, Type
+from grammar.semantics.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain, bits_of, elements, offset_of, shared_cells
+from interp.bytecode.cell_layout import Plain, bits_of, elements, offset_of, shared_cells
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.places import (
     Block,
@@ -26,9 +26,9 @@ from interp.bytecode.compiler.places import (
     View,
 )
 from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
-from interp.faults import FAULTS, LinkError
-from interp.values import single
-from interp.variables import is_complete, untyped_value
+from interp.program.variables import is_complete, untyped_value
+from interp.values.faults import FAULTS, LinkError
+from interp.values.values import single
 
 __all__ = ["Memory"]
 

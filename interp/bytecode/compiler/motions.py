@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from grammar import ast
-from grammar.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
-from grammar.walk import walk
+from grammar.semantics.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.calls import Calls
+from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -19,7 +20,6 @@ from interp.bytecode.compiler.places import (
     Scalar,
     Value,
 )
-from interp.bytecode.compiler.writer import Label
 from interp.bytecode.program import (
     Argument,
     Choice,
@@ -31,11 +31,11 @@ from interp.bytecode.program import (
     Mode,
     Record,
 )
-from interp.faults import Fault, LinkError
-from interp.operators import apply_unary
-from interp.phrases import is_constant_output, signal_name
-from interp.values import EnumValue, constant, converted, integer, letters, single
-from interp.values import Value as Known
+from interp.program.reads import is_constant_output, signal_name
+from interp.values.faults import Fault, LinkError
+from interp.values.operators import apply_unary
+from interp.values.values import EnumValue, constant, converted, integer, letters, single
+from interp.values.values import Value as Known
 
 __all__ = ["Motions"]
 

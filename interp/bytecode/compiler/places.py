@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grammar.types import Type
-from interp.bytecode.compiler.rooms import Bound
+from grammar.semantics.types import Type
+from interp.bytecode.compiler.array_bounds import Bound
 
 __all__ = [
     "Block",

@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
-from grammar import ast
-from grammar.predefined import Parameter, System
-from grammar.scopes import Found
-from grammar.symbols import Kind, Space
-from grammar.types import CHAR, REAL, UNKNOWN, Type
-from interp.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
+from grammar.semantics.predefined import Parameter, System
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind, Space
+from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain
+from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
@@ -32,7 +31,6 @@ from interp.bytecode.compiler.places import (
     Value,
     is_view_of,
 )
-from interp.bytecode.crossing import unlike
 from interp.bytecode.program import (
     Argument,
     Ask,
@@ -44,10 +42,12 @@ from interp.bytecode.program import (
     Mode,
     Program,
 )
-from interp.faults import LinkError
-from interp.phrases import is_variable
-from interp.values import letters
-from interp.variables import untyped_result
+from interp.bytecode.vm.request_marshalling import unlike
+from interp.program.reads import is_variable
+from interp.program.variables import untyped_result
+from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
+from interp.values.faults import LinkError
+from interp.values.values import letters
 
 __all__ = ["BY_TEXT", "PredefinedCalls"]
 
@@ -149,7 +149,7 @@ class PredefinedCalls(Expressions):
         return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
 
     def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
-        """The value of an argument :IN; for a text see `interp.builtins.reads_text`."""
+        """The value of an argument :IN; for a text see `interp.values.builtins.reads_text`."""
         if not (is_builtin and reads_text(type_) and is_variable(self.context.unit, argument)):
             return self.value(argument, type_)
         place = self.place(argument)

@@ -6,13 +6,15 @@ from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from grammar import ast
-from grammar.symbols import Symbol
-from grammar.types import BOOL, INT, Array, Type
-from grammar.walk import walk
+from grammar.semantics.symbols import Symbol
+from grammar.semantics.types import BOOL, INT, Array, Type
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cells import Plain
+from interp.bytecode.cell_layout import Plain
+from interp.bytecode.compiler.array_bounds import Sizes
 from interp.bytecode.compiler.calls import Binding, Formals, formals_of
+from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Context, Refusal
 from interp.bytecode.compiler.data import declare_data, initial_values
 from interp.bytecode.compiler.places import (
@@ -27,15 +29,13 @@ from interp.bytecode.compiler.places import (
     Remote,
 )
 from interp.bytecode.compiler.predefined_calls import BY_TEXT
-from interp.bytecode.compiler.rooms import Sizes
 from interp.bytecode.compiler.statements import Statements
 from interp.bytecode.compiler.tables import Tables
-from interp.bytecode.compiler.writer import Writer
 from interp.bytecode.program import CodeKind, Mode, Program
-from interp.bytecode.verify import measured
-from interp.faults import LinkError
-from interp.program import CheckedProgram, Routine
-from interp.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
+from interp.bytecode.verifier.verify import measured
+from interp.program.load import CheckedProgram, Routine
+from interp.program.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
+from interp.values.faults import LinkError
 
 __all__ = ["Compiled", "Project", "compile_program"]
 

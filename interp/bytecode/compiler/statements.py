@@ -10,15 +10,15 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
-from grammar import ast
-from grammar.types import INT, REAL
+from grammar.semantics.types import INT, REAL
+from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Ended
 from interp.bytecode.compiler.control_flow import ControlFlow
 from interp.bytecode.compiler.places import Block, Cells, Hole, Remote, Scalar
-from interp.bytecode.compiler.writer import Label
 from interp.bytecode.program import CodeKind, Constant, Input, Mode
-from interp.faults import FAULTS
+from interp.values.faults import FAULTS
 
 __all__ = ["Statements"]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import TypeVar
 
-from grammar.symbols import Symbol
-from grammar.types import Array, Enumeration, Member, Scalar, Structure, Type
-from interp.bytecode.cells import size
+from grammar.semantics.symbols import Symbol
+from grammar.semantics.types import Array, Enumeration, Member, Scalar, Structure, Type
+from interp.bytecode.cell_layout import size
 from interp.bytecode.program import BASIC_TYPES, Ask, Builtin, Data
-from interp.faults import LinkError
+from interp.values.faults import LinkError
 
 __all__ = ["Tables"]
 

@@ -1,7 +1,7 @@
 """Arms that come along: machine data in the words of a `$machine.dat`, and the MJCF made of it.
 
 `kr6r900.dat` says where each of its values is from and what is assumed. `kr6r900.xml` is what
-`interp.robot.mujoco_model` makes of it; a test fails where it is stale.
+`interp.robot.simulation.mujoco_model` makes of it; a test fails where it is stale.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from interp.robot.machine import Machine, read_machine
+from interp.robot.kinematics.machine_data import Machine, read_machine
 
 __all__ = ["DEFAULT", "default_machine", "model_file"]
 

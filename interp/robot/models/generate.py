@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from interp.robot.models import DEFAULT, default_machine, model_file
-from interp.robot.mujoco_model import mjcf_of
+from interp.robot.simulation.mujoco_model import mjcf_of
 
 __all__ = ["generated"]
 
@@ -12,7 +12,8 @@ def generated() -> str:
     """The text of the model, with a word on where it is from."""
     word = (
         f"<!-- Made of {DEFAULT}.dat by python -m interp.robot.models.generate; do not edit.\n"
-        f"     {DEFAULT}.dat names the sources, interp/robot/mujoco_model.py what is assumed. -->\n"
+        f"     {DEFAULT}.dat names the sources,"
+        " interp/robot/simulation/mujoco_model.py what is assumed. -->\n"
     )
     return word + mjcf_of(default_machine())
 

@@ -9,13 +9,13 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from grammar import ast
-from grammar.build import read_module
 from grammar.check.framework import Checked, check, check_module
-from grammar.diagnostics import Diagnostic
-from grammar.link import File, Project, link
-from grammar.scopes import Module
-from grammar.source import Source
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.scopes import Module
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
 
 EXPECTED = re.compile(r";>(.*)")
 MARKS = {"error": "", "warning": "?", "note": "-"}

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.build import read_module
-from grammar.plans import MAX_DEPTH
+from grammar.syntax.build import read_module
+from grammar.syntax.node_plans import MAX_DEPTH
 
 Agrees = Callable[..., None]
 

@@ -4,11 +4,11 @@ import pickle
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
-from grammar import ast
 from grammar.check.framework import Checked, check_project
-from grammar.diagnostics import Diagnostic
-from grammar.types import BOOL, INT, REAL, Array, Constant, Text
-from grammar.walk import walk
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.types import BOOL, INT, REAL, Array, Constant, Text
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
 
 Check = Callable[..., Checked]
 Find = Callable[..., list[Diagnostic]]

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from grammar.build import read_module
 from grammar.check.framework import check
-from grammar.link import File, link
-from grammar.rules import is_confirmed
-from grammar.source import Source
+from grammar.semantics.link import File, link
+from grammar.semantics.rules import is_confirmed
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
 
 NEGATIVES = Path(__file__).parents[3] / "corpus" / "negatives"
 ALL = [

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grammar.build import read_module
 from grammar.check.framework import check
-from grammar.diagnostics import Diagnostic
-from grammar.link import File, link
-from grammar.source import Source
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.link import File, link
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
 
 CORPUS = Path(__file__).parents[3] / "corpus"
 NEGATIVES = sorted(

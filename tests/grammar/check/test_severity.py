@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from grammar.diagnostics import Diagnostic
-from grammar.generate import GRAMMAR
-from grammar.rules import is_confirmed
-from recovery.negatives import load
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.notation.generate import GRAMMAR
+from grammar.semantics.rules import is_confirmed
+from recovery.negatives.negatives import load
 
 Find = Callable[..., list[Diagnostic]]
 

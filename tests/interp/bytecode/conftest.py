@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from interp.bytecode.assembler import assemble
-from interp.bytecode.verify import verify
-from interp.bytecode.vm import Machine
-from interp.events import Recorder
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.program import Limits
-from interp.requests import Crash, End, Fail, Request
+from interp.port.events import Recorder
+from interp.port.requests import Crash, End, Fail, Request
+from interp.program.load import Limits
 
 #: A program with something of everything, valid and not meant to make sense.
 EVERYTHING = """\

@@ -7,25 +7,33 @@ from typing import get_args
 
 import pytest
 
-from grammar import ast
-from grammar.source import Source
-from grammar.walk import walk
-from interp.agreement import Difference, Entered, Evaluated, Observed, Prober, difference, observe
-from interp.bytecode.assembler import assemble
+from grammar.syntax import ast
+from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
+from interp.bench.executor_comparison import (
+    Difference,
+    Entered,
+    Evaluated,
+    Observed,
+    Prober,
+    difference,
+    observe,
+)
+from interp.bench.routine_trials import Trial, trials
+from interp.bench.stub_world import StubWorld
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.compiler import Compiled, compile_program
-from interp.bytecode.disassembler import disassemble
-from interp.bytecode.image_reader import read_image
-from interp.bytecode.image_writer import write_image
-from interp.bytecode.verify import verify
-from interp.bytecode.vm import Machine
-from interp.events import Event
-from interp.faults import BudgetExhausted, Fault, LinkError
-from interp.program import CheckedProgram, Limits, load
-from interp.requests import Fail, Invoke, SetCyclicFlag, StopAdvance
-from interp.stub import StubWorld
+from interp.bytecode.image.reader import read_image
+from interp.bytecode.image.writer import write_image
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm.executor import Machine
+from interp.port.events import Event
+from interp.port.requests import Fail, Invoke, SetCyclicFlag, StopAdvance
+from interp.program.load import CheckedProgram, Limits, load
 from interp.tree import TreeExecutor
-from interp.trials import Trial, trials
-from recovery.decode import decode
+from interp.values.faults import BudgetExhausted, Fault, LinkError
+from support.files.decode import decode
 
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"
 _LIMITS = Limits(statements=3_000)

@@ -10,18 +10,16 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grammar.predefined import System
-from interp.bytecode.assembler import assemble
-from interp.bytecode.disassembler import disassemble
-from interp.bytecode.image_reader import ImageError, read_image
-from interp.bytecode.image_writer import write_image
-from interp.bytecode.isa import instructions
+from grammar.semantics.predefined import System
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.assembly.disassembler import disassemble
+from interp.bytecode.image.reader import ImageError, read_image
+from interp.bytecode.image.writer import write_image
+from interp.bytecode.instruction_set import instructions
 from interp.bytecode.program import CodeKind, Program
-from interp.bytecode.verify import VerificationError, Verified, verify
-from interp.bytecode.vm import Machine
-from interp.faults import Fault, LinkError, RuntimeFailure, fault
-from interp.program import Limits
-from interp.requests import (
+from interp.bytecode.verifier.verify import VerificationError, Verified, verify
+from interp.bytecode.vm.executor import Machine
+from interp.port.requests import (
     Crash,
     DeclareInterrupt,
     End,
@@ -31,7 +29,9 @@ from interp.requests import (
     Read,
     SetTrigger,
 )
-from interp.values import Value, zero
+from interp.program.load import Limits
+from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.values.values import Value, zero
 
 _WORD = struct.Struct("<I")
 _LIMITS = Limits(statements=300, per_slice=40, depth=8)

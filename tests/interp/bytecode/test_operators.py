@@ -1,4 +1,4 @@
-"""The machine computes what `interp.operators` and `interp.builtins` compute."""
+"""The machine computes what `interp.values.operators` and `interp.values.builtins` compute."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from interp.builtins import FUNCTIONS
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.assembler import assemble
-from interp.bytecode.cells import word_of
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.assembly.syntax import real_text, string_text
+from interp.bytecode.cell_layout import word_of
 from interp.bytecode.program import Program
-from interp.bytecode.syntax import real_text, string_text
-from interp.bytecode.verify import verify
-from interp.bytecode.vm import Machine
-from interp.faults import Fault
-from interp.operators import PRIMITIVES, Primitive
-from interp.requests import Fail, Write
-from interp.values import single
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm.executor import Machine
+from interp.port.requests import Fail, Write
+from interp.values.builtins import FUNCTIONS
+from interp.values.faults import Fault
+from interp.values.operators import PRIMITIVES, Primitive
+from interp.values.values import single
 
 _INTS = st.integers(-(2**31), 2**31 - 1) | st.integers(-9, 9)
 _VALUES: dict[str, st.SearchStrategy[Any]] = {

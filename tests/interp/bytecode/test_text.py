@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from interp.bytecode.assembler import AssemblyError, assemble
-from interp.bytecode.disassembler import disassemble
-from interp.bytecode.verify import verify
+from interp.bytecode.assembly.assembler import AssemblyError, assemble
+from interp.bytecode.assembly.disassembler import disassemble
+from interp.bytecode.verifier.verify import verify
 
 HEAD = "bytecode 2\n"
 BODY = 'code MAIN routine "main.src" 1\n  local X INT\nbegin\n{}\n  RETURN\nend\n'

@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from grammar.source import Source
+from grammar.syntax.source import Source
 from interp.controller import Controller, Outcome, Profile, Script, Trace, TraceEvent
 from interp.executors import Prepared
-from interp.faults import Fault
-from interp.program import Limits, load
+from interp.program.load import Limits, load
+from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
-from interp.robot.core import ControlCore
-from interp.robot.frames import IDENTITY
+from interp.robot.kinematics.frames import IDENTITY
+from interp.values.faults import Fault
 
 SECOND = 1_000_000
 BLEND = 100_000  # µs before and after an approximated point

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from interp.robot.batch import BatchCore
+from interp.robot.api.batch import BatchCore
 
 Go = Callable[..., Any]
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from interp.controller import Profile
-from interp.values import text_of
+from interp.values.values import text_of
 
 Go = Callable[..., Any]
 

@@ -6,15 +6,15 @@ from typing import Any
 
 import pytest
 
-from grammar.source import Source
+from grammar.syntax.source import Source
 from interp.controller import Controller, Profile, Script, Trace
-from interp.program import load
+from interp.program.load import load
+from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
-from interp.robot.core import ControlCore
+from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
-from interp.robot.placement import Placement
-from interp.robot.planned_arm import PlannedArm
-from interp.robot.robots import RobotFault
+from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.simulation.robots import RobotFault
 from interp.tree import TreeExecutor
 
 START = (0.0, -90.0, 90.0, 0.0, 45.0, 10.0)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from interp.program import Limits
+from interp.program.load import Limits
 
 Go = Callable[..., Any]
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from interp.bytecode import vm
-from interp.bytecode.assembler import assemble
-from interp.bytecode.verify import Verified, verify
-from interp.events import Recorder
+from interp.bench.stub_world import StubWorld
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.verifier.verify import Verified, verify
+from interp.bytecode.vm import executor
 from interp.native import AVAILABLE
-from interp.program import Limits
-from interp.requests import Crash, End, Fail, Request
-from interp.stub import StubWorld
+from interp.port.events import Recorder
+from interp.port.requests import Crash, End, Fail, Request
+from interp.program.load import Limits
 
 if TYPE_CHECKING:
     from interp.native._core import Core
@@ -27,7 +27,7 @@ def _built() -> None:
 
 
 @pytest.fixture
-def native() -> type[vm.Machine]:
+def native() -> type[executor.Machine]:
     """The machine in C."""
     from interp.native.machine import Machine
 
@@ -42,7 +42,9 @@ def core() -> type[Core]:
     return Core
 
 
-def steps_of(kind: type[vm.Machine], verified: Verified, is_told: bool, most: int) -> list[Any]:
+def steps_of(
+    kind: type[executor.Machine], verified: Verified, is_told: bool, most: int
+) -> list[Any]:
     """What a machine asks, and tells if it is to, as text: so that faults can be compared."""
     recorder = Recorder() if is_told else None
     machine = kind(verified, "MAIN", Limits(statements=400, per_slice=30, depth=6), recorder)
@@ -73,7 +75,7 @@ def agreed() -> Compare:
 
         verified = verify(assemble(text))
         for is_told in (True, False):
-            expected = steps_of(vm.Machine, verified, is_told, most)
+            expected = steps_of(executor.Machine, verified, is_told, most)
             assert expected == steps_of(Machine, verified, is_told, most)
         return expected
 

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from interp.bytecode.assembler import assemble
-from interp.bytecode.image_reader import ImageError, read_image
-from interp.bytecode.image_writer import write_image
-from interp.bytecode.isa import instructions
-from interp.bytecode.verify import VerificationError, verify
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.image.reader import ImageError, read_image
+from interp.bytecode.image.writer import write_image
+from interp.bytecode.instruction_set import instructions
+from interp.bytecode.verifier.verify import VerificationError, verify
 
 if TYPE_CHECKING:
     from interp.native._core import Core

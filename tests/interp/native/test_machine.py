@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grammar.source import Source
-from interp.agreement import Prober, difference, observe
-from interp.bytecode import vm
-from interp.bytecode.assembler import assemble
+from grammar.syntax.source import Source
+from interp.bench.executor_comparison import Prober, difference, observe
+from interp.bench.kernels import KERNELS, Kernel
+from interp.bench.stub_world import StubWorld
+from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.image_writer import write_image
-from interp.bytecode.verify import verify
+from interp.bytecode.image.writer import write_image
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm import executor as vm
 from interp.executors import Prepared
-from interp.faults import Fault
-from interp.kernels import KERNELS, Kernel
-from interp.program import Limits, load
-from interp.requests import End, Fail, Write
-from interp.stub import StubWorld
+from interp.port.requests import End, Fail, Write
+from interp.program.load import Limits, load
+from interp.values.faults import Fault
 
 if TYPE_CHECKING:
     from interp.native._core import Core

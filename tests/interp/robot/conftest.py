@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from interp.requests import At
+from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
-from interp.robot.kinematics import Arm
-from interp.robot.machine import Machine, read_machine
-from interp.robot.planned_arm import PlannedArm
+from interp.robot.kinematics.machine_data import Machine, read_machine
+from interp.robot.kinematics.solver import Arm
+from interp.robot.planning.planned_arm import PlannedArm
 
 LIMITS = ((-170, 170), (-190, 45), (-120, 156), (-350, 350), (-125, 125), (-350, 350))
 DIRECTIONS = (-1, 1, 1, -1, -1, -1)

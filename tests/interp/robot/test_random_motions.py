@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from interp.faults import Fault
 from interp.robot.arm import Approximation, Place, SplinePart
+from interp.values.faults import Fault
 
 if TYPE_CHECKING:
-    from interp.robot.machine import Machine
+    from interp.robot.kinematics.machine_data import Machine
     from tests.interp.robot.conftest import Driver
 
 DOCUMENTED = {1102, 1211, 1366, 1447, 1456, 1457, 1458, 1506, 2829}

@@ -1,6 +1,6 @@
 """Status and Turn lead back to the axes they were read from."""
 
-from interp.robot.kinematics import Arm
+from interp.robot.kinematics.solver import Arm
 from interp.robot.models import default_machine
 from interp.robot.roundtrip import round_trips
 

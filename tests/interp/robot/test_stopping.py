@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from interp.faults import Fault
 from interp.robot.arm import Approximation
+from interp.values.faults import Fault
 
 if TYPE_CHECKING:
     from tests.interp.robot.conftest import Driver

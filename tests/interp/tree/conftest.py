@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from grammar.source import Source
-from interp.events import Recorder
-from interp.program import Limits, load
-from interp.requests import Path, Request
-from interp.stub import Outcome, StubWorld, run
+from grammar.syntax.source import Source
+from interp.bench.stub_world import Outcome, StubWorld, run
+from interp.port.events import Recorder
+from interp.port.requests import Path, Request
+from interp.program.load import Limits, load
 from interp.tree import TreeExecutor
 
 

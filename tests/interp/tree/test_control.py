@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
-from interp.faults import BudgetExhausted, Fault, LinkError
-from interp.program import Limits
-from interp.requests import End, Fail, Halt, Slice
+from interp.port.requests import End, Fail, Halt, Slice
+from interp.program.load import Limits
 from interp.tree import TreeExecutor
+from interp.values.faults import BudgetExhausted, Fault, LinkError
 
 Run = Callable[..., Any]
 Make = Callable[..., TreeExecutor]

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from grammar.source import Source
-from interp.events import Recorder
-from interp.program import Limits, load
-from interp.requests import Crash, End, Fail
-from interp.stub import Outcome, StubWorld, run
+from grammar.syntax.source import Source
+from interp.bench.stub_world import Outcome, StubWorld, run
+from interp.port.events import Recorder
+from interp.port.requests import Crash, End, Fail
+from interp.program.load import Limits, load
 from interp.tree import TreeExecutor, system_values
-from recovery.decode import decode
+from support.files.decode import decode
 
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from grammar.source import Source
-from interp.faults import LinkError, fault
-from interp.program import Limits, load
-from interp.requests import End, Invoke, Read, Write
+from grammar.syntax.source import Source
+from interp.port.requests import End, Invoke, Read, Write
+from interp.program.load import Limits, load
 from interp.tree import TreeExecutor, system_values
+from interp.values.faults import LinkError, fault
 
 Run = Callable[..., Any]
 Make = Callable[..., TreeExecutor]

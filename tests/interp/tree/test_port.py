@@ -5,10 +5,9 @@ from typing import Any, NoReturn
 
 import pytest
 
-from interp import requests
-from interp.events import Recorder
-from interp.faults import Fault, fault
-from interp.requests import (
+from interp.port import requests
+from interp.port.events import Recorder
+from interp.port.requests import (
     Code,
     DeclareInterrupt,
     End,
@@ -28,6 +27,7 @@ from interp.requests import (
     Write,
 )
 from interp.tree import TreeExecutor
+from interp.values.faults import Fault, fault
 
 Run = Callable[..., Any]
 Make = Callable[..., TreeExecutor]

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from interp.faults import Fault
-from interp.requests import At
+from interp.port.requests import At
+from interp.robot.api.commands import MotionCommand
 from interp.robot.arm import ArmEvent, Motion, Place, Position, Samples, Settings
-from interp.robot.commands import MotionCommand
-from interp.robot.frames import IDENTITY
+from interp.robot.kinematics.frames import IDENTITY
+from interp.values.faults import Fault
 
 BRAKING = 10_000  # µs until the arm stands
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from interp.faults import Fault
-from interp.requests import Path, Value
+from interp.port.requests import Path, Value
+from interp.robot.api.batch import BatchCore
+from interp.robot.api.commands import CommandError, MotionCommand, OutputCommand, State, Transaction
+from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Place
-from interp.robot.batch import BatchCore
-from interp.robot.commands import CommandError, MotionCommand, OutputCommand, State, Transaction
-from interp.robot.core import ControlCore
+from interp.values.faults import Fault
 
 Make = Callable[..., MotionCommand]
 BLENDED = ("C_DIS",)

@@ -6,10 +6,8 @@ from typing import Any
 
 import pytest
 
-from interp.faults import Fault
-from interp.requests import Path, Value
-from interp.robot.arm import Place
-from interp.robot.commands import (
+from interp.port.requests import Path, Value
+from interp.robot.api.commands import (
     CallCommand,
     Command,
     CommandError,
@@ -20,7 +18,9 @@ from interp.robot.commands import (
     Transaction,
     WaitCommand,
 )
-from interp.robot.core import ControlCore
+from interp.robot.api.control_core import ControlCore
+from interp.robot.arm import Place
+from interp.values.faults import Fault
 
 Make = Callable[..., MotionCommand]
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from interp.robot.arm import Place
-from interp.robot.commands import (
+from interp.robot.api.commands import (
     Command,
     CommandError,
     CoreEvent,
@@ -19,7 +18,8 @@ from interp.robot.commands import (
     Transaction,
     WaitCommand,
 )
-from interp.robot.core import ControlCore
+from interp.robot.api.control_core import ControlCore
+from interp.robot.arm import Place
 
 EFFECTS: tuple[Effect, ...] = ("start", "start", "start", "cancel", "stop")
 

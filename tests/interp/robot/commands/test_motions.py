@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from interp.robot.api.motions import Motions
 from interp.robot.arm import Place, Settings
-from interp.robot.motions import Motions
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "ignition.py"
 

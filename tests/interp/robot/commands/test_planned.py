@@ -6,21 +6,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from interp.faults import Fault
+from interp.robot.api.batch import BatchCore
+from interp.robot.api.commands import CoreEvent, MotionCommand, OutputCommand, State, Transaction
+from interp.robot.api.control_core import ControlCore
+from interp.robot.api.motions import Motions
 from interp.robot.arm import Approximation, Place, Settings
-from interp.robot.batch import BatchCore
-from interp.robot.commands import CoreEvent, MotionCommand, OutputCommand, State, Transaction
-from interp.robot.core import ControlCore
-from interp.robot.frames import Pose
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
-from interp.robot.motions import Motions
-from interp.robot.placement import Placement
+from interp.values.faults import Fault
 
 pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 
-from interp.robot.planned_arm import PlannedArm
+from interp.robot.planning.planned_arm import PlannedArm
 
 HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
 CELL = Placement(base=Pose.of(x=450.0, y=-100.0, z=300.0), tool=Pose.of(z=100.0))

@@ -1,0 +1,200 @@
+"""What of the language programs exercise: what stands on lines that were executed.
+
+Counted are kinds of nodes and their variants, operators, predefined functions, and the instructions
+that lines were compiled to. `language` lists what there is of each, so that what never came up can
+be told.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final, get_args
+
+from conformance.differential.runs import Prepared
+from conformance.differential.traces import Fact, place_of
+from grammar.semantics.operations import ARITHMETIC, BITWISE, EQUALITY, LOGICAL, ORDER
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
+from interp.bytecode._generated.opcodes import Op
+from interp.values.builtins import BUILTINS
+from interp.values.faults import FAULTS, LinkError
+
+__all__ = ["Counts", "counted", "language", "missing"]
+
+#: How often each thing came up, by its kind and its name.
+Counts = Counter[tuple[str, str]]
+
+_MOTIONS: Final = (
+    "PTP LIN CIRC PTP_REL LIN_REL CIRC_REL ASYPTP SPTP SLIN SCIRC SPL SPTP_REL SLIN_REL SCIRC_REL"
+    " SPL_REL"
+).split()
+_CRITERIA: Final = "C_PTP C_DIS C_ORI C_VEL C_SPL".split()
+_VARIANTS: Final = (
+    *("IF ELSE", "FOR STEP", "SWITCH DEFAULT", "CASE of several", "RETURN value"),
+    *(f"INTERRUPT {word}" for word in ("DECL", "GLOBAL DECL", "ON", "OFF", "ENABLE", "DISABLE")),
+    *("INTERRUPT without number", "BRAKE", "BRAKE F", "BRAKE FF"),
+    *(f"{word} {way}" for word in ("ANIN", "ANOUT", "DIGIN") for way in ("ON", "OFF")),
+    *("TRIGGER DISTANCE", "TRIGGER PATH", "TRIGGER ONSTART", "TRIGGER PRIO"),
+    *("TIME_BLOCK START", "TIME_BLOCK PART", "TIME_BLOCK END", "CONST_VEL START", "CONST_VEL END"),
+    *("SPLINE", "PTP_SPLINE", "WITH", "CA", "#BASE", "#TOOL"),
+    *("argument left out", "CONST", "GLOBAL"),
+)
+
+
+def language() -> Mapping[str, tuple[str, ...]]:
+    """All there is of each kind."""
+    nodes = {one.__name__ for one in get_args(ast.Statement | ast.Expression)}
+    operators = ARITHMETIC | BITWISE | EQUALITY | LOGICAL | ORDER | {":", "NOT", "B_NOT"}
+    return {
+        "node": tuple(sorted(nodes)),
+        "variant": (*_MOTIONS, *_CRITERIA, *_VARIANTS),
+        "operator": tuple(sorted(operators | {"sign -", "sign +"})),
+        "function": tuple(BUILTINS),
+        "instruction": tuple(op.name for op in Op),
+        # Nothing nests variables too deeply: types would have to hold themselves.
+        "fault": tuple(slug for slug in FAULTS if slug != "nesting"),
+    }
+
+
+def missing(counts: Counts) -> dict[str, list[str]]:
+    """What never came up, by kind; kinds of which all came up are left out."""
+    found = {
+        kind: [name for name in names if not counts[kind, name]]
+        for kind, names in language().items()
+    }
+    return {kind: names for kind, names in found.items() if names}
+
+
+def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
+    """What a run exercised."""
+    at = {place_of(fact) for fact in facts}
+    executed = {(one.file, one.line) for one in at if one is not None}
+    counts: Counts = Counter(_nodes(program, executed))
+    counts.update(("instruction", name) for name in _instructions(program, executed))
+    for fact in facts:
+        if fact[0] == "Fail" and fact[2][0] == "Fault":
+            counts["fault", _SLUGS.get(fact[2][1], "")] += 1
+    return counts
+
+
+#: What has no line of its own in a trace: it counts where its routine was executed.
+_UNTOLD: Final = (
+    ast.Definition | ast.Label | ast.CaseBranch | ast.TimeBlock | ast.ConstantVelocity
+)  # fmt: skip
+_SLUGS: Final = {kind.text: slug for slug, kind in FAULTS.items()}
+
+
+# --------------------------------------------------------------------------------- the tree
+
+
+def _nodes(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[tuple[str, str]]:
+    for unit in program.program.units.values():
+        syntax = unit.module.syntax
+        assert syntax is not None, "only what can be read is loaded"
+        path = unit.module.path
+        if isinstance(syntax.content, ast.DataList):
+            for item in syntax.content.items:
+                yield from _all_of(item)
+            continue
+        for routine in syntax.content.routines:
+            if (path, unit.line(routine.body[0])) not in executed and not any(
+                (path, unit.line(one)) in executed for one in routine.body
+            ):
+                continue
+            for node in walk(routine):
+                if isinstance(node, _UNTOLD) or (path, unit.line(node)) in executed:
+                    yield from _of(node)
+
+
+def _all_of(item: ast.Node) -> Iterator[tuple[str, str]]:
+    for node in walk(item):
+        yield from _of(node)
+
+
+def _of(node: ast.Node) -> Iterator[tuple[str, str]]:
+    yield "node", type(node).__name__
+    match node:
+        case ast.Binary():
+            yield "operator", node.operator
+        case ast.Unary():
+            is_sign = node.operator in "+-"
+            yield "operator", f"sign {node.operator}" if is_sign else node.operator
+        case ast.Call() if node.name.key in BUILTINS:
+            yield "function", node.name.key
+    for name in _variants(node):
+        yield "variant", name
+
+
+def _variants(node: Any) -> Iterator[str]:
+    """What tells nodes of one kind apart."""
+    match node:
+        case ast.If() if node.otherwise is not None:
+            yield "IF ELSE"
+        case ast.For() if node.step is not None:
+            yield "FOR STEP"
+        case ast.Switch() if node.default is not None:
+            yield "SWITCH DEFAULT"
+        case ast.CaseBranch() if len(node.values) > 1:
+            yield "CASE of several"
+        case ast.Return() if node.value is not None:
+            yield "RETURN value"
+        case ast.Brake():
+            yield f"BRAKE {node.mode or ''}".strip()
+        case ast.SignalOn() | ast.SignalOff():
+            yield f"{node.keyword} {'ON' if isinstance(node, ast.SignalOn) else 'OFF'}"
+        case ast.Call() if None in node.arguments:
+            yield "argument left out"
+        case ast.VariableDeclaration():
+            yield from (["CONST"] if node.is_constant else []) + (["GLOBAL"] * node.is_global)
+    yield from _interrupt(node)
+    yield from _motion(node)
+
+
+def _interrupt(node: Any) -> Iterator[str]:
+    match node:
+        case ast.InterruptDeclaration():
+            yield f"INTERRUPT {'GLOBAL ' * node.is_global}DECL"
+        case ast.InterruptSwitch():
+            yield f"INTERRUPT {node.action}"
+            if node.number is None:
+                yield "INTERRUPT without number"
+        case ast.Trigger():
+            yield f"TRIGGER {node.place_kind}"
+            yield from ["TRIGGER ONSTART"] * node.on_start
+            yield from ["TRIGGER PRIO"] * (node.priority is not None)
+
+
+def _motion(node: Any) -> Iterator[str]:
+    match node:
+        case ast.Motion():
+            yield node.kind
+            yield from node.criteria
+            yield from ["CA"] * (node.angle is not None) + ["WITH"] * bool(node.values)
+            if node.reference is not None:
+                yield f"#{node.reference.name.key}"
+        case ast.SplineBlock():
+            yield node.keyword
+            yield from ["WITH"] * bool(node.values) + ["C_SPL"] * node.is_approximated
+        case ast.TimeBlock():
+            yield f"TIME_BLOCK {node.edge}"
+        case ast.ConstantVelocity():
+            yield f"CONST_VEL {node.edge}"
+
+
+# --------------------------------------------------------------------------------- bytecode
+
+
+def _instructions(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[str]:
+    """Instructions that belong to executed lines; none where there is no bytecode of it."""
+    try:
+        codes = program.verified.program.codes
+    except LinkError:
+        return
+    for code in codes:
+        is_executed = False
+        for instruction in code.instructions:
+            if instruction.op in (Op.LINE, Op.AT):
+                is_executed = (code.file, instruction.operands[0]) in executed
+            if is_executed:
+                yield instruction.op.name

@@ -1,0 +1,188 @@
+"""A world that answers at random from a seed, disturbs programs, and holds little in memory.
+
+It differs from `interp.bench.stub_world.StubWorld` in that it answers with a fault now and then, in
+that what was never written has values that are no zeros, and in that arrays of thousands of inputs
+and outputs cost nothing before they are used.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any, Final
+
+from grammar.semantics.predefined import System
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    UNKNOWN,
+    Array,
+    Enumeration,
+    Structure,
+    Type,
+)
+from interp.port.requests import (
+    Invoke,
+    Move,
+    MoveSpline,
+    Path,
+    Poll,
+    Read,
+    Request,
+    Value,
+    Write,
+)
+from interp.values.faults import Fault, fault
+from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, empty, has_value
+
+__all__ = ["RandomWorld"]
+
+_INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
+#: So many looks in vain, then every input is TRUE: nobody waits for ever.
+_PATIENCE: Final = 3
+#: One request of so many is answered with a fault.
+_SELDOM: Final = 250
+_FAULTS: Final = ("invalid", "read_only", "index")
+_LARGEST_WHOLE: Final = 256
+
+
+class RandomWorld:
+    """Answers requests; the same requests get the same answers."""
+
+    def __init__(self, seed: str, *, has_faults: bool = True) -> None:
+        self._random = Random(seed)  # nobody's secret depends on it
+        self._has_faults = has_faults
+        self._values: dict[Path, Any] = {}
+        self._system = System.load()
+        self._looks = 0
+
+    def reply(self, request: Request) -> Any:
+        """The answer to a request; a `Fault` where there is none, and now and then without need."""
+        self._looks = self._looks + 1 if isinstance(request, Poll) and not request.is_first else 0
+        if not isinstance(request, Read | Write | Invoke | Move | MoveSpline):
+            return None
+        if self._has_faults and not self._random.randrange(_SELDOM):
+            return fault(self._random.choice(_FAULTS))
+        try:
+            match request:
+                case Read():
+                    return self.read(request.path)
+                case Write():
+                    self._write(request.path, request.value)
+                case Invoke():
+                    return self._invoked(request)
+        except Fault as error:
+            return error
+        return None
+
+    def below(self, end: int) -> int:
+        """A number from 0 to below ``end``, for those who disturb the program."""
+        return self._random.randrange(end)
+
+    def read(self, path: Path) -> Value:
+        """The value of a system variable or a part of one; faults `index`, `uninitialised`."""
+        if path[0] in _INPUTS:
+            return self._drawn(path)
+        key, members = _split(path)
+        value = self._values.get(key)
+        if value is None:
+            value = self._values[key] = self._made(self._type(key))
+        for name in members:
+            value = _member(value, name)
+        if value is None:
+            raise fault("uninitialised")
+        found: Value = copied(value)
+        return found
+
+    def _write(self, path: Path, value: Value) -> None:
+        key, members = _split(path)
+        if not members:
+            self._type(key)
+            self._values[key] = copied(value)
+            return
+        if key not in self._values:
+            self._values[key] = self._made(self._type(key))
+        whole = self._values[key]
+        for name in members[:-1]:
+            whole = _member(whole, name)
+        last = members[-1]
+        if isinstance(whole, StructureValue) and isinstance(last, str):
+            whole.set(last, copied(value))
+        elif isinstance(whole, ArrayValue) and isinstance(last, int):
+            whole.set(copied(value), last)
+        else:
+            raise fault("invalid")
+
+    def _invoked(self, request: Invoke) -> tuple[Value | None, tuple[Value | None, ...]]:
+        """A result at random, and values for all that is passed :OUT and has none."""
+        function = self._system.functions[request.name]
+        after = list(request.arguments)
+        for place, parameter in enumerate(function.parameters[: len(after)]):
+            if parameter.is_out and not has_value(after[place]):
+                after[place] = self._made(getattr(after[place], "type", parameter.type))
+        result = None if function.result is None else self._made(function.result)
+        return result, tuple(after)
+
+    # ----------------------------------------------------------------------- values
+
+    def _drawn(self, path: Path) -> Value:
+        """An input: another value at each look."""
+        if path[0] == "$ANIN":
+            return self.below(9) / 4 - 1
+        if path[0] == "$DIGIN1":
+            return self.below(9) - 4
+        if len(path) == 4:  # ("$IN", 9, "TO", 12)
+            return self.below(16)
+        drawn = self.below(2) == 1
+        return drawn or self._looks >= _PATIENCE
+
+    def _type(self, key: Path) -> Type:
+        entry = self._system.variables.get(str(key[0]))
+        type_ = UNKNOWN if entry is None else entry.type
+        indices = [one for one in key[1:] if isinstance(one, int)]
+        if "TO" in key:
+            return INT
+        if indices and isinstance(type_, Array):
+            for index, size in zip(indices, type_.sizes, strict=False):
+                if not 1 <= index <= (_LARGEST_WHOLE if size is None else size):
+                    raise fault("index")
+            return type_.element
+        return type_
+
+    def _made(self, type_: Type) -> Any:
+        """A value of a type; texts and numbers are short and small."""
+        match type_:
+            case Structure():
+                return StructureValue(type_, [self._made(one.type) for one in type_.members])
+            case Array():
+                sizes = tuple(_LARGEST_WHOLE if one is None else one for one in type_.sizes)
+                known = Array(INT if type_.element == UNKNOWN else type_.element, sizes)
+                made = empty(known)
+                assert isinstance(made, ArrayValue)
+                for place in range(min(len(made), 3)):
+                    made.elements[place] = self._made(known.element)
+                return made
+            case Enumeration():
+                return EnumValue(type_, self.below(len(type_.constants)))
+        if type_ == REAL:
+            return self.below(16) / 8
+        if type_ == BOOL:
+            return self.below(2) == 1
+        return "KRL "[self.below(4)] if type_ == CHAR else self.below(5)
+
+
+def _split(path: Path) -> tuple[Path, tuple[str | int, ...]]:
+    """What has a place of its own, and the members within: ``("$TOOL",)`` and ``("X",)``."""
+    place = 1
+    while place < len(path) and (isinstance(path[place], int) or path[place] == "TO"):
+        place += 1
+    return path[:place], path[place:]
+
+
+def _member(value: Any, step: str | int) -> Any:
+    if isinstance(value, StructureValue) and isinstance(step, str):
+        return value.get(step)
+    if isinstance(value, ArrayValue) and isinstance(step, int):
+        return value.get(step)
+    raise fault("uninitialised")

@@ -1,0 +1,100 @@
+"""A third party's executor or robot proves itself: one line, and every case has its say.
+
+    from conformance.external_backend import prove
+
+    prove(executor=MyExecutor).assert_conforms()
+
+An executor is made as ours are: ``MyExecutor(program, routine, limits, sink)`` gives an
+`interp.port.executor.Executor` for a checked program. A robot is made by ``MyRobot(machine,
+cycle)``, an `interp.robot.simulation.robots.Robot`. Each case is judged by what it expects, and
+compared with the reference event by event: the tree interpreter, and the kinematic robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from conformance.judging.observation import Observation
+from conformance.judging.observe import (
+    MakeExecutor,
+    MakeRobot,
+    Setup,
+    missing,
+    observe,
+    observe_with,
+)
+from conformance.judging.verdicts import KnownFailures
+from conformance.runner import CaseResult, run_case
+from conformance.suite.case import CASES, Case, find_cases, selected
+
+__all__ = ["MakeExecutor", "MakeRobot", "NotConforming", "Proof", "prove"]
+
+#: The names that theirs and the reference have in results.
+THEIRS = "theirs"
+REFERENCE = "tree"
+
+
+class NotConforming(AssertionError):
+    """Cases have failed; the text names each with its reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """What came of it."""
+
+    results: tuple[CaseResult, ...]
+
+    @property
+    def failed(self) -> list[str]:
+        """The cases that failed on theirs, each with its reason."""
+        return [
+            f"{one.case.name}: {result.reason}"
+            for one in self.results
+            for result in one.results
+            if result.verdict == "fail" and THEIRS in (result.executor, result.robot)
+        ]
+
+    def assert_conforms(self) -> None:
+        """Raise `NotConforming` where a case failed, or where none could be judged."""
+        judged = [result for one in self.results for result in one.results]
+        theirs = [one for one in judged if THEIRS in (one.executor, one.robot)]
+        if all(one.verdict == "skipped" for one in theirs):
+            raise NotConforming("no case could be judged")
+        if self.failed:
+            count = f"{len(self.failed)} of {len(self.results)} cases failed"
+            raise NotConforming("\n".join([count, *self.failed]))
+
+
+def prove(
+    executor: MakeExecutor | None = None,
+    robot: MakeRobot | None = None,
+    *,
+    select: Sequence[str] = (),
+    cases: Path = CASES,
+) -> Proof:
+    """Run all cases that run programs, or those selected, on theirs beside the reference.
+
+    Raises `ValueError` where neither is given, `CaseError` for a selection that names nothing.
+    """
+    if executor is None and robot is None:
+        raise ValueError("give an executor, a robot, or both")
+    reference = Setup(REFERENCE, "kinematic" if robot is not None else "none")
+    theirs = Setup(
+        THEIRS if executor is not None else REFERENCE,
+        THEIRS if robot is not None else reference.robot,
+    )
+
+    def see(case: Case, setup: Setup) -> Observation:
+        if setup == theirs:
+            return observe_with(case, executor, robot)
+        return observe(case, setup)
+
+    def absent(setup: Setup) -> str:
+        return "" if setup == theirs else missing(setup)
+
+    wanted = [case for case in selected(find_cases(cases), select) if case.phase == "run"]
+    known = KnownFailures.load()
+    done = [run_case(case, (reference, theirs), known, see, absent) for case in wanted]
+    return Proof(tuple(done))

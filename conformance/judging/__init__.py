@@ -1,0 +1,1 @@
+"""What was observed of a case against what was expected; executors compared."""

@@ -1,0 +1,141 @@
+"""Where two runs of one case begin to differ, with the state of each at that point.
+
+Executors conform when their traces are equal, full level included [docs/trace.md].
+`first_divergence` finds the first event that differs and tells, for both sides, what every variable
+and output was by then: the values that the trace has told so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import Any, Final
+
+import numpy as np
+
+from conformance.judging.observation import Event, Observation
+from interp.robot.simulation.tracking import PathRecord
+
+__all__ = ["Divergence", "Side", "first_divergence"]
+
+#: How many events before the divergence are kept to be shown.
+_BEFORE: Final = 5
+#: Set-points of two executors come from one planner: they are equal up to this, in degrees.
+_SAME_AXES: Final = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of two runs: who it is, the event it has there (``None``: it has ended), its state."""
+
+    name: str
+    event: dict[str, Any] | None
+    variables: dict[str, Any]
+    outputs: dict[str, Any]
+
+    def record(self) -> dict[str, Any]:
+        """It as JSON."""
+        return {
+            "name": self.name,
+            "event": self.event,
+            "variables": self.variables,
+            "outputs": self.outputs,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """The first difference: ``place`` counts events from 0; file and line are those of the source.
+
+    ``before`` are the last events that both have.
+    """
+
+    place: int
+    file: str
+    line: int
+    before: tuple[dict[str, Any], ...]
+    left: Side
+    right: Side
+
+    def record(self) -> dict[str, Any]:
+        """It as JSON."""
+        return {
+            "place": self.place,
+            "file": self.file,
+            "line": self.line,
+            "before": list(self.before),
+            "left": self.left.record(),
+            "right": self.right.record(),
+        }
+
+    def __str__(self) -> str:
+        left, right = self.left, self.right
+        return (
+            f"{self.file}:{self.line}: {left.name} {_told(left.event)}, "
+            f"{right.name} {_told(right.event)}"
+        )
+
+
+def first_divergence(
+    names: tuple[str, str], left: Observation, right: Observation
+) -> Divergence | None:
+    """The first difference of two runs; ``None`` where they are the same."""
+    pairs = zip_longest(left.events, right.events)
+    for place, (one, other) in enumerate(pairs):
+        if one != other or not _same_types(one, other):
+            return _divergence(names, left.events, right.events, place)
+    if left.ending != right.ending or not _same_path(left.path, right.path):
+        return _divergence(names, left.events, right.events, len(left.events))
+    return None
+
+
+def _same_types(one: Event | None, other: Event | None) -> bool:
+    """Whether equal events give values of one type: 1, 1.0 and TRUE are equal in Python only."""
+    if one is None or other is None:
+        return one is other
+    return type(one.fields.get("value")) is type(other.fields.get("value"))
+
+
+def _same_path(left: PathRecord | None, right: PathRecord | None) -> bool:
+    if left is None or right is None:
+        return True
+    same_times = np.array_equal(left.times, right.times)
+    return same_times and bool(np.allclose(left.axes, right.axes, rtol=0, atol=_SAME_AXES))
+
+
+def _divergence(
+    names: tuple[str, str], left: Sequence[Event], right: Sequence[Event], place: int
+) -> Divergence:
+    at = next((events[place] for events in (left, right) if place < len(events)), None)
+    if at is None or not at.file:
+        at = next((event for event in reversed(left[:place]) if event.file), at)
+    return Divergence(
+        place,
+        at.file if at else "",
+        at.line if at else 0,
+        tuple(event.record() for event in left[max(0, place - _BEFORE) : place]),
+        _side(names[0], left, place),
+        _side(names[1], right, place),
+    )
+
+
+def _side(name: str, events: Sequence[Event], place: int) -> Side:
+    variables: dict[str, Any] = {}
+    outputs: dict[str, Any] = {}
+    for event in events[: place + 1]:
+        if event.kind == "assign":
+            variables[str(event.fields.get("name"))] = event.fields.get("value")
+        elif event.kind in ("out", "anout"):
+            outputs[f"{event.kind} {event.fields.get('number')}"] = event.fields.get("value")
+    there = events[place].record() if place < len(events) else None
+    return Side(name, there, variables, outputs)
+
+
+def _told(event: dict[str, Any] | None) -> str:
+    if event is None:
+        return "has ended"
+    fields = {key: value for key, value in event.items() if key not in ("task", "at", "t")}
+    time = event.get("t")
+    when = "" if time is None else f" at {time / 1e6:.6f} s"
+    return f"says {' '.join(str(value) for value in fields.values())}{when}"

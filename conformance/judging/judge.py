@@ -1,0 +1,141 @@
+"""Whether expectations are met by what was seen.
+
+Each `Check` tells what became of one expectation: met, not met, or open, where what was seen cannot
+tell (a path without a robot, times that nobody measured). `judge` adds what every case expects
+without saying so: that the front end says nothing graver, that the program ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from conformance.judging.judge_path import judge_path
+from conformance.judging.judge_trace import Marks, judge_trace, unwatched
+from conformance.judging.observation import Finding, Observation
+from conformance.suite.case import Case
+from conformance.suite.expectations import Expectation
+
+__all__ = ["Check", "judge"]
+
+State = Literal["met", "unmet", "open"]
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What became of an expectation: ``actual`` says what was seen instead, or why it is open."""
+
+    file: str
+    line: int
+    text: str
+    state: State
+    actual: str = ""
+
+
+_ROBOTS = ("none", "kinematic", "mujoco")
+
+
+def judge(case: Case, seen: Observation) -> list[Check]:
+    """All checks of a case, in the order of its lines; what every case expects comes last."""
+    if case.phase != "run":
+        return [*(_said(one, seen) for one in case.expectations), *_unsaid(case, seen)]
+    marks = _marks(case)
+    found = []
+    for one in case.expectations:
+        if _ROBOTS.index(one.needs) > _ROBOTS.index(seen.robot):
+            found.append(_check(one, "open", f"needs the robot {one.needs}"))
+            continue
+        lacking = unwatched(one, seen)
+        if lacking:
+            found.append(_check(one, "open", f"{lacking} was not watched"))
+            continue
+        judge_one = judge_trace if one.needs == "none" else judge_path
+        judged = judge_one(one, seen, marks)
+        found.append(_check(one, *judged))
+    return [*found, *_ended(case, seen)]
+
+
+def _marks(case: Case) -> Marks:
+    places = {one: (one.file, one.line) for one in case.expectations}
+    return Marks(
+        {one.arguments[0]: at for one, at in places.items() if one.kind == "mark"},
+        frozenset(at for one, at in places.items() if one.kind == "order"),
+    )
+
+
+def _check(one: Expectation, state: State, actual: str = "") -> Check:
+    return Check(one.file, one.line, one.text, state, actual)
+
+
+# ------------------------------------------------------------------------------------- findings
+
+
+def _said(one: Expectation, seen: Observation) -> Check:
+    if seen.watched is not None:
+        return _recorded(one, seen)
+    there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
+    told = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
+    match one.kind:
+        case "accepted":
+            grave = [found for found in seen.findings if found.severity != "note"]
+            return _check(one, "unmet" if grave else "met", _list(grave))
+        case "syntax":
+            first = seen.findings[0] if seen.findings else None
+            is_met = first is not None and (first.file, first.line) == (one.file, one.line)
+            return _check(one, "met" if is_met else "unmet", _list(seen.findings) or "accepted")
+        case "silent":
+            is_met = all(found.code != one.arguments[0] for found in there)
+            return _check(one, "met" if is_met else "unmet", told)
+    is_met = any((f.severity, f.code) == (one.kind, one.arguments[0]) for f in there)
+    return _check(one, "met" if is_met else "unmet", told)
+
+
+def _recorded(one: Expectation, seen: Observation) -> Check:
+    """What a controller says has its own numbers: ours are a line where it complains."""
+    there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
+    told = _list(seen.findings) or "accepted"
+    code = one.arguments[0] if one.arguments else ""
+    if one.kind in ("note", "silent") or code.startswith("KRL6"):
+        return _check(one, "open", "only our checker tells this")
+    if one.kind == "accepted":
+        return _check(one, "unmet" if seen.findings else "met", told)
+    codes = {found.code for found in there}
+    is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
+    return _check(one, "met" if is_met else "unmet", told)
+
+
+def _list(findings: list[Finding] | tuple[Finding, ...]) -> str:
+    return "; ".join(f"{one.file}:{one.line} {one.severity} {one.code}" for one in findings)
+
+
+def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
+    """No error but those that are expected."""
+    said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
+    if case.phase == "parse" and said:
+        return  # what comes behind the first failure is nobody's business
+    for found in seen.findings:
+        if found.severity == "error" and (found.file, found.line) not in said:
+            text = "no error but those expected"
+            yield Check(found.file, found.line, text, "unmet", f"{found.code} {found.message}")
+
+
+def _ended(case: Case, seen: Observation) -> Iterator[Check]:
+    """A program ends by itself, where nothing else is expected of it."""
+    if not seen.ending:  # nobody watched
+        return
+    kinds = {one.kind: one for one in case.expectations}
+    last = seen.events[-1] if seen.events else None
+    file, line = (last.file, last.line) if last else (case.main, 0)
+    if seen.ending == "crash":
+        yield Check(file, line, "no crash", "unmet", seen.note)
+        return
+    runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in case.expectations)
+    faults = [event for event in seen.events if event.kind == "fault"]
+    is_robot = not faults or any(event.task == "robot" for event in faults)
+    wanted = "fault" if "fault" in kinds and is_robot else "running" if runs_on else "end"
+    if seen.ending != wanted and not (
+        wanted == "end" and "halt" in kinds and seen.ending == "halt"
+    ):
+        told = f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
+        yield Check(file, line, f"the program ends with: {wanted}", "unmet", told)

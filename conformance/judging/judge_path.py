@@ -1,0 +1,269 @@
+"""Expectations about the path of a motion: where it goes, how fast, how well it is followed.
+
+The part of a path that belongs to a line is that of its last motion, from start to end. Its own
+part, for lines and circles, is what lies between the blends. What it has to be is analytic and
+stands in the case; the path is that of the set-points, in each interpolation cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from conformance.judging.judge_trace import Judged, Marks, time_of
+from conformance.judging.observation import Observation
+from conformance.judging.path_geometry import between, from_arc, from_circle, from_line, refined
+from conformance.suite.expectations import Expectation
+from interp.robot.simulation.tracking import PathRecord
+
+__all__ = ["judge_path"]
+
+Array = npt.NDArray[np.float64]
+
+#: The usual tolerances: mm, degrees, a share of the speed, a share of the limits of axes.
+_NEAR: Final = 0.05
+_ANGLE: Final = 0.01
+_SPEED: Final = 0.01
+#: Differences of set-points overestimate what they approximate by so much at most.
+_MARGIN: Final = 1.02
+#: How far a simulated arm may be off its path where a case does not say, in mm [design section 4].
+_TRACKING: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """The motion of a line, times in µs; ``leave`` and ``join`` are the ends of its blend."""
+
+    path: PathRecord
+    start: int
+    end: int
+    entered: int
+    leave: int | None
+    join: int | None
+
+    @property
+    def points(self) -> Array:
+        """Where the tool was, X, Y and Z."""
+        return np.asarray(self.path.points[:, :3], dtype=np.float64)
+
+    def at(self, time: float) -> Array:
+        """Where the tool was at a time."""
+        return between(self.path.times, self.points, time)
+
+    def own(self) -> Array:
+        """Samples of the tool between the blends."""
+        last = self.end if self.leave is None else self.leave
+        kept = (self.path.times >= self.entered) & (self.path.times <= last)
+        return self.points[kept]
+
+    def within(self, start: int, end: int) -> npt.NDArray[np.bool_]:
+        """Which samples lie between two times."""
+        kept: npt.NDArray[np.bool_] = (self.path.times >= start) & (self.path.times <= end)
+        return kept
+
+
+def judge_path(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+    """Whether an expectation about the path is met."""
+    if seen.path is None:
+        return "open", "no path was recorded"
+    part = _part(one, seen, seen.path)
+    if part is None:
+        return "unmet", "the motion did not begin and end"
+    if one.kind in ("pose", "axes"):
+        return _position(one, seen, part, marks)
+    return _JUDGES[one.kind](one, seen, part)
+
+
+def _part(one: Expectation, seen: Observation, path: PathRecord) -> _Part | None:
+    starts = seen.on_line(one.file, one.line, "motion_start")
+    if not starts:
+        return None
+    number = starts[-1].fields.get("motion")
+    times = {
+        (event.kind, event.fields.get("motion")): event.time
+        for event in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end")
+    }
+    start, end = times["motion_start", number], times.get(("motion_end", number))
+    if start is None or end is None or number is None:
+        return None
+    entered = times.get(("blend_end", number))
+    leave = times.get(("blend_start", number))
+    join = None if leave is None else times.get(("blend_end", number + 1))
+    return _Part(path, start, end, start if entered is None else entered, leave, join)
+
+
+# ------------------------------------------------------------------------------------- places
+
+
+def _numbers(one: Expectation) -> Array:
+    found = []
+    for word in one.arguments:
+        try:
+            found.append(float(word))
+        except ValueError:
+            continue
+    return np.array(found)
+
+
+def _near(one: Expectation, off: float, unit: str = "mm", usual: float = _NEAR) -> Judged:
+    margin = usual if one.tolerance is None else one.tolerance
+    return ("met" if off <= margin else "unmet"), f"{off:.4f} {unit} off"
+
+
+def _path(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    numbers = _numbers(one).reshape(-1, 3)
+    match one.arguments[0]:
+        case "joint":
+            return _joint(one, part)
+        case "blend":
+            if part.leave is None or part.join is None:
+                return "unmet", "there is no blend"
+            points = part.points[part.within(part.leave, part.join)]
+            off = from_arc(points, numbers[0], numbers[1], numbers[2])
+        case "circle":
+            points, off = part.own(), from_circle(part.own(), *numbers)
+        case _:
+            points, off = part.own(), from_line(part.own(), *numbers)
+    if not len(points):
+        return "unmet", "there is no part of the path between the blends"
+    return _near(one, float(off.max()))
+
+
+def _joint(one: Expectation, part: _Part) -> Judged:
+    """All axes have come the same share of their way [MOT-01]."""
+    last = part.end if part.leave is None else part.leave
+    axes = part.path.axes[part.within(part.entered, last)][:, :6]
+    if not len(axes):
+        return "unmet", "there is no part of the path between the blends"
+    way = axes[-1] - axes[0]
+    longest = int(np.argmax(np.abs(way)))
+    if abs(way[longest]) < 1e-9:
+        return "unmet", "no axis moves"
+    share = (axes[:, longest] - axes[0, longest]) / way[longest]
+    off = np.abs(axes - axes[0] - share[:, None] * way).max()
+    return _near(one, float(off), "degrees", _ANGLE)
+
+
+def _distance(part: _Part, point: Array) -> float:
+    """How near the tool comes to a point while the motion, and the blend behind it, goes on."""
+    last = part.end if part.join is None else part.join
+    points = refined(part.path.times, part.points, part.start, last, 2_000)
+    return float(np.linalg.norm(points - point, axis=1).min())
+
+
+def _passes(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    return _near(one, _distance(part, _numbers(one)))
+
+
+def _misses(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    *point, wanted = _numbers(one)
+    off = _distance(part, np.array(point))
+    margin = wanted * 0.05 if one.tolerance is None else one.tolerance
+    return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm away"
+
+
+def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    moment = part.leave if one.kind == "leaves" else part.join
+    if moment is None:
+        return "unmet", "there is no blend"
+    *point, wanted = _numbers(one)
+    off = float(np.linalg.norm(part.at(moment) - np.array(point)))
+    margin = _NEAR if one.tolerance is None else one.tolerance
+    return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm before or behind it"
+
+
+def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) -> Judged:
+    moment = part.end
+    if one.when is not None:
+        try:
+            moment = time_of(one.when.first, seen, marks)
+        except LookupError as error:
+            return "unmet", str(error.args[0])
+    wanted = _numbers(one)
+    rows = part.path.axes if one.kind == "axes" else part.path.points
+    found = between(part.path.times, rows, moment)[: len(wanted)]
+    off = np.abs(found - wanted)
+    if one.kind == "pose":
+        off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
+    told = " ".join(f"{number:.4f}" for number in found)
+    usual = _NEAR if one.kind == "pose" else _ANGLE
+    margin = usual if one.tolerance is None else one.tolerance
+    return ("met" if float(off.max()) <= margin else "unmet"), told
+
+
+# ------------------------------------------------------------------------------------- speeds
+
+
+def _rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
+    """Differences of rows a second, shape (n - 1, columns)."""
+    return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
+
+
+def _speed(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    kept = part.within(part.start, part.end if part.join is None else part.join)
+    if one.arguments[0] == "drops":
+        if part.leave is None or part.join is None:
+            return "unmet", "there is no blend"
+        kept = part.within(part.leave, part.join)
+    rates = _rates(part.path.times[kept], part.points[kept])
+    speeds = np.linalg.norm(rates, axis=1) / 1_000
+    if not len(speeds):
+        return "unmet", "there are too few samples"
+    wanted = float(one.arguments[-1])
+    fastest, slowest = float(speeds.max()), float(speeds.min())
+    match one.arguments[0]:
+        case "most":
+            return ("met" if fastest <= wanted * (1 + _SPEED) else "unmet"), f"{fastest:.4f} m/s"
+        case "reaches":
+            is_met = abs(fastest - wanted) <= wanted * _SPEED
+            return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s"
+    return ("met" if slowest < wanted else "unmet"), f"{slowest:.4f} m/s"
+
+
+def _limits(one: Expectation, seen: Observation, part: _Part) -> Judged:
+    """No axis is faster than its machine data allow; ``smooth``: none changes its speed faster."""
+    if seen.machine is None:
+        return "open", "the limits of the arm are not known"
+    last = part.end if part.join is None else part.join
+    kept = part.within(part.start, last)
+    axes = seen.machine.axes
+    dynamics = [axis.dynamics for axis in axes[:6]]
+    rates = _rates(part.path.times[kept], part.path.axes[kept][:, :6])
+    most = np.array([one.velocity if one else math.inf for one in dynamics])
+    if one.kind == "smooth":
+        rates = _rates(part.path.times[kept][1:], rates)
+        most = np.array([one.acceleration if one else math.inf for one in dynamics])
+    if not len(rates):
+        return "unmet", "there are too few samples"
+    worst = np.abs(rates).max(axis=0) / most
+    axis = int(np.argmax(worst))
+    told = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
+    return ("met" if float(worst.max()) <= _MARGIN else "unmet"), told
+
+
+def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+    """The measured tool is near the set-points."""
+    measured = part.path.points_measured
+    if measured is None:
+        return "open", "nothing was measured"
+    kept = part.within(part.start, part.end)
+    off = np.linalg.norm(measured[kept, :3] - part.points[kept], axis=1)
+    return _near(one, float(off.max()), usual=_TRACKING)
+
+
+_JUDGES: Final[Mapping[str, Callable[[Expectation, Observation, _Part], Judged]]] = {
+    "path": _path,
+    "passes": _passes,
+    "misses": _misses,
+    "leaves": _leaves,
+    "joins": _leaves,
+    "speed": _speed,
+    "smooth": _limits,
+    "limits": _limits,
+    "tracks": _tracks,
+}

@@ -1,0 +1,350 @@
+"""Expectations about a trace: values, ways, what happens in the cell and when."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from conformance.judging.observation import Event, Observation
+from conformance.suite.expectations import Anchor, Expectation, When
+
+__all__ = ["Judged", "Marks", "judge_trace", "time_of", "unwatched"]
+
+#: Whether it is met, and what was seen.
+Judged = tuple[Literal["met", "unmet", "open"], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Marks:
+    """Lines that expectations of a case refer to: by name, and those whose order counts."""
+
+    named: Mapping[str, tuple[str, int]]
+    ordered: frozenset[tuple[str, int]]
+
+
+#: The words of expectations for events of the trace.
+_EVENTS: Final[Mapping[str, str]] = {
+    "start": "motion_start",
+    "end": "motion_end",
+    "blend-start": "blend_start",
+    "apex": "blend_apex",
+    "blend-end": "blend_end",
+    "planned": "motion_planned",
+    "brake": "brake",
+    "resume": "resume",
+    "halt": "halt",
+    "line": "line",
+    "trigger": "trigger",
+}
+#: Relative: single precision agrees to the seventh digit [TYP-02].
+_REAL: Final = 1e-6
+#: What "exactly" means where times are whole microseconds that were rounded once or twice, in µs.
+_EXACTLY: Final = 2
+
+
+#: What has to be watched for the rest, besides `_EVENTS`.
+_NEEDS: Final[Mapping[str, str]] = {
+    "value": "assign",
+    "values": "assign",
+    "runs": "line",
+    "never": "line",
+    "order": "line",
+    "mark": "line",
+    "stops": "advance_stop",
+    "runs-ahead": "advance_stop",
+    "blends": "blend_start",
+    "exact": "blend_start",
+    "lasts": "motion_end",
+    "interrupt": "interrupt_enter",
+}
+
+
+def unwatched(one: Expectation, seen: Observation) -> str:
+    """The kind of event that a recording would have to have and has not; empty where it has."""
+    if seen.watched is None or one.arguments == ("on",):
+        return ""
+    kind = _NEEDS.get(one.kind) or _EVENTS.get(one.kind) or one.kind
+    return "" if kind in seen.watched or one.needs != "none" else kind
+
+
+def judge_trace(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+    """Whether an expectation about the trace is met."""
+    return _JUDGES.get(one.kind, _happens)(one, seen, marks)
+
+
+# ------------------------------------------------------------------------------------- values
+
+
+def _value(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    name, *wanted = one.arguments
+    events = seen.on_line(one.file, one.line, "assign") or [*seen.of_kind("assign")]
+    steps = _steps(name)
+    found = [value for event in events for value in _assigned(event, steps)]
+    if one.kind == "value":
+        found = found[-1:]
+    if not found:
+        return "unmet", f"{name} was never assigned"
+    told = " ".join(map(_told, found))
+    expected = [_literal(word) for word in wanted]
+    is_met = len(found) == len(expected) and all(
+        _alike(left, right, one.tolerance) for left, right in zip(expected, found, strict=True)
+    )
+    return ("met" if is_met else "unmet"), told
+
+
+def _steps(name: str) -> list[str | int]:
+    """``A[2].X`` as the trace has it: A, 2, X."""
+    return [
+        int(part) if part.isdigit() else part.upper()
+        for part in re.split(r"[\[\],.]+", name.rstrip("]"))
+        if part
+    ]
+
+
+def _assigned(event: Event, steps: Sequence[str | int]) -> list[Any]:
+    """The value that the event gave it, if it did."""
+    path = _steps(str(event.fields.get("name", "")))
+    if path != list(steps[: len(path)]):
+        return []
+    value = event.fields.get("value")
+    for step in steps[len(path) :]:
+        if isinstance(value, Mapping) and step in value:
+            value = value[step]
+        elif isinstance(value, list | str) and isinstance(step, int) and step <= len(value):
+            value = value[step - 1]
+        else:
+            return [None]
+    return [value]
+
+
+def _literal(word: str) -> Any:
+    match word:
+        case "TRUE" | "FALSE":
+            return word == "TRUE"
+        case "none":
+            return None
+    if word.startswith('"'):
+        return word[1:-1]
+    if word.startswith("#"):
+        return word.upper()
+    return float(word) if re.search(r"[.eE]", word) else int(word)
+
+
+def _alike(wanted: Any, found: Any, tolerance: float | None) -> bool:
+    if isinstance(wanted, float) and isinstance(found, float):
+        margin = abs(wanted) * _REAL if tolerance is None else tolerance
+        return abs(wanted - found) <= max(margin, 1e-37)
+    return type(wanted) is type(found) and wanted == found
+
+
+def _told(value: Any) -> str:
+    match value:
+        case None:
+            return "none"
+        case bool():
+            return str(value).upper()
+        case str() if value.startswith("#"):
+            return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+# ------------------------------------------------------------------------------------- ways
+
+
+def _runs(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    if one.arguments == ("on",):
+        return ("met" if seen.ending == "running" else "unmet"), seen.ending
+    times = len(seen.on_line(one.file, one.line, "line"))
+    wanted = int(one.arguments[0]) if one.arguments else 0
+    return ("met" if times == wanted else "unmet"), f"{times} times"
+
+
+def _order(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+    """The places of this line among all lines that have an order are those it names."""
+    ordered = marks.ordered
+    ways = [(event.file, event.line) for event in seen.of_kind("line")]
+    places = [place for place in ways if place in ordered]
+    found = [str(number) for number, at in enumerate(places, 1) if at == (one.file, one.line)]
+    return ("met" if tuple(found) == one.arguments else "unmet"), " ".join(found) or "never"
+
+
+def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    faults = [*seen.of_kind("fault")]
+    told = "; ".join(
+        f"{one_fault.fields.get('slug') or 'link'} {one_fault.fields.get('number') or ''}"
+        f" on line {one_fault.line}"
+        for one_fault in faults
+    )
+    there = [event for event in faults if (event.file, event.line) == (one.file, one.line)]
+    names = {str(event.fields.get("slug") or "link") for event in there}
+    names |= {str(event.fields.get("number")) for event in there}
+    return ("met" if one.arguments[0] in names else "unmet"), told or f"none: {seen.ending}"
+
+
+def _mark(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    is_there = bool(seen.on_line(one.file, one.line, "line"))
+    return ("met" if is_there else "unmet"), "" if is_there else "the line was never executed"
+
+
+def _stops(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    stops = bool(seen.on_line(one.file, one.line, "advance_stop"))
+    if not seen.on_line(one.file, one.line, "line", "advance_stop"):
+        return "unmet", "the line was never executed"
+    is_met = stops == (one.kind == "stops")
+    return ("met" if is_met else "unmet"), "stops" if stops else "runs ahead"
+
+
+def _blends(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    if not seen.on_line(one.file, one.line, "motion_start"):
+        return "unmet", "the motion never began"
+    blends = bool(seen.on_line(one.file, one.line, "blend_start"))
+    is_met = blends == (one.kind == "blends")
+    return ("met" if is_met else "unmet"), "blends" if blends else "stops exactly"
+
+
+def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+    start = seen.on_line(one.file, one.line, "motion_start")
+    end = seen.on_line(one.file, one.line, "motion_end")
+    if not start or not end or start[-1].time is None or end[-1].time is None:
+        return "unmet", "the motion did not begin and end"
+    took = (end[-1].time - start[-1].time) / 1e6
+    margin = seen.cycle / 1e6 if one.tolerance is None else one.tolerance
+    is_met = abs(took - float(one.arguments[0])) <= margin
+    return ("met" if is_met else "unmet"), f"{took:.6f} s"
+
+
+# ------------------------------------------------------------------------------- what happens
+
+
+def _happens(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+    """An event is there, at its time; or never, or so often."""
+    events = _events(one, seen)
+    words = one.arguments
+    if "never" in words:
+        return ("unmet" if events else "met"), _times(events)
+    if "times" in words:
+        wanted = int(words[words.index("times") + 1])
+        return ("met" if len(events) == wanted else "unmet"), f"{len(events)}: {_times(events)}"
+    if not events:
+        return "unmet", "it never happened"
+    if one.when is None:
+        return "met", _times(events)
+    if any(event.time is None for event in events):
+        return "open", "nobody measured when"
+    try:
+        is_met = any(_is_then(event, one.when, one.tolerance, seen, marks) for event in events)
+    except LookupError as error:
+        return "unmet", str(error.args[0])
+    return ("met" if is_met else "unmet"), f"{_times(events)}{_moments(one.when, seen, marks)}"
+
+
+def _events(one: Expectation, seen: Observation) -> list[Event]:
+    fits = _FITS.get(one.kind)
+    if fits is not None:
+        kind, test = fits
+        if one.kind == "interrupt":
+            return [event for event in seen.of_kind(kind) if test(one, event)]
+        return [event for event in seen.on_line(one.file, one.line, kind) if test(one, event)]
+    return seen.on_line(one.file, one.line, _EVENTS[one.kind])
+
+
+def _is_output(one: Expectation, event: Event) -> bool:
+    number, value = one.arguments[:2]
+    if event.fields.get("number") != int(number):
+        return False
+    return value == "never" or event.fields.get("value") is (value == "TRUE")
+
+
+def _is_analog(one: Expectation, event: Event) -> bool:
+    number, value = one.arguments
+    margin = 1e-6 if one.tolerance is None else one.tolerance
+    found = event.fields.get("value")
+    is_number = event.fields.get("number") == int(number)
+    return is_number and isinstance(found, float) and abs(found - float(value)) <= margin
+
+
+def _has_number(one: Expectation, event: Event) -> bool:
+    return event.fields.get("number") == int(one.arguments[0])
+
+
+def _has_priority(one: Expectation, event: Event) -> bool:
+    return event.fields.get("priority") == int(one.arguments[0])
+
+
+_FITS: Final[Mapping[str, tuple[str, Callable[[Expectation, Event], bool]]]] = {
+    "out": ("out", _is_output),
+    "anout": ("anout", _is_analog),
+    "message": ("message", _has_number),
+    "interrupt": ("interrupt_enter", _has_priority),
+}
+
+
+def _is_then(
+    event: Event, when: When, tolerance: float | None, seen: Observation, marks: Marks
+) -> bool:
+    assert event.time is not None, "the caller looked"
+    margin = _EXACTLY if when.exactly and seen.is_exact else seen.cycle
+    if tolerance is not None:
+        margin = round(tolerance * 1e6)
+    first = time_of(when.first, seen, marks)
+    match when.relation:
+        case "at":
+            return abs(event.time - first) <= margin
+        case "before":
+            return event.time < first
+        case "after":
+            return event.time > first
+    assert when.last is not None, "between has two ends"
+    return first <= event.time <= time_of(when.last, seen, marks)
+
+
+def time_of(anchor: Anchor, seen: Observation, marks: Marks) -> int:
+    """The time of a moment in µs; raises `LookupError` where its event never came."""
+    more = round(anchor.seconds * 1e6)
+    if not anchor.event:
+        return more
+    match anchor.event:
+        case "mark":
+            file, line = marks.named.get(anchor.of, ("", 0))
+            events = seen.on_line(file, line, "line")[-1:]
+        case "out" | "in":
+            number = int(anchor.of)
+            events = [e for e in seen.of_kind(anchor.event) if e.fields.get("number") == number]
+        case _:
+            number = int(anchor.of)
+            kind = _EVENTS[anchor.event]
+            events = [e for e in seen.of_kind(kind) if e.fields.get("motion") == number]
+    if not events or events[0].time is None:
+        raise LookupError(f"there was no {anchor.event} {anchor.of}")
+    return events[0].time + more
+
+
+def _times(events: Sequence[Event]) -> str:
+    return ", ".join("?" if e.time is None else f"{e.time / 1e6:.6f} s" for e in events[:8])
+
+
+def _moments(when: When, seen: Observation, marks: Marks) -> str:
+    """What the moments named came to, for whoever reads why it failed."""
+    if not when.first.event:
+        return ""
+    anchors = [when.first] + ([when.last] if when.last else [])
+    return f" ({', '.join(f'{time_of(one, seen, marks) / 1e6:.6f} s' for one in anchors)} expected)"
+
+
+_JUDGES: Final[Mapping[str, Callable[[Expectation, Observation, Marks], Judged]]] = {
+    "value": _value,
+    "values": _value,
+    "runs": _runs,
+    "never": _runs,
+    "order": _order,
+    "fault": _fault,
+    "mark": _mark,
+    "stops": _stops,
+    "runs-ahead": _stops,
+    "blends": _blends,
+    "exact": _blends,
+    "lasts": _lasts,
+}

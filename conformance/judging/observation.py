@@ -1,0 +1,103 @@
+"""What was seen of a case: findings, or a trace and a path. What expectations are judged against.
+
+It comes from our executors (`conformance.judging.observe`) or from a recording made on a controller
+(`conformance.recording`), and is judged the same. Values are as in the trace, that is as
+JSON has them (`interp.values.json_form`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.simulation.tracking import PathRecord
+
+__all__ = ["Event", "Finding", "Observation"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a front end says of a line; ``code`` is KSS or KRL with a number, or ``syntax``."""
+
+    file: str
+    line: int
+    severity: str
+    code: str
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event of the trace.
+
+    ``time`` is in µs of the virtual clock, ``None`` where nobody measured it. ``fields`` are what
+    this kind of event has besides, as in docs/trace.md.
+    """
+
+    time: int | None
+    task: str
+    kind: str
+    file: str
+    line: int
+    fields: Mapping[str, Any] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """It as JSON, as in a trace."""
+        at = f"{self.file}:{self.line}" if self.file else ""
+        return {"t": self.time, "task": self.task, "kind": self.kind, "at": at, **self.fields}
+
+    @staticmethod
+    def of(record: Mapping[str, Any]) -> Event:
+        """The event of a line of a trace; raises `ValueError` where it is none."""
+        try:
+            rest = dict(record)
+            time, task = rest.pop("t", None), rest.pop("task", "robot")
+            kind, at = rest.pop("kind"), rest.pop("at", None) or ""
+            file, _, line = str(at).rpartition(":")
+            return Event(
+                None if time is None else round(time),
+                str(task),
+                str(kind),
+                file,
+                int(line or 0),
+                rest,
+            )
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"no event of a trace: {record!r}") from error
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """All that was seen of a case.
+
+    ``findings`` where it was read or checked only. ``ending`` tells how a run ended: ``end``,
+    ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
+    ``cycle`` is the interpolation cycle in µs; ``is_exact``: times are known to the µs.
+    ``watched`` are the kinds of events that a recording says it has, ``None`` where all were told.
+    ``machine`` is the arm whose limits the path has to keep, where it is known.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    events: tuple[Event, ...] = ()
+    ending: str = ""
+    note: str = ""
+    path: PathRecord | None = None
+    cycle: int = 12_000
+    is_exact: bool = True
+    robot: str = "none"
+    machine: Machine | None = None
+    watched: frozenset[str] | None = None
+
+    def of_kind(self, *kinds: str) -> Iterable[Event]:
+        """The events of some kinds, in their order."""
+        return (event for event in self.events if event.kind in kinds)
+
+    def on_line(self, file: str, line: int, *kinds: str) -> list[Event]:
+        """The events of some kinds that a line caused."""
+        return [
+            event
+            for event in self.events
+            if event.kind in kinds and event.line == line and event.file == file
+        ]

@@ -1,0 +1,242 @@
+"""How a case is observed: read, checked, or run on an executor with a robot.
+
+What a program is run with is a `Setup`. Executors and robots that this machine does not have are
+told as such (`missing`), never silently left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Final, Literal
+
+from conformance.judging.observation import Event, Finding, Observation
+from conformance.suite.case import Case
+from grammar.check import advance_stops
+from grammar.check.context import Context
+from grammar.check.framework import check_module
+from grammar.check.undeclared_names import of_project
+from grammar.diagnostics.diagnostic import Diagnostic, in_order
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import Module
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+from interp import session
+from interp.controller.input_script import Script, ScriptError
+from interp.controller.profile import Profile
+from interp.controller.trace import TraceEvent
+from interp.executors import EXECUTORS, Prepared, available
+from interp.port.events import Sink
+from interp.port.executor import Executor
+from interp.program.load import CheckedProgram, Limits, load
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.models import default_machine
+from interp.robot.simulation.robots import ROBOTS, Robot, RobotName
+from interp.values.faults import LinkError
+
+__all__ = [
+    "EXECUTORS",
+    "FRONT",
+    "PROFILES",
+    "ROBOTS",
+    "Setup",
+    "missing",
+    "observe",
+    "observe_with",
+    "prepared",
+]
+
+#: Who reads and checks cases: there is one front end.
+FRONT: Final = "grammar"
+#: What ``;@ profile:`` may be: a controller, and that its program begins with a coincidence run.
+PROFILES: Final = ("kss8", "kss8-bco", "kss5", "kss5-bco")
+MakeExecutor = Callable[[CheckedProgram, str | None, Limits, Sink | None], Executor]
+MakeRobot = Callable[[Machine, int], Robot]
+
+#: So many statements a case may execute.
+_STATEMENTS: Final = 1_000_000
+#: Endings of a run in the words of expectations.
+_ENDINGS: Final[Mapping[str, str]] = {"time": "running"}
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """An executor and a robot, by name; ``motion`` is how motions are planned."""
+
+    executor: str
+    robot: str
+    motion: Literal["lookahead", "batch"] = "lookahead"
+
+
+def observe(case: Case, setup: Setup) -> Observation:
+    """See what a case does. Never raises for what a program does."""
+    match case.phase:
+        case "parse":
+            return _parsed(case)
+        case "check":
+            return _checked(case)
+    return _run(case, setup)
+
+
+def observe_with(
+    case: Case, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
+) -> Observation:
+    """See what a case that runs does on somebody's executor, or robot, or both."""
+    return _run(case, Setup("tree", "none" if robot is None else "mujoco"), executor, robot)
+
+
+def _parsed(case: Case) -> Observation:
+    found = []
+    for source in case.sources:
+        read = read_module(source.text, source.path)
+        if isinstance(read, list):
+            found += [
+                Finding(source.path, one.line, "error", "syntax", one.reason or "")
+                for one in read
+                if not one.follows
+            ]
+    return Observation(findings=tuple(found))
+
+
+def _checked(case: Case) -> Observation:
+    """All findings, those about the advance run included; a case is a whole project."""
+    files, found = [], []
+    for source in case.sources:
+        read = read_module(source.text, source.path)
+        if isinstance(read, list):
+            found += [Finding(source.path, one.line, "error", "syntax") for one in read]
+        else:
+            files.append(File(source.path, read))
+    sources = {source.path: source for source in case.sources}
+    for project, module in link(files, is_complete=True).modules():
+        found += map(_finding, _findings(project, module, sources[module.path]))
+    return Observation(findings=tuple(found))
+
+
+def _findings(project: Project, module: Module, source: Source) -> list[Diagnostic]:
+    done = check_module(project, module, source)
+    known = (dict(done.types), dict(done.enumerations), dict(done.values))
+    context = Context(project, module, source, done.resolution, System.load(), *known)
+    gaps = of_project(done.findings.references)
+    return in_order([*done.findings.diagnostics, *advance_stops.check(context), *gaps])
+
+
+def _finding(found: Diagnostic) -> Finding:
+    return Finding(found.path, found.region.line, found.severity, found.code, found.message)
+
+
+# ------------------------------------------------------------------------------------ running
+
+
+def missing(setup: Setup) -> str:
+    """Why a setup cannot be used on this machine; empty where it can."""
+    if setup.executor not in available():
+        return f"there is no executor {setup.executor} on this machine"
+    if setup.robot == "mujoco" and find_spec("mujoco") is None:
+        return "MuJoCo is not installed"
+    return ""
+
+
+class _Theirs(Prepared):
+    """A program for an executor that is not ours."""
+
+    def __init__(self, program: CheckedProgram, make: MakeExecutor) -> None:
+        super().__init__(program)
+        self._make = make
+
+    # the name is part of what it overrides
+    def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:  # noqa: ARG002
+        """Theirs, whatever the name."""
+        return self._make(self.program, self.routine, limits, sink)
+
+
+def _run(
+    case: Case,
+    setup: Setup,
+    executor: MakeExecutor | None = None,
+    robot: MakeRobot | None = None,
+) -> Observation:
+    """Run it; a program that cannot begin is a fault without a line."""
+    program = prepared(case)
+    if isinstance(program, LinkError):
+        return _refused(program)
+    if executor is not None:
+        program = _Theirs(program.program, executor)
+    profile = _profile(case.profile)
+    wanted = session.Setup(
+        executor=setup.executor,
+        robot=_robot(setup.robot),
+        profile=profile,
+        script=Script.read("\n".join(case.io), case.name),
+        submit=_submit(case),
+        machine=_machine(case),
+        make_robot=robot,
+        motion=setup.motion,
+        is_full=True,
+        until=round(case.seconds * 1e6),
+        limits=Limits(statements=_STATEMENTS, per_slice=profile.statements),
+    )
+    try:
+        return _observed(session.run_program(program, wanted), wanted)
+    except LinkError as error:
+        return _refused(error)
+    except ScriptError as error:
+        return Observation(ending="crash", note=f"the script of inputs: {error}")
+
+
+def _robot(name: str) -> RobotName:
+    return next(one for one in ROBOTS if one == name)
+
+
+def _machine(case: Case) -> Machine | None:
+    """The arm of the profile, read once; ``None`` where the case has machine data of its own."""
+    has_own = any(one.path.lower() == "$machine.dat" for one in case.sources)
+    return None if has_own else default_machine()
+
+
+def _profile(name: str) -> Profile:
+    """A profile by its name; with ``-bco`` it begins with the block coincidence run [ADV-14]."""
+    base, _, variant = name.partition("-")
+    return replace(Profile.load(base), runs_coincidence=variant == "bco")
+
+
+@lru_cache(maxsize=16)
+def prepared(case: Case) -> Prepared | LinkError:
+    """A case checked and compiled once for all executors and robots that run it."""
+    try:
+        return Prepared(load(case.sources, case.main, strict=False))
+    except LinkError as error:
+        return error
+
+
+def _refused(error: LinkError) -> Observation:
+    fields = {"slug": "link", "number": None, "text": str(error)}
+    return Observation(events=(Event(0, "robot", "fault", "", 0, fields),), ending="fault")
+
+
+def _submit(case: Case) -> str | None:
+    """The submit program is the first companion that ends in .sub."""
+    names = [one.path for one in case.sources[1:] if one.path.lower().endswith(".sub")]
+    return names[0][: -len(".sub")] if names else None
+
+
+def _observed(done: session.Run, wanted: session.Setup) -> Observation:
+    outcome = done.outcome
+    return Observation(
+        events=tuple(
+            Event(one.time, one.task, one.kind, *_place(one), one.fields) for one in done.events
+        ),
+        ending=_ENDINGS.get(outcome.ending, outcome.ending),
+        note="" if outcome.error is None else str(outcome.error),
+        path=done.path,
+        cycle=wanted.profile.cycle,
+        robot=wanted.robot,
+        machine=done.machine,
+    )
+
+
+def _place(event: TraceEvent) -> tuple[str, int]:
+    return ("", 0) if event.at is None else (event.at.file, event.at.line)

@@ -1,0 +1,86 @@
+"""Verdicts: what a case comes to on one executor and robot, and what was known before.
+
+==============  ==================================================================================
+pass            all that is expected was seen
+fail            it was not; or executors differ; or a known failure passes
+unconfirmed     it was not, but the rule is not sure enough to fail anybody (`Rule.may_fail`)
+known-failure   it was not, and ``known_failures.toml`` says why
+skipped         nothing could be judged, and why
+==============  ==================================================================================
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, Final, Literal, get_args
+
+from conformance.judging.judge import Check
+from conformance.suite.case import Case
+
+__all__ = ["VERDICTS", "Known", "KnownFailures", "Verdict", "verdict_of"]
+
+Verdict = Literal["pass", "fail", "unconfirmed", "known-failure", "skipped"]
+VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
+_FILE: Final = Path(__file__).parents[1] / "known_failures.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A failure that is known: which case, on which executors and robots (patterns), and why."""
+
+    case: str
+    reason: str
+    executor: str = "*"
+    robot: str = "*"
+
+
+@dataclass(frozen=True, slots=True)
+class KnownFailures:
+    """All of them."""
+
+    entries: tuple[Known, ...] = ()
+
+    @staticmethod
+    def load(path: Path = _FILE) -> KnownFailures:
+        """Those of a file; raises `ValueError` where it is not in its format."""
+        data: Mapping[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+        try:
+            return KnownFailures(tuple(Known(**entry) for entry in data.get("known", ())))
+        except TypeError as error:
+            raise ValueError(f"{path}: {error}") from error
+
+    def reason(self, case: str, executor: str, robot: str) -> str:
+        """Why it is known to fail there; empty where it is not."""
+        for one in self.entries:
+            if (
+                one.case == case
+                and fnmatchcase(executor, one.executor)
+                and fnmatchcase(robot, one.robot)
+            ):
+                return one.reason
+        return ""
+
+    def of_no_case(self, names: Iterable[str]) -> list[str]:
+        """Entries about cases that do not exist."""
+        known = set(names)
+        return [one.case for one in self.entries if one.case not in known]
+
+
+def verdict_of(case: Case, checks: Sequence[Check], known: str = "") -> tuple[Verdict, str]:
+    """The verdict and its reason, from what became of the expectations of a case."""
+    unmet = [one for one in checks if one.state == "unmet"]
+    if unmet:
+        first = unmet[0]
+        told = f"line {first.line}: {first.text}; seen: {first.actual or 'nothing'}"
+        if known:
+            return "known-failure", known
+        return ("fail" if case.may_fail else "unconfirmed"), told
+    if all(one.state == "open" for one in checks):
+        return "skipped", checks[0].actual if checks else "nothing is expected"
+    if known:
+        return "fail", f"it passes, though it is listed as a known failure: {known}"
+    return "pass", ""

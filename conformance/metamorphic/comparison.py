@@ -1,0 +1,221 @@
+"""What of two runs has to be the same under a law, and the first thing that is not.
+
+Each comparison gives the first difference as one line, or an empty text. Lines are never compared:
+laws move them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import zip_longest
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from conformance.judging.observation import Event, Observation
+
+__all__ = [
+    "Compare",
+    "same_axes",
+    "same_effects",
+    "same_geometry",
+    "same_outputs",
+    "same_trace",
+    "same_trace_renamed",
+]
+
+Compare = Callable[[Observation, Observation], str]
+Array = npt.NDArray[np.float64]
+
+#: What a program does to the world, and what it computes: not by which statements it does so.
+_EFFECTS: Final = frozenset(
+    {
+        "assign",
+        "out",
+        "anout",
+        "motion_planned",
+        "motion_start",
+        "motion_end",
+        "blend_start",
+        "blend_apex",
+        "blend_end",
+        "trigger",
+        "message",
+        "brake",
+        "halt",
+        "end",
+        "fault",
+    }
+)
+#: Degrees by which axes may differ that were computed in another way.
+_SAME: Final = 1e-3
+#: Degrees by which a point may lie beside the other path: both are samples, joined by chords.
+_BESIDE: Final = 0.05
+
+
+def same_trace(left: Observation, right: Observation) -> str:
+    """The whole trace, times included, but for lines."""
+    return _first(left, right, _whole)
+
+
+def same_trace_renamed(names: Mapping[str, str]) -> Compare:
+    """The whole trace, where variables have other names: from new to old, in upper case."""
+
+    def compare(left: Observation, right: Observation) -> str:
+        def old(event: Event) -> Any:
+            fields = dict(event.fields)
+            if event.kind == "assign":
+                root, *rest = _split(str(fields["name"]))
+                fields["name"] = "".join((names.get(root.upper(), root), *rest))
+            return _whole(Event(event.time, event.task, event.kind, "", 0, fields))
+
+        return _first(left, right, _whole, old)
+
+    return compare
+
+
+def same_effects(left: Observation, right: Observation) -> str:
+    """What was assigned, switched, moved and told, in this order for each task; not when.
+
+    More statements take more of a cycle, so times may differ by cycles.
+    """
+    for task in ("robot", "submit"):
+        one, other = (_of_task(run, task, _EFFECTS) for run in (left, right))
+        told = _first(one, other, _untimed)
+        if told:
+            return told
+    return ""
+
+
+def same_outputs(left: Observation, right: Observation) -> str:
+    """The outputs in their order, and where the arm went; not when."""
+    kinds = frozenset({"out", "anout", "motion_end", "fault"})
+    one, other = (_of_task(run, "robot", kinds) for run in (left, right))
+    return _first(one, other, _untimed) or same_geometry(left, right)
+
+
+def same_axes(left: Observation, right: Observation) -> str:
+    """The axes at each set-point, and the trace but for what variables are assigned."""
+    kinds = _EFFECTS - {"assign"}
+    one, other = (_of_task(run, "robot", kinds) for run in (left, right))
+    told = _first(one, other, lambda event: (event.time, *_untimed(event)))
+    if told or left.path is None or right.path is None:
+        return told
+    if len(left.path.times) != len(right.path.times):
+        return f"{len(left.path.times)} set-points, then {len(right.path.times)}"
+    off = np.abs(left.path.axes - right.path.axes).max(axis=1)
+    if not len(off) or off.max() <= _SAME:
+        return ""
+    place = int(np.argmax(off > _SAME))
+    return f"at {left.path.times[place] / 1e6:.3f} s axes differ by {off[place]:.4f} degrees"
+
+
+def same_geometry(left: Observation, right: Observation) -> str:
+    """The way of the axes from the first set-point to the last, however fast it is travelled.
+
+    Where a fault ends the old run nothing is said: it stops the arm at some time, not some place.
+    """
+    if left.ending == "fault":
+        return ""
+    if left.path is None or right.path is None or not len(left.path.axes):
+        return ""
+    one, other = (_thinned(run.path.axes) for run in (left, right) if run.path is not None)
+    # the last set-point is that of the last cycle, which is not quite the end
+    if max(np.abs(one[place] - other[place]).max() for place in (0, -1)) > _BESIDE:
+        return "the path does not begin and end where it did"
+    for mine, theirs, which in ((one, other, "old"), (other, one, "new")):
+        off = _beside(mine, theirs)
+        if off.max() > _BESIDE:
+            place = mine[int(np.argmax(off))]
+            return f"the {which} path has {_told(place)}, {off.max():.4f} degrees beside the other"
+    return ""
+
+
+# ------------------------------------------------------------------------------------ events
+
+
+def _first(
+    left: Observation,
+    right: Observation,
+    old: Callable[[Event], Any],
+    new: Callable[[Event], Any] | None = None,
+) -> str:
+    """The first events that are not the same, where one run is not just cut off by its time."""
+    is_cut = "running" in (left.ending, right.ending)
+    for one, other in zip_longest(left.events, right.events):
+        if one is None or other is None:
+            return "" if is_cut else f"{_event(one)}, then {_event(other)}"
+        if old(one) != (new or old)(other):
+            return f"{_event(one)}, then {_event(other)}"
+    if left.ending != right.ending and not is_cut:
+        return f"it ended with {left.ending} {left.note}, then with {right.ending} {right.note}"
+    return ""
+
+
+def _of_task(run: Observation, task: str, kinds: Iterable[str]) -> Observation:
+    wanted = frozenset(kinds)
+    events = tuple(one for one in run.events if one.task == task and one.kind in wanted)
+    return Observation(events=events, ending=run.ending, note=run.note)
+
+
+def _whole(event: Event) -> Any:
+    return event.time, event.task, event.kind, _fields(event)
+
+
+def _untimed(event: Event) -> Any:
+    return event.kind, _fields(event)
+
+
+def _fields(event: Event) -> tuple[tuple[str, str], ...]:
+    """Names and texts in upper case: letter case is not looked at where names are."""
+    return tuple((key, repr(value).upper()) for key, value in sorted(event.fields.items()))
+
+
+def _event(event: Event | None) -> str:
+    if event is None:
+        return "nothing more"
+    where = f" ({event.file}:{event.line})" if event.file else ""
+    values = " ".join(str(value) for value in event.fields.values())
+    when = "" if event.time is None else f" at {event.time / 1e6:.6f} s"
+    return f"{event.kind} {values}{when}{where}"
+
+
+def _split(path: str) -> list[str]:
+    """A name, and the indices and members behind it."""
+    end = next((place for place, letter in enumerate(path) if letter in "[."), len(path))
+    return [path[:end], path[end:]]
+
+
+# ------------------------------------------------------------------------------------ paths
+
+
+def _thinned(axes: Array) -> Array:
+    """Without set-points where the arm stands."""
+    moves = np.abs(np.diff(axes, axis=0)).max(axis=1) > 0.0
+    return axes[np.concatenate(([True], moves))]
+
+
+def _beside(points: Array, path: Array) -> Array:
+    """How far each point lies from a path, going along both in the same direction."""
+    if len(path) < 2:
+        return np.asarray(np.abs(points - path[0]).max(axis=1))
+    starts, ways = path[:-1], np.diff(path, axis=0)
+    squares = np.maximum((ways * ways).sum(axis=1), 1e-18)
+    found = np.empty(len(points))
+    first = 0
+    for number, point in enumerate(points):
+        window = slice(first, None)
+        along = ((point - starts[window]) * ways[window]).sum(axis=1)
+        share = np.clip(along / squares[window], 0.0, 1.0)
+        off = np.abs(starts[window] + share[:, None] * ways[window] - point).max(axis=1)
+        nearest = int(np.argmin(off))
+        found[number] = off[nearest]
+        # the first place that is near: where a path comes back over itself, there are several
+        near = np.flatnonzero(off <= max(off[nearest], _BESIDE))
+        first += max(0, int(near[0]) - 1)
+    return found
+
+
+def _told(axes: Sequence[float] | Array) -> str:
+    return "{" + ", ".join(f"A{place} {value:.3f}" for place, value in enumerate(axes[:6], 1)) + "}"

@@ -1,0 +1,320 @@
+"""Laws about how a program is written: folds, letter case, names, the order of declarations."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+from random import Random
+from typing import Final
+
+from conformance.metamorphic.comparison import Compare, same_trace, same_trace_renamed
+from conformance.metamorphic.law import Law
+from conformance.metamorphic.subject import Program
+from conformance.metamorphic.tree_rewriting import (
+    MADE,
+    calls_of,
+    name,
+    names_of,
+    rewritten,
+    routines,
+    with_routines,
+)
+from grammar.syntax import ast
+from grammar.syntax.formatter import layouter
+from grammar.syntax.walk import walk
+
+__all__ = ["LAWS"]
+
+_STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
+_PLAIN_TYPES: Final = frozenset({"INT", "REAL", "BOOL", "CHAR", "FRAME", "POS", "E6POS", "AXIS"})
+
+
+def _folded(program: Program, random: Random) -> Program | None:
+    """Comments and folds around statements; never behind CONTINUE, whose line is the next."""
+    texts = {}
+    for source in program.case.sources:
+        if source.kind != "src":
+            continue
+        lines: list[str] = []
+        before = ""
+        for line in source.text.splitlines():
+            is_inside = bool(lines) and "CONTINUE" not in before and not _opens(line)
+            if is_inside and random.random() < 0.4:
+                lines += [";FOLD made;%{PE}%R", line, ";ENDFOLD (made)", "", "; a remark"]
+            else:
+                lines.append(line)
+            before = line.upper().partition(";")[0]
+            if "CONTINUE" in before:
+                continue
+        texts[source.path] = "\n".join(lines) + "\n"
+    return program.with_texts(texts) if texts else None
+
+
+def _opens(line: str) -> bool:
+    words = line.upper().split()
+    return not words or words[0] in ("DEF", "DEFFCT", "GLOBAL", "CONTINUE") or line.startswith("&")
+
+
+def _other_case(program: Program, random: Random) -> Program | None:
+    """Letters outside of texts and comments, each small or not."""
+    if _prints_names(program):
+        return None
+
+    def mixed(text: str) -> str:
+        return "".join(
+            letter.upper() if random.random() < 0.5 else letter.lower() for letter in text
+        )
+
+    texts = {}
+    for source in program.case.sources:
+        pieces: list[str] = []
+        end = 0
+        for found in _STRINGS.finditer(source.text):
+            pieces += [mixed(source.text[end : found.start()]), found.group()]
+            end = found.end()
+        texts[source.path] = "".join([*pieces, mixed(source.text[end:])])
+    return program.with_texts(texts)
+
+
+def _prints_names(program: Program) -> bool:
+    """Whether it writes constants of enumerations into texts, which have the case of theirs."""
+    return any(
+        {"SWRITE", "CWRITE", "SREAD", "CREAD"} & calls_of(module)
+        for module in (program.modules or {}).values()
+    )
+
+
+def _laid_out(program: Program, _random: Random) -> Program | None:
+    """As `krl format` sets it."""
+    texts = {}
+    for source in program.case.sources:
+        found = layouter().layout(source.text, source.path)
+        if not isinstance(found, str):
+            return None
+        texts[source.path] = found
+    changed = any(texts[one.path] != one.text for one in program.case.sources)
+    return program.with_texts(texts) if changed else None
+
+
+# ------------------------------------------------------------------------------------ names
+
+
+def _renamed(program: Program, _random: Random) -> tuple[Program, Compare] | None:
+    """Variables that a routine declares for itself get names that nobody has."""
+    modules = program.modules or {}
+    taken = {one for module in modules.values() for one in names_of(module)}
+    texts = {
+        one.text.upper()
+        for module in modules.values()
+        for one in walk(module)
+        if isinstance(one, ast.StringLiteral)
+    }
+    old: dict[str, str] = {}
+    changed = {}
+    for path, module in modules.items():
+        found = []
+        for routine in routines(module):
+            own = [one for one in _locals(routine) if one not in texts]
+            new = {}
+            for key in own:
+                made = next(f"Z{n}_" for n in range(10_000) if f"Z{n}_" not in taken)
+                taken.add(made)
+                new[key], old[made] = made, key
+            found.append(_with_names(routine, new))
+        changed[path] = with_routines(module, found) if found else module
+    return (program.written(changed), same_trace_renamed(old)) if old else None
+
+
+def _locals(routine: ast.Routine) -> list[str]:
+    parameters = {one.name.key for one in routine.parameters}
+    return [
+        declarator.name.key
+        for one in routine.body
+        if isinstance(one, ast.VariableDeclaration)
+        for declarator in one.declarators
+        if declarator.name.key not in parameters
+    ]
+
+
+def _with_names(routine: ast.Routine, names: dict[str, str]) -> ast.Routine:
+    """Only where a name stands for a variable: members and enumerations have their own."""
+
+    def change(node: ast.Node) -> ast.Node:
+        if isinstance(node, ast.Variable | ast.Declarator) and node.name.key in names:
+            return replace(node, name=name(names[node.name.key]))
+        if isinstance(node, ast.For) and node.counter.key in names:
+            return replace(node, counter=name(names[node.counter.key]))
+        return node
+
+    return rewritten(routine, change)
+
+
+# ------------------------------------------------------------------------------------ declarations
+
+
+def _of_routines(program: Program, change: object) -> Program | None:
+    """Another program where ``change`` makes another routine of one."""
+    assert callable(change)
+    changed, is_other = {}, False
+    for path, module in (program.modules or {}).items():
+        found = [change(routine) for routine in routines(module)]
+        is_other = is_other or any(a is not b for a, b in zip(found, routines(module), strict=True))
+        changed[path] = with_routines(module, found) if found else module
+    return program.written(changed) if is_other else None
+
+
+def _reordered(program: Program, _random: Random) -> Program | None:
+    """Neighbouring declarations of plain variables the other way round."""
+
+    def change(routine: ast.Routine) -> ast.Routine:
+        body: list[ast.Statement] = []
+        for is_declaration, group in groupby(routine.body, _is_plain):
+            found = list(group)
+            body += reversed(found) if is_declaration else found
+        is_same = all(a is b for a, b in zip(body, routine.body, strict=True))
+        return routine if is_same else replace(routine, body=tuple(body))
+
+    return _of_routines(program, change)
+
+
+def _is_plain(node: ast.Statement) -> bool:
+    return isinstance(node, ast.VariableDeclaration) and not node.is_constant
+
+
+def _split(program: Program, _random: Random) -> Program | None:
+    """Each variable gets a declaration of its own."""
+
+    def change(routine: ast.Routine) -> ast.Routine:
+        body: list[ast.Statement] = []
+        for one in routine.body:
+            if isinstance(one, ast.VariableDeclaration) and len(one.declarators) > 1:
+                body += [replace(one, declarators=(each,)) for each in one.declarators]
+            else:
+                body.append(one)
+        return routine if len(body) == len(routine.body) else replace(routine, body=tuple(body))
+
+    return _of_routines(program, change)
+
+
+def _decl_exchanged(program: Program, _random: Random) -> Program | None:
+    """DECL before types that do not need it where it is missing, and none where it stands."""
+
+    def change(routine: ast.Routine) -> ast.Routine:
+        body = tuple(
+            replace(one, has_decl=not one.has_decl)
+            if _is_plain(one)
+            and isinstance(one, ast.VariableDeclaration)
+            and one.type.key in _PLAIN_TYPES
+            else one
+            for one in routine.body
+        )
+        is_same = all(a is b for a, b in zip(body, routine.body, strict=True))
+        return routine if is_same else replace(routine, body=body)
+
+    return _of_routines(program, change)
+
+
+def _routines_moved(program: Program, random: Random) -> Program | None:
+    """All routines but the first one, which gives the file its name, in another order."""
+    changed, is_other = {}, False
+    for path, module in (program.modules or {}).items():
+        others = list(routines(module)[1:])
+        if len(others) < 2:
+            changed[path] = module
+            continue
+        moved = [*others[1:], others[0]] if random.random() < 0.5 else others[::-1]
+        changed[path], is_other = with_routines(module, (routines(module)[0], *moved)), True
+    return program.written(changed) if is_other else None
+
+
+def _components_moved(program: Program, _random: Random) -> Program | None:
+    """The components of aggregates of constants the other way round."""
+    count = 0
+
+    def change(node: ast.Node) -> ast.Node:
+        nonlocal count
+        if not isinstance(node, ast.Aggregate) or len(node.components) < 2:
+            return node
+        keys = [one.name.key for one in node.components]
+        if len(set(keys)) < len(keys) or any(_computes(one) for one in node.components):
+            return node
+        count += 1
+        return replace(node, span=MADE, components=node.components[::-1])
+
+    changed = {path: rewritten(one, change) for path, one in (program.modules or {}).items()}
+    return program.written(changed) if count else None
+
+
+def _computes(node: ast.Node) -> bool:
+    return any(isinstance(one, ast.Call | ast.Subscript | ast.Variable) for one in walk(node))
+
+
+LAWS: Final[Sequence[Law]] = (
+    Law(
+        "folding",
+        "folds, comments and blank lines mean nothing to a program",
+        ("ADV-08",),
+        same_trace,
+        _folded,
+        is_of_text=True,
+    ),
+    Law(
+        "letter case",
+        "names and keywords may be written in any letter case",
+        ("TYP-05",),
+        same_trace,
+        _other_case,
+    ),
+    Law(
+        "layout",
+        "what krl format changes means nothing to a program",
+        ("ADV-08",),
+        same_trace,
+        _laid_out,
+        is_of_text=True,
+    ),
+    Law(
+        "names of local variables",
+        "it does not matter what a local variable is called",
+        ("TYP-05", "SCO-03"),
+        same_trace,
+        _renamed,
+    ),
+    Law(
+        "order of declarations",
+        "declarations that do not need one another may change places",
+        ("TYP-06",),
+        same_trace,
+        _reordered,
+    ),
+    Law(
+        "declaration lists",
+        "a list of variables is as good as a declaration for each",
+        ("TYP-06",),
+        same_trace,
+        _split,
+    ),
+    Law(
+        "DECL",
+        "DECL may be dropped before the types of the controller",
+        ("TYP-06",),
+        same_trace,
+        _decl_exchanged,
+    ),
+    Law(
+        "order of routines",
+        "routines behind the first one may change places",
+        ("SCO-01",),
+        same_trace,
+        _routines_moved,
+    ),
+    Law(
+        "order of components",
+        "the components of an aggregate are told apart by their names",
+        ("TYP-19",),
+        same_trace,
+        _components_moved,
+    ),
+)

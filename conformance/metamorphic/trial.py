@@ -1,0 +1,157 @@
+"""Laws tried on cases and on generated programs: which apply, hold, or are broken, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from platform import node
+from random import Random
+from typing import Any, Final
+
+from conformance.differential import seeded
+from conformance.metamorphic import control_flow_laws, motion_laws, source_text_laws
+from conformance.metamorphic.law import Attempt, Law, run_law
+from conformance.metamorphic.motion_programs import moving_program
+from conformance.metamorphic.subject import Program
+from conformance.suite.case import Case
+from interp.executors import available
+from support.parallel.executor import WorkersError, in_order
+
+__all__ = ["Standing", "laws", "record_of", "try_laws"]
+
+#: For each generated program that a law is to apply to, so many are looked at.
+_LOOKED_AT: Final = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How a law stands: on how many programs it was tried, and where it was broken.
+
+    ``inapplicable`` are the programs that were looked at and had nothing to change.
+    """
+
+    law: Law
+    applied: int
+    inapplicable: int
+    broken: tuple[Attempt, ...]
+
+    @property
+    def held(self) -> int:
+        """How often it was kept."""
+        return self.applied - len(self.broken)
+
+
+def laws() -> tuple[Law, ...]:
+    """All laws that can be tried here: without a C compiler there is no machine in C."""
+    every = (*source_text_laws.LAWS, *control_flow_laws.LAWS, *motion_laws.LAWS)
+    return tuple(one for one in every if one.other is None or one.other.executor in available())
+
+
+def try_laws(
+    cases: Sequence[Case],
+    programs: int,
+    seed: int = 1,
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+    scheduler: str | None = None,
+) -> list[Standing]:
+    """Try each law on so many cases, generated programs and such that move, where it applies.
+
+    Which these are follows from the seed. ``jobs`` processes try them, or the Dask cluster of
+    ``scheduler`` (`support.parallel.executor`). ``on_done`` is told how many laws were tried.
+    """
+    running = [case for case in cases if case.phase == "run"]
+    tasks = ((law.name, running, programs, seed) for law in laws())
+    found = []
+    for counted in in_order(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
+        found.append(_whole(counted))
+        on_done(1)
+    return found
+
+
+#: Name of the law, applied, inapplicable, broken: what goes from process to process.
+_Counted = tuple[str, int, int, tuple[Attempt, ...]]
+
+
+def _law(name: str) -> Law:
+    return next(law for law in laws() if law.name == name)
+
+
+def _whole(counted: _Counted) -> Standing:
+    name, applied, inapplicable, broken = counted
+    return Standing(_law(name), applied, inapplicable, broken)
+
+
+def _standing(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
+    if all(law.name != name for law in laws()):
+        raise WorkersError(f"a worker on {node()} lacks the executor for the law '{name}'")
+    law = _law(name)
+    drawn = list(cases)
+    Random(f"{seed}/{law.name}").shuffle(drawn)
+    applied, inapplicable = 0, 0
+    broken: list[Attempt] = []
+    most = programs * _LOOKED_AT
+    for source in (_of_cases(drawn), _generated(most, seed), _moving(most, seed)):
+        wanted = programs
+        for program in source:
+            if not wanted:
+                break
+            attempt = run_law(law, program, seed)
+            if attempt is None:
+                inapplicable += 1
+                continue
+            wanted -= 1
+            applied += 1
+            if attempt.difference:
+                broken.append(attempt)
+    return name, applied, inapplicable, tuple(broken)
+
+
+def _of_cases(cases: Sequence[Case]) -> Iterator[Program]:
+    return (Program(case) for case in cases)
+
+
+def _moving(most: int, seed: int) -> Iterator[Program]:
+    return (_moving_program(seed, number) for number in range(most))
+
+
+@lru_cache(maxsize=256)
+def _moving_program(seed: int, number: int) -> Program:
+    return Program.of_sample(moving_program(seed, number), f"moving/{seed}/{number}", seconds=60.0)
+
+
+def _generated(most: int, seed: int) -> Iterator[Program]:
+    return (_program(seed, number) for number in range(most))
+
+
+@lru_cache(maxsize=256)
+def _program(seed: int, number: int) -> Program:
+    return Program.of_sample(seeded(seed, number), f"generated/{seed}/{number}")
+
+
+def record_of(standings: Sequence[Standing], programs: int, seed: int) -> dict[str, Any]:
+    """What is written as JSON."""
+    return {
+        "programs": programs,
+        "seed": seed,
+        "laws": [
+            {
+                "name": one.law.name,
+                "states": one.law.states,
+                "rules": list(one.law.rules),
+                "applied": one.applied,
+                "held": one.held,
+                "inapplicable": one.inapplicable,
+                "broken": [
+                    {
+                        "program": attempt.program,
+                        "difference": attempt.difference,
+                        "changed": dict(attempt.changed),
+                    }
+                    for attempt in one.broken
+                ],
+            }
+            for one in standings
+        ],
+    }

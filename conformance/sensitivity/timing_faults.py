@@ -1,0 +1,294 @@
+"""Faults of the controller in time: the clock, outputs and inputs, pulses, timers, waits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Final
+
+from conformance.sensitivity.planted_fault import Fault, constant, group_of, on
+from interp.controller import signals
+from interp.controller.activation import Entering
+from interp.controller.clock import Clock
+from interp.controller.request_handling import Answering
+from interp.controller.signals import ALWAYS_TRUE, Signals
+from interp.controller.timers import Timers
+
+__all__ = ["faults"]
+
+_IO: Final = ("io", "program")
+
+
+def faults() -> tuple[Fault, ...]:
+    """All of them."""
+    return (
+        *group_of("the clock", _CLOCK),
+        *group_of("outputs and inputs", _SIGNALS),
+        *group_of("timers and cyclic values", _TIMERS),
+    )
+
+
+# ------------------------------------------------------------------------------------ the clock
+
+
+def _down(_right: Any) -> Any:
+    return lambda self, duration: (self.now + int(max(duration, 0))) // self.cycle * self.cycle
+
+
+def _exact(_right: Any) -> Any:
+    return lambda self, duration: math.ceil(self.now + max(duration, 0))
+
+
+def _slow_polls(right: Any) -> Any:
+    def later(self: Answering, task: Any) -> int:
+        more = 9 * self.clock.cycle if task.name == "robot" else 0
+        return int(right(self, task)) + more
+
+    return later
+
+
+def _slow_submit(right: Any) -> Any:
+    def later(self: Answering, task: Any) -> int:
+        more = 49 * self.clock.cycle if task.name == "submit" else 0
+        return int(right(self, task)) + more
+
+    return later
+
+
+_CLOCK: Final = (
+    ("times to wait are rounded down to cycles", _IO, on(Clock, "tick_after", _down)),
+    ("times to wait are not rounded", ("io", "control"), on(Clock, "tick_after", _exact)),
+    (
+        "times to wait end a cycle late",
+        _IO,
+        on(Clock, "tick_after", lambda right: lambda self, t: right(self, t) + self.cycle),
+    ),
+    (
+        "times to wait are half as long",
+        _IO,
+        on(Clock, "tick_after", lambda right: lambda self, t: right(self, t / 2)),
+    ),
+    (
+        "WAIT FOR looks in every tenth cycle only",
+        ("io", "control", "program"),
+        on(Answering, "next_slice", _slow_polls),
+    ),
+    (
+        "the submit program runs once in half a second",
+        ("submit", "program"),
+        on(Answering, "next_slice", _slow_submit),
+    ),
+)
+
+
+# ------------------------------------------------------------------------------------ signals
+
+
+def _late_outputs(right: Any) -> Any:
+    def late(self: Signals, path: Any, value: Any) -> None:
+        self.read(path)
+        self._later(self._clock.now + self._clock.cycle, lambda: right(self, path, value))
+
+    return late
+
+
+def _backwards(bits: int, number: int) -> int:
+    return sum((number >> place & 1) << (bits - 1 - place) for place in range(bits))
+
+
+def _reversed_groups(right: Any) -> Any:
+    def put(self: Signals, path: Any, value: Any) -> None:
+        if len(path) == 4 and type(value) is int:
+            value = _backwards(path[3] - path[1] + 1, value)
+        right(self, path, value)
+
+    return put
+
+
+def _wide_groups(right: Any) -> Any:
+    def read(self: Signals, path: Any) -> Any:
+        value = right(self, path)
+        return value & 0xFF if len(path) == 4 else value
+
+    return read
+
+
+def _without_input_1025(right: Any) -> Any:
+    def made(self: Signals, *given: Any) -> None:
+        right(self, *given)
+        self._digital["$IN"][ALWAYS_TRUE] = False
+
+    return made
+
+
+def _clamped_analog(right: Any) -> Any:
+    def put(self: Signals, name: str, place: int, value: Any) -> None:
+        right(self, name, place, min(max(value, -1.0), 1.0))
+
+    return put
+
+
+def _pulse_once(right: Any) -> Any:
+    def pulse(self: Signals, number: int, level: bool, seconds: float) -> None:
+        if number not in self._pulses:
+            right(self, number, level, seconds)
+
+    return pulse
+
+
+def _unending_pulse(_right: Any) -> Any:
+    def put_bit(self: Signals, name: str, place: int, value: bool) -> None:
+        pulses, self._pulses = self._pulses, {}
+        try:
+            _PUT_BIT(self, name, place, value)
+        finally:
+            self._pulses = pulses
+
+    return put_bit
+
+
+_PUT_BIT: Final = Signals._put_bit
+
+
+_SIGNALS: Final = (
+    (
+        "outputs are switched a cycle late",
+        ("io", "trigger", "advance"),
+        on(Signals, "write", _late_outputs),
+    ),
+    ("groups have their bits the other way round", ("io",), on(Signals, "put", _reversed_groups)),
+    ("groups have eight bits at most", ("io",), on(Signals, "read", _wide_groups)),
+    ("input 1025 is FALSE", ("io",), on(Signals, "__init__", _without_input_1025)),
+    (
+        "analog values beyond the range are cut off silently",
+        ("io", "message"),
+        on(Signals, "_put_analog", _clamped_analog),
+    ),
+    (
+        "a pulse is half as long",
+        ("io",),
+        on(Signals, "pulse", lambda right: lambda self, n, v, t: right(self, n, v, t / 2)),
+    ),
+    (
+        "a pulse is a tenth of a second longer",
+        ("io",),
+        on(Signals, "pulse", lambda right: lambda self, n, v, t: right(self, n, v, t + 0.1)),
+    ),
+    (
+        "a pulse has no end",
+        ("io",),
+        on(Signals, "pulse", lambda _: lambda self, n, v, _t: self.put(("$OUT", n), v)),
+    ),
+    ("a pulse may be as short as one likes", ("io",), constant(signals, "_SHORTEST", 0.0)),
+    ("a pulse that runs is not restarted", ("io",), on(Signals, "pulse", _pulse_once)),
+    ("the other level does not end a pulse", ("io",), on(Signals, "_put_bit", _unending_pulse)),
+)
+
+
+# ------------------------------------------------------------------------------------ timers
+
+
+def _slow_timer(right: Any) -> Any:
+    return lambda self, timer: timer.base + (right(self, timer) - timer.base) // 2
+
+
+def _fine_timer(_right: Any) -> Any:
+    def value(self: Timers, timer: Any) -> int:
+        passed = 0 if timer.since is None else (self._clock.now - timer.since) // 1000
+        return int(timer.base + passed)
+
+    return value
+
+
+def _timer_read(otherwise: Callable[[Timers, Any, Any], Any]) -> Any:
+    def make(right: Any) -> Any:
+        def read(self: Timers, path: Any) -> Any:
+            value = right(self, path)
+            return otherwise(self, path, value) if path[0] == "$TIMER_FLAG" else value
+
+        return read
+
+    return make
+
+
+def _timer_write(drops: Callable[[Any, Any], bool]) -> Any:
+    """Writes of some kind are lost."""
+
+    def make(right: Any) -> Any:
+        def write(self: Timers, path: Any, value: Any) -> None:
+            if not drops(path, value):
+                right(self, path, value)
+
+        return write
+
+    return make
+
+
+def _starting_from_zero(right: Any) -> Any:
+    def write(self: Timers, path: Any, value: Any) -> None:
+        right(self, path, value)
+        if path[0] == "$TIMER_STOP" and value is False:
+            self._timer(path).base = 0
+
+    return write
+
+
+def _once(name: str) -> Any:
+    """A cyclic signal is computed the first time only."""
+
+    def make(right: Any) -> Any:
+        def enter(self: Entering, task: Any, request: Any) -> None:
+            done = self.__dict__.setdefault(name, set())
+            if request.name not in done:
+                done.add(request.name)
+                right(self, task, request)
+
+        return enter
+
+    return make
+
+
+_TIMERS: Final = (
+    ("timers run at half the speed", ("io",), on(Timers, "_value", _slow_timer)),
+    ("timers count between ticks as well", ("io",), on(Timers, "_value", _fine_timer)),
+    (
+        "a timer begins at zero when it is started",
+        ("io",),
+        on(Timers, "write", _starting_from_zero),
+    ),
+    (
+        "timers are not stopped",
+        ("io",),
+        on(Timers, "write", _timer_write(lambda p, v: p[0] == "$TIMER_STOP" and v is True)),
+    ),
+    (
+        "the value of a timer cannot be set",
+        ("io",),
+        on(Timers, "write", _timer_write(lambda p, _: p[0] == "$TIMER")),
+    ),
+    (
+        "the flag of a timer tells the contrary",
+        ("io",),
+        on(Timers, "read", _timer_read(lambda _self, _path, value: not value)),
+    ),
+    (
+        "the flag of a timer is always TRUE",
+        ("io",),
+        on(Timers, "read", _timer_read(lambda _self, _path, _value: True)),
+    ),
+    (
+        "cyclic flags keep their first value",
+        ("io", "interrupt"),
+        on(Entering, "refresh_flags", lambda _: lambda _self: None),
+    ),
+    ("cyclic signals are computed once", ("io",), on(Entering, "enter_signal", _once("_entered"))),
+    (
+        "ANOUT ON knows no limits",
+        ("io",),
+        on(
+            Answering,
+            "_put_cyclic",
+            lambda _: lambda self, _task, request: self.put(request.path, request.value),
+        ),
+    ),
+)

@@ -1,0 +1,1 @@
+"""Rules, cases, their expectations, and the linter of cases."""

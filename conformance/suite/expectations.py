@@ -1,0 +1,221 @@
+"""Expectations: what a case says beside its lines, ``;> out 2 TRUE at end 1 - 0.1``.
+
+`KINDS` lists the words an expectation can begin with, and what may follow them. CASES.md tells what
+each means to somebody who has a controller; `conformance.judging.judge` decides whether it is met.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Final, Literal, cast
+
+__all__ = [
+    "KINDS",
+    "PHASES",
+    "Anchor",
+    "Expectation",
+    "ExpectationError",
+    "Kind",
+    "Phase",
+    "When",
+    "read_expectation",
+]
+
+Phase = Literal["parse", "check", "run"]
+PHASES: Final[tuple[Phase, ...]] = ("parse", "check", "run")
+
+
+class ExpectationError(ValueError):
+    """An expectation that means nothing; the text says why, in one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A word that expectations begin with.
+
+    ``form`` is what its arguments look like, a regular expression over the words joined by blanks.
+    ``timed`` tells whether a time may follow, ``robot`` which robot it needs at least.
+    """
+
+    word: str
+    phases: tuple[Phase, ...]
+    form: str = ""
+    timed: bool = False
+    tolerant: bool = False
+    robot: Literal["none", "kinematic", "mujoco"] = "none"
+
+
+_NUMBER: Final = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
+_NAME: Final = r"[$\w]+(?:\[\d+(?:,\d+)*\])?(?:\.\w+(?:\[\d+\])?)*"
+_VALUE: Final = rf"(?:{_NUMBER}|TRUE|FALSE|#\w+|\"[^\"]*\"|none)"
+_MANY: Final = rf"{_NUMBER}(?: {_NUMBER})*"
+_POINT: Final = rf"{_NUMBER} {_NUMBER} {_NUMBER}"
+_SHAPE: Final = (
+    rf"(?:line {_POINT} to {_POINT}|(?:circle|blend) {_POINT} by {_POINT} to {_POINT}|joint)"
+)
+
+_RUN: Final[tuple[Phase, ...]] = ("run",)
+_FRONT: Final[tuple[Phase, ...]] = ("parse", "check")
+
+
+def _kinds() -> Mapping[str, Kind]:
+    kinds = (
+        # what a front end says
+        Kind("accepted", _FRONT),
+        Kind("syntax", ("parse",)),
+        Kind("error", ("check",), r"(?:KSS|KRL)\d+"),
+        Kind("warning", ("check",), r"(?:KSS|KRL)\d+"),
+        Kind("note", ("check",), r"(?:KSS|KRL)\d+"),
+        Kind("silent", ("check",), r"(?:KSS|KRL)\d+"),
+        # which way a program goes, and what it computes
+        Kind("value", _RUN, rf"{_NAME} {_VALUE}", tolerant=True),
+        Kind("values", _RUN, rf"{_NAME} {_VALUE}(?: {_VALUE})*", tolerant=True),
+        Kind("runs", _RUN, r"(?:\d+|on)"),
+        Kind("never", _RUN),
+        Kind("order", _RUN, r"\d+(?: \d+)*"),
+        Kind("fault", _RUN, r"\w+"),
+        Kind("mark", _RUN, r"[A-Z]\w*"),
+        # the advance run
+        Kind("stops", _RUN, "advance"),
+        Kind("runs-ahead", _RUN),
+        # what happens in the cell, and when
+        Kind("out", _RUN, r"\d+ (?:(?:TRUE|FALSE)(?: never)?|never)", timed=True),
+        Kind("anout", _RUN, rf"\d+ {_NUMBER}", timed=True, tolerant=True),
+        Kind("message", _RUN, r"\d+(?: never)?", timed=True),
+        Kind("interrupt", _RUN, r"\d+(?: never| times \d+)?", timed=True),
+        Kind("trigger", _RUN, r"(?:never|times \d+)?", timed=True),
+        Kind("brake", _RUN, timed=True),
+        Kind("resume", _RUN, timed=True),
+        Kind("halt", _RUN, timed=True),
+        Kind("line", _RUN, timed=True),
+        # the motion of a line
+        Kind("planned", _RUN, timed=True),
+        Kind("start", _RUN, timed=True),
+        Kind("end", _RUN, timed=True),
+        Kind("blend-start", _RUN, timed=True),
+        Kind("apex", _RUN, timed=True),
+        Kind("blend-end", _RUN, timed=True),
+        Kind("blends", _RUN),
+        Kind("exact", _RUN),
+        Kind("lasts", _RUN, _NUMBER, tolerant=True),
+        # the path of a line's motion
+        Kind("path", _RUN, _SHAPE, tolerant=True, robot="kinematic"),
+        Kind("passes", _RUN, _POINT, tolerant=True, robot="kinematic"),
+        Kind("misses", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("leaves", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("joins", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("pose", _RUN, _MANY, timed=True, tolerant=True, robot="kinematic"),
+        Kind("axes", _RUN, _MANY, timed=True, tolerant=True, robot="kinematic"),
+        Kind("speed", _RUN, rf"(?:most|reaches|drops below) {_NUMBER}", robot="kinematic"),
+        Kind("smooth", _RUN, robot="kinematic"),
+        Kind("limits", _RUN, robot="kinematic"),
+        Kind("tracks", _RUN, tolerant=True, robot="mujoco"),
+    )
+    return MappingProxyType({kind.word: kind for kind in kinds})
+
+
+#: All kinds by their word.
+KINDS: Final = _kinds()
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """A moment: ``seconds`` after an event of a motion, after a mark, or after the start.
+
+    ``event`` is ``start``, ``end``, ``apex``, ``blend-start``, ``blend-end`` or ``planned`` of the
+    motion ``of`` (its number, from 1, in the order of planning); ``mark`` with a name; ``out`` or
+    ``in`` with a number: the first time that it changes; or empty.
+    """
+
+    event: str
+    of: str
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """A moment something has to happen at, before, after, or a span that it has to happen in."""
+
+    relation: Literal["at", "before", "after", "between"]
+    first: Anchor
+    last: Anchor | None = None
+    exactly: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What one ``;>`` says; ``file`` and ``line`` are the place it is about.
+
+    ``tolerance`` is in the unit of what is compared (seconds for times); ``None``: the usual one.
+    """
+
+    kind: str
+    arguments: tuple[str, ...]
+    file: str
+    line: int
+    text: str
+    when: When | None = None
+    tolerance: float | None = field(default=None)
+
+    @property
+    def needs(self) -> Literal["none", "kinematic", "mujoco"]:
+        """The robot that it takes at least to judge it."""
+        return KINDS[self.kind].robot
+
+
+_WORDS: Final = re.compile(r'"[^"]*"|[^\s"]+')
+_WITHIN: Final = re.compile(rf"(?:^| )within ({_NUMBER})$")
+_EVENT: Final = r"(?:(?:start|end|apex|blend-start|blend-end|planned) \d+|mark \w+|(?:out|in) \d+)"
+_MOMENT: Final = rf"(?:{_EVENT}(?: [-+] {_NUMBER})?|{_NUMBER})"
+_WHEN: Final = re.compile(
+    rf"(?:^| )(?:(?P<relation>at|before|after) (?P<one>{_MOMENT})(?P<exactly> exactly)?"
+    rf"|between (?P<first>{_MOMENT}) and (?P<last>{_MOMENT}))$"
+)
+_MOMENT_PARTS: Final = re.compile(
+    rf"(?:(?P<event>[a-z-]+) (?P<of>\w+)(?: (?P<sign>[-+]) (?P<more>{_NUMBER}))?"
+    rf"|(?P<at>{_NUMBER}))$"
+)
+
+
+def read_expectation(text: str, file: str, line: int) -> Expectation:
+    """The expectation that stands behind ``;>``. Raises `ExpectationError`."""
+    rest = " ".join(_WORDS.findall(text))
+    word, _, rest = rest.partition(" ")
+    kind = KINDS.get(word)
+    if kind is None:
+        raise ExpectationError(f"there is no expectation {word!r}")
+    tolerance, when = None, None
+    if found := _WITHIN.search(rest):
+        tolerance, rest = float(found[1]), rest[: found.start()]
+    if found := _WHEN.search(rest):
+        when, rest = _when(found), rest[: found.start()]
+    if when is not None and not kind.timed:
+        raise ExpectationError(f"{word} happens at no time")
+    if tolerance is not None and not (kind.tolerant or when is not None):
+        raise ExpectationError(f"{word} has no tolerance")
+    if tolerance is not None and tolerance < 0:
+        raise ExpectationError("a tolerance is not negative")
+    if not re.fullmatch(kind.form, rest):
+        raise ExpectationError(f"{rest or 'nothing'!r} cannot stand behind {word}")
+    arguments = tuple(_WORDS.findall(rest))
+    return Expectation(word, arguments, file, line, text.strip(), when, tolerance)
+
+
+def _when(found: re.Match[str]) -> When:
+    if found["relation"]:
+        is_exact = found["exactly"] is not None
+        relation = cast(Literal["at", "before", "after"], found["relation"])
+        return When(relation, _anchor(found["one"]), exactly=is_exact)
+    return When("between", _anchor(found["first"]), _anchor(found["last"]))
+
+
+def _anchor(text: str) -> Anchor:
+    parts = _MOMENT_PARTS.match(text)
+    assert parts is not None, "the pattern before was the same"
+    if parts["at"] is not None:
+        return Anchor("", "", float(parts["at"]))
+    more = float((parts["sign"] or "") + (parts["more"] or "0"))
+    return Anchor(parts["event"], parts["of"], more)

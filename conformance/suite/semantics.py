@@ -1,0 +1,159 @@
+"""The reference of rules, ``docs/semantics.md``: what KRL means, how sure that is, what is done.
+
+Made of the registry (`conformance.suite.registry`) and of the codes of findings
+(`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to
+either; a test tells when the page is stale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from conformance.suite.registry import Rule, registry
+from grammar.diagnostics.codes import by_slug
+from grammar.semantics.rules import is_confirmed
+
+__all__ = ["PAGE", "UNUSED", "codes_of", "page"]
+
+PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
+
+#: Codes that no check gives yet: where $OUT_C is not allowed is not documented.
+UNUSED = frozenset({"KSS2352"})
+
+#: What can be done for a rule, and how the page tells it; with codes where findings have one.
+_TODAY = {
+    "grammar": "grammar",
+    "tables": "tables",
+    "check": "checked",
+    "lint": "lint",
+    "run": "running",
+}
+
+_TOPICS: Mapping[str, tuple[str, str]] = {
+    "TYP": ("Types, literals, declarations", "What data there are and how they are declared."),
+    "ARI": ("Operators and conversion", "What expressions come to."),
+    "FCT": ("Functions", "What the controller brings along, without any file."),
+    "SCO": ("Files, scope, parameters", "Who sees what, for how long, and how it is passed."),
+    "CTL": ("Control flow", "In which order statements are executed."),
+    "ADV": ("Advance run", "Why a program is ahead of its robot, and what stops it."),
+    "BLD": ("Approximate positioning", "How one motion blends into the next."),
+    "MOT": ("Motions", "Kinds, velocities, limits."),
+    "POS": ("Status, Turn, singularities", "Which of several axis positions a pose means."),
+    "ORI": ("Orientation", "How the tool turns on its way."),
+    "SPL": ("Splines", "Motions that are planned as one."),
+    "TRG": ("Triggers", "What happens at a point of a path."),
+    "INT": ("Interrupts", "What happens when something happens."),
+    "IOT": ("Inputs, outputs, signals", "What connects a program with its cell."),
+    "TIM": ("Timers", "What time it is."),
+    "SUB": ("Submit interpreter", "What runs beside the robot's program."),
+    "MSG": ("Messages", "The controller's own numbers."),
+    "CON": ("Conflicts", "Where sources contradict one another, and what was decided."),
+}
+
+_HEAD = """\
+# Semantics
+
+<!-- Made by conformance/suite/semantics.py from conformance/rules.toml and
+grammar/diagnostics/codes.tsv. Do not edit. -->
+
+What KRL means, as far as it could be found out, and what the workbench does about it today. There
+is no public specification. Each rule says how well it is known, where from, and what is done.
+
+**How well it is known.** `P`: a manual page, or a file that KUKA wrote. `T`: a transcription or
+translation of one. `F`: practitioners on a forum. `D`: measured on real controller files. `R`:
+recollection of a manual that could not be read again. `X`: a page of unknown origin. What rests on
+`R` or `X` alone is *unconfirmed*: it is never told as an error.
+
+**What is done.** *grammar*: `KRL.g4` reads it, or refuses what is wrong. *tables*: it is in the
+tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` tells, with
+these codes. *lint*: `krl check --stops` tells. *running*: interpreters and controller act on it.
+What shows it are the cases of the judge: `krl conform RULE` runs them.
+"""
+
+_SOURCES = """\
+## Sources
+
+| key | source |
+| --- | --- |
+| S1 | KSS 8.2, operating and programming instructions for system integrators, pages 258 to 263 |
+| S2 | symbol lists that a controller made (`$operate.dat`, `$operate_r1.dat`), release 8.6 |
+| S3 | delivered with a controller: `bas.src`, `ir_stopm.src`, `$config.dat`, `$custom.dat` |
+| S4 | the message base of KSS: 511 texts with their numbers, published by Intrinsic |
+| S5 | machine data of several robots |
+| S6 | a public list of 445 system variables with descriptions |
+| T1 to T20 | manuals and texts of KUKA College, transcribed or translated on public pages |
+| F1, F2 | threads of robot-forum.com on blending and triggers |
+| D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
+| D2 to D4 | programs in public repositories |
+| X1 to X7 | pages of unknown or machine-written origin, named where they contradict |
+| – | recollection only, or measured here |
+"""
+
+
+def codes_of() -> Mapping[str, tuple[str, ...]]:
+    """The codes of findings that rest on each rule, by its ID."""
+    found: dict[str, tuple[str, ...]] = dict.fromkeys(registry(), ())
+    for code in by_slug().values():
+        for rule in code.rules:
+            if code.code not in UNUSED:
+                found[rule] += (code.code,)
+    return found
+
+
+def page() -> str:
+    """The page as it should be."""
+    by_topic: dict[str, list[Rule]] = {topic: [] for topic in _TOPICS}
+    codes = codes_of()
+    for rule in registry().values():
+        by_topic[rule.topic].append(rule)
+    parts = [_HEAD, _overview(by_topic)]
+    for topic, (title, about) in _TOPICS.items():
+        rows = "\n".join(_row(rule, codes[rule.id]) for rule in by_topic[topic])
+        parts.append(
+            f"## {title}\n\n{about}\n\n| rule | tier | | today | source |\n"
+            f"| --- | --- | --- | --- | --- |\n{rows}\n"
+        )
+    return "\n".join([*parts, _SOURCES])
+
+
+def _overview(by_topic: Mapping[str, Iterable[Rule]]) -> str:
+    lines = [
+        "| topic | | rules | unconfirmed | grammar or tables | checked or lint | only running |",
+        "| --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    totals = [0] * 5
+    for topic, its in by_topic.items():
+        counts = list(_counts(list(its)))
+        totals = [total + count for total, count in zip(totals, counts, strict=True)]
+        title = _TOPICS[topic][0]
+        anchor = title.lower().replace(",", "").replace(" ", "-")
+        cells = " | ".join(map(str, counts))
+        lines.append(f"| {topic} | [{title}](#{anchor}) | {cells} |")
+    lines.append(f"| | all | {' | '.join(map(str, totals))} |")
+    return "\n".join(lines) + "\n"
+
+
+def _counts(its: list[Rule]) -> Iterator[int]:
+    yield len(its)
+    yield sum(not is_confirmed([rule.id]) for rule in its)
+    yield sum(bool({"grammar", "tables"} & set(rule.today)) for rule in its)
+    yield sum(bool({"check", "lint"} & set(rule.today)) for rule in its)
+    yield sum(rule.today == ("run",) for rule in its)
+
+
+def _row(rule: Rule, codes: tuple[str, ...]) -> str:
+    words = []
+    for word in rule.today:
+        told = _TODAY[word]
+        if word in ("check", "lint"):
+            wanted = [code for code in codes if code.startswith("KRL6") == (word == "lint")]
+            told += f" ({', '.join(wanted)})" if wanted else ""
+        words.append(told)
+    source = "–" if rule.source == "-" else rule.source
+    statement = rule.statement.replace("|", "\\|")
+    return f"| {rule.id} | {rule.tier} | {statement} | {'; '.join(words)} | {source} |"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")

@@ -1,0 +1,252 @@
+"""The checkup: every file below some roots checked, each as part of its project.
+
+Files are grouped to projects by where they lie, before any is read (`grammar.semantics.link`).
+Projects are checked one after the other in parallel processes, a large one by all of them
+(`support.parallel.sticky_pool`). The findings come in order, whatever process they are from. A
+project in which nothing has changed is not checked again: a finding in one file may follow from any
+other, so what was found is kept by the digests of all its files and of our own code and tables.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+
+from grammar.check.framework import check_project
+from grammar.check.project_check import Content, Looked, Wishes, check_part, check_whole, read_part
+from grammar.check.result_cache import Outcome, read_outcome, state_of, written_outcome
+from grammar.check.suppression_comments import silenced
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.semantics.link import File, link
+from recovery.survey.result_cache import Memory
+from support.files import archives
+from support.files.discovery import Found, Skipped, discover, read
+from support.parallel.progress import Progress, unheard
+from support.parallel.sticky_pool import Lanes
+
+__all__ = ["Checkup", "Wishes", "checkup"]
+
+# Starting a process takes as long as checking so many bytes.
+_WORTH_A_PROCESS = 1_000_000
+# A project of so many bytes is dealt out to all processes.
+_LARGE = 400_000
+# So many bytes wait for their turn, so that memory stays flat.
+_MOST_WAITING = 48_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Checkup:
+    """What was found, in order, and in what.
+
+    ``lines`` are source lines by path and number. ``files`` were checked, of ``bytes`` in all, in
+    ``projects``; ``unchanged`` of the files were known from before. ``skipped`` is what is no KRL.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    lines: Mapping[tuple[str, int], str]
+    skipped: tuple[Skipped, ...]
+    files: int
+    bytes: int
+    projects: int
+    unchanged: int
+
+
+def checkup(
+    roots: Sequence[Path],
+    wishes: Wishes,
+    *,
+    jobs: int | None = None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> Checkup:
+    """Check everything below ``roots``.
+
+    ``jobs`` is the number of processes, by default one a core, or one where there is little to do.
+    ``cache`` is the folder where findings are kept for the next time; without one nothing is kept.
+    ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
+    more have been dealt with.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to check.
+    """
+    candidates = list(discover(roots))
+    on_found(len(candidates))
+    found = [candidate for candidate in candidates if isinstance(candidate, Found)]
+    skipped = [candidate for candidate in candidates if isinstance(candidate, Skipped)]
+    on_done(len(skipped))
+    size = sum(candidate.size for candidate in found)
+    wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
+    outcomes = []
+    with _memory(cache) as memory, Lanes(wanted) as lanes:
+        for outcome in _run(_projects(found), lanes, memory, wishes):
+            outcomes.append(outcome)
+            on_done(outcome.files + len(outcome.skipped))
+    return _together(outcomes, skipped)
+
+
+def _memory(cache: Path | None) -> AbstractContextManager[Memory | None]:
+    return nullcontext() if cache is None else Memory(cache, "checkup")
+
+
+def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
+    """The files of each project."""
+    by_path: dict[str, deque[Found]] = {}
+    for candidate in found:
+        by_path.setdefault(candidate.path, deque()).append(candidate)
+    files = [File(candidate.path, None, candidate.origin) for candidate in found]
+    for project in link(files).projects:
+        yield [by_path[module.path].popleft() for module in project.modules]
+
+
+def _together(outcomes: Sequence[Outcome], skipped: Sequence[Skipped]) -> Checkup:
+    # what could be a program and was not looked at is no small matter
+    start = Region(1, 1, 1, 1)
+    large = {
+        one: diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
+    }
+    left_out = [one for one in skipped if one not in large]
+    left_out += [one for outcome in outcomes for one in outcome.skipped]
+    lines: dict[tuple[str, int], str] = {}
+    for outcome in outcomes:
+        lines |= outcome.lines
+    return Checkup(
+        tuple(in_order([*large.values(), *(one for all_ in outcomes for one in all_.diagnostics)])),
+        lines,
+        tuple(sorted(left_out, key=lambda one: one.path)),
+        sum(outcome.files for outcome in outcomes),
+        sum(outcome.bytes for outcome in outcomes),
+        len(outcomes),
+        sum(outcome.files for outcome in outcomes if outcome.is_kept),
+    )
+
+
+def _is_large(skipped: Skipped) -> bool:
+    return skipped.reason == archives.too_large()
+
+
+# --------------------------------------------------------------------------------- one by one
+
+
+class _Project:
+    """A project that is being checked: ``result`` waits for what its processes found."""
+
+    def __init__(self, members: Sequence[Found], wishes: Wishes) -> None:
+        self.wishes = wishes
+        self.contents: list[Content] = []
+        self.unread: list[Diagnostic] = []
+        for found in members:
+            data = read(found)
+            if isinstance(data, Skipped):
+                region = Region(1, 1, 1, 1)
+                self.unread.append(diagnose("unreadable", found.path, region, data.reason))
+            else:
+                self.contents.append(Content(found.path, found.origin, data))
+        self.place = hashlib.sha256(
+            "\n".join(f"{found.file} {found.member}" for found in members).encode(
+                "utf-8", "surrogatepass"
+            )
+        ).hexdigest()
+        self.size = sum(len(content.data) for content in self.contents)
+        self.state = state_of(self.contents, wishes)
+        self._whole: Future[list[Looked]] | None = None
+        self._parts: list[Future[dict[int, Looked]]] = []
+
+    def start(self, number: int, lanes: Lanes) -> None:
+        """Have the project checked; with several lanes this waits until it has been read."""
+        if lanes.count == 1 or self.size < _LARGE:
+            lane = lanes.least(self.size)
+            self._whole = lanes.submit(lane, check_whole, self.contents, self.wishes)
+            return
+        shares = self._shares(lanes.count)
+        reading = [
+            lanes.submit(lane, read_part, number, share, self.wishes)
+            for lane, share in enumerate(shares)
+        ]
+        looked: dict[int, Looked] = {}
+        for part in reading:
+            looked |= part.result()
+        places = [(content.path, content.origin) for content in self.contents]
+        self._read = looked
+        self._parts = [
+            lanes.submit(lane, check_part, number, places, looked, self.wishes)
+            for lane in range(lanes.count)
+        ]
+
+    def _shares(self, count: int) -> list[dict[int, Content]]:
+        """The files dealt out, the largest first, so that all shares are about the same."""
+        shares: list[dict[int, Content]] = [{} for _ in range(count)]
+        sizes = [0] * count
+        by_size = sorted(enumerate(self.contents), key=lambda item: -len(item[1].data))
+        for index, content in by_size:
+            lane = sizes.index(min(sizes))
+            sizes[lane] += len(content.data)
+            shares[lane][index] = content
+        return [dict(sorted(share.items())) for share in shares]
+
+    def outcome(self) -> Outcome:
+        """What was found; waits for it."""
+        if self._whole is not None:
+            looked = self._whole.result()
+        else:
+            checked = dict(self._read)
+            for part in self._parts:
+                checked |= part.result()
+            looked = [checked[index] for index in range(len(self.contents))]
+        diagnostics = check_project(one.findings for one in looked)
+        by_path: dict[str, list[Diagnostic]] = {content.path: [] for content in self.contents}
+        for diagnostic in diagnostics:
+            by_path[diagnostic.path].append(diagnostic)
+        found = list(self.unread)
+        lines: dict[tuple[str, int], str] = {}
+        skipped = []
+        size = 0
+        for content, one in zip(self.contents, looked, strict=True):
+            if one.skipped is not None:
+                skipped.append(Skipped(content.path, one.skipped, content.origin))
+                continue
+            size += len(content.data)
+            lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
+            its = by_path.pop(content.path, [])  # of two with one path, together with the first
+            found += silenced(content.path, its, one.comments, self.wishes.sought)
+        files = len(self.contents) + len(self.unread) - len(skipped)
+        return Outcome(tuple(in_order(found)), lines, tuple(skipped), files, size, False)
+
+
+def _run(
+    projects: Iterator[list[Found]], lanes: Lanes, memory: Memory | None, wishes: Wishes
+) -> Iterator[Outcome]:
+    """The outcomes of projects, in their order; only so many wait for their turn."""
+    waiting: deque[_Project | Outcome] = deque()
+    size = 0
+
+    def first() -> Outcome:
+        nonlocal size
+        project = waiting.popleft()
+        if isinstance(project, Outcome):
+            return project
+        size -= project.size
+        outcome = project.outcome()
+        if memory is not None:
+            memory.keep_record(project.place, written_outcome(outcome, project.state))
+        return outcome
+
+    for number, members in enumerate(projects):
+        project = _Project(members, wishes)
+        record = memory.recall_record(project.place) if memory is not None else None
+        known = None if record is None else read_outcome(record, project.state)
+        if known is not None:
+            waiting.append(known)
+        else:
+            project.start(number, lanes)
+            waiting.append(project)
+            size += project.size
+        while waiting and (size > _MOST_WAITING or isinstance(waiting[0], Outcome)):
+            yield first()
+    while waiting:
+        yield first()

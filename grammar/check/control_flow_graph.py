@@ -1,0 +1,179 @@
+"""The ways through a routine: what can come after each statement.
+
+A graph of places. Each statement has one, where it begins; further places have none: the start and
+the end, where ways meet behind a block, where UNTIL is tested. Conditions count as open, but for
+TRUE and FALSE in loops. Linear in the size of the routine, and without recursion: depth of nesting
+meets no limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from grammar.syntax import ast
+
+__all__ = ["Step", "Ways", "ways_through"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """A place in a routine: where its statement begins, or UNTIL of a REPEAT if ``is_test``."""
+
+    statement: ast.Statement | None = None
+    is_test: bool = False
+    after: list[Step] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """The ways through a routine from ``start`` to ``end``.
+
+    ``steps`` are the places of its statements in the order of the text, each with that of the
+    statement before it in the same list and that of the block it stands in.
+    """
+
+    start: Step
+    end: Step
+    steps: tuple[tuple[Step, Step | None, Step | None], ...]
+
+    def reached(self) -> frozenset[Step]:
+        """The places that some way from the start leads to."""
+        return reachable(self.start)
+
+
+def reachable(start: Step) -> frozenset[Step]:
+    """All places that some way leads to, the first one included."""
+    found = {start}
+    todo = [start]
+    while todo:
+        for step in todo.pop().after:
+            if step not in found:
+                found.add(step)
+                todo.append(step)
+    return frozenset(found)
+
+
+#: Whether one branch of a SWITCH without DEFAULT is taken in any case.
+IsExhaustive = Callable[[ast.Switch], bool]
+
+
+def ways_through(routine: ast.Routine, is_exhaustive: IsExhaustive = lambda _: False) -> Ways:
+    """The ways through a routine. A GOTO to a label that is not there leads nowhere."""
+    return _Builder(is_exhaustive).build(routine)
+
+
+class _Part:
+    """A list of statements that is being gone through.
+
+    ``at`` is where the last statement left off, ``behind`` what comes after the list, ``leave``
+    where EXIT leads.
+    """
+
+    __slots__ = ("at", "before", "behind", "inside", "leave", "statements")
+
+    def __init__(
+        self,
+        statements: tuple[ast.Statement, ...],
+        at: Step,
+        behind: Step,
+        leave: Step | None,
+        inside: Step | None,
+    ) -> None:
+        self.statements: Iterator[ast.Statement] = iter(statements)
+        self.at = at
+        self.behind = behind
+        self.leave = leave
+        self.inside = inside
+        self.before: Step | None = None
+
+
+class _Builder:
+    def __init__(self, is_exhaustive: IsExhaustive) -> None:
+        self._is_exhaustive = is_exhaustive
+        self._labels: dict[str, Step] = {}
+        self._jumps: list[tuple[Step, str]] = []
+        self._parts: list[_Part] = []
+        self._steps: list[tuple[Step, Step | None, Step | None]] = []
+
+    def build(self, routine: ast.Routine) -> Ways:
+        start, end = Step(), Step()
+        self._parts.append(_Part(routine.body, start, end, None, None))
+        while self._parts:
+            part = self._parts[-1]
+            for statement in part.statements:
+                step = Step(statement)
+                self._steps.append((step, part.before, part.inside))
+                part.at.after.append(step)
+                part.at = part.before = step
+                if self._enter(part, step, statement):
+                    break
+            else:
+                part.at.after.append(part.behind)
+                self._parts.pop()
+        for step, label in self._jumps:
+            if label in self._labels:
+                step.after.append(self._labels[label])
+        return Ways(start, end, tuple(self._steps))
+
+    def _enter(self, part: _Part, step: Step, statement: ast.Statement) -> bool:
+        """Lead on from a statement; tells whether a block was begun."""
+        match statement:
+            case ast.Label(name=name):
+                self._labels.setdefault(name.key, step)
+            case ast.Goto(label=label):
+                self._jumps.append((step, label.key))
+                part.at = Step()
+            case ast.Return():
+                part.at = Step()
+            case ast.Exit() if part.leave is not None:
+                step.after.append(part.leave)
+                part.at = Step()
+            case ast.If() | ast.Switch():
+                part.at = Step()
+                for body in reversed(self._branches(statement, step, part.at)):
+                    self._parts.append(_Part(body, step, part.at, part.leave, step))
+                return True
+            case ast.For(body=body) | ast.While(body=body) | ast.Loop(body=body):
+                part.at = behind = Step()
+                if not _is_endless(statement):
+                    step.after.append(behind)
+                self._parts.append(_Part(body, step, step, behind, step))
+                return True
+            case ast.Repeat(body=body):
+                part.at = behind = Step()
+                test = Step(statement, is_test=True)
+                test.after.append(step)
+                if not _is_endless(statement):
+                    test.after.append(behind)
+                self._parts.append(_Part(body, step, test, behind, step))
+                return True
+        return False
+
+    def _branches(
+        self, statement: ast.If | ast.Switch, step: Step, behind: Step
+    ) -> list[tuple[ast.Statement, ...]]:
+        """What is chosen from; where nothing may be chosen, a way leads past it."""
+        if isinstance(statement, ast.If):
+            branches, otherwise = [statement.body], statement.otherwise
+            is_open = otherwise is None
+        else:
+            branches = [branch.body for branch in statement.branches]
+            otherwise = statement.default
+            is_open = otherwise is None and not self._is_exhaustive(statement)
+        if is_open:
+            step.after.append(behind)
+        return branches if otherwise is None else [*branches, otherwise]
+
+
+def _is_endless(loop: ast.Statement) -> bool:
+    """Whether a loop can be left by EXIT, GOTO and RETURN only."""
+    match loop:
+        case ast.Loop():
+            return True
+        case ast.While(condition=condition) | ast.Repeat(condition=condition):
+            while isinstance(condition, ast.Parenthesised):
+                condition = condition.inner
+            is_while = isinstance(loop, ast.While)
+            return isinstance(condition, ast.BoolLiteral) and condition.value is is_while
+    return False

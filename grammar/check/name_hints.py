@@ -1,0 +1,39 @@
+"""What somebody may have meant: names that are near, or that begin with what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from grammar.diagnostics.diagnostic import Fix
+from grammar.diagnostics.did_you_mean import nearest
+
+__all__ = ["Hints"]
+
+_MOST_NAMES = 3
+# A word of fewer letters is the beginning of too much.
+_SHORTEST = 3
+# A hint costs a look at every name that is known, so only the first faults of a file get one.
+_MOST_HINTS = 20
+
+
+class Hints:
+    """Gives hints at names, to the first that ask."""
+
+    def __init__(self) -> None:
+        self._left = _MOST_HINTS
+
+    def meant(self, name: str, names: Iterable[str], mark: str = "") -> Fix | None:
+        """A hint at those of ``names`` that are like ``name``, each with a ``mark`` in front."""
+        if not self._left:
+            return None
+        self._left -= 1
+        known = list(names)
+        near = nearest(name, known, _MOST_NAMES)
+        if not near and len(name) >= _SHORTEST:
+            key = name.upper()
+            near = [one for one in known if one.upper().startswith(key)][:_MOST_NAMES]
+        if not near:
+            return None
+        *first, last = [f"{mark}{one}" for one in near]
+        others = f"{', '.join(first)} or " if first else ""
+        return Fix(f"did you mean {others}{last}?")

@@ -1,0 +1,213 @@
+"""The check of one project in one or several processes: reading its files, then checking them.
+
+A file is checked against the tables of all files of its project, and against no trees but its own.
+So the files can be dealt out: each process reads its share and keeps the trees, the tables go to
+all, and each process checks its share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from grammar.check import advance_stops
+from grammar.check.context import Context
+from grammar.check.framework import Findings, check_module
+from grammar.check.suppression_comments import Silencer, silencers
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import Module
+from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import ModuleTable
+from grammar.syntax import ast
+from grammar.syntax.build import SyntaxFailure, builder
+from grammar.syntax.source import Source
+from support.files.decode import decode
+from support.parallel.gc_pause import uncollected
+
+__all__ = ["LARGEST", "Content", "Looked", "Wishes", "check_part", "check_whole", "read_part"]
+
+#: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
+LARGEST = 24_000_000
+# Trees of so many bytes are kept between reading and checking; other files are read once more.
+_MOST_KEPT = 12_000_000
+# A longer line is not shown with its finding.
+_LONGEST_LINE = 20_000
+
+_NOTHING = Findings((), ())
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What to look for besides errors: nothing but syntax, or what stops the robot too."""
+
+    syntax_only: bool = False
+    stops: bool = False
+
+    @property
+    def sought(self) -> tuple[str, ...]:
+        """The prefixes of the codes that are wanted; see `grammar.check.suppression_comments`."""
+        if self.syntax_only:
+            return ("KRL0",)
+        return ("",) if self.stops else ("KSS", *(f"KRL{digit}" for digit in "01234579"))
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """A file of a project: its path as people see it, its origin, and its bytes."""
+
+    path: str
+    origin: str
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """What came of one file.
+
+    ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
+    by number, ``comments`` those that silence.
+    """
+
+    findings: Findings = _NOTHING
+    skipped: str | None = None
+    table: ModuleTable | None = None
+    lines: Mapping[int, str] | None = None
+    comments: tuple[Silencer, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Tree:
+    """What a process keeps of a file between reading and checking; not all have their trees."""
+
+    syntax: ast.Module | None
+    table: ModuleTable
+    source: Source
+    comments: tuple[Silencer, ...]
+
+
+#: By project, then by the index of the file in it.
+_KEPT: dict[int, dict[int, _Tree]] = {}
+
+
+def check_whole(contents: Sequence[Content], wishes: Wishes) -> list[Looked]:
+    """Check all files of a project in this process."""
+    project = -1
+    looked = read_part(project, dict(enumerate(contents)), wishes)
+    checked = check_part(project, [(c.path, c.origin) for c in contents], looked, wishes)
+    return [checked.get(index) or looked[index] for index in range(len(contents))]
+
+
+def read_part(project: int, part: Mapping[int, Content], wishes: Wishes) -> dict[int, Looked]:
+    """Read a share of the files of a project, and keep their trees for `check_part`."""
+    kept = _KEPT[project] = {}
+    looked = {}
+    size = 0
+    for index, content in part.items():
+        with uncollected(len(content.data)):
+            looked[index], tree = _read(content, wishes)
+        if tree is not None:
+            size += len(content.data)
+            kept[index] = tree if size <= _MOST_KEPT else replace(tree, syntax=None)
+    return looked
+
+
+def _read(content: Content, wishes: Wishes) -> tuple[Looked, _Tree | None]:
+    path = content.path
+    if len(content.data) > LARGEST:
+        message = f"larger than {LARGEST // 1_000_000} MB, so it was not checked"
+        large = diagnose("too-large", path, Region(1, 1, 1, 1), message)
+        return Looked(Findings((large,), ())), None
+    decoded = decode(content.data)
+    if isinstance(decoded, str):
+        return Looked(skipped=decoded), None
+    source = Source(decoded.text, path)
+    if wishes.syntax_only and not builder().failures.find(source.text):
+        return Looked(comments=silencers(source)), None
+    tree = builder().read(source.text, path)
+    if not isinstance(tree, ast.Module):
+        return _failed(tree, source), None
+    comments = silencers(source)
+    if wishes.syntax_only:
+        return Looked(comments=comments), None
+    table = table_of(tree)
+    return Looked(table=table, comments=comments), _Tree(tree, table, source, comments)
+
+
+def _failed(failures: list[SyntaxFailure], source: Source) -> Looked:
+    found = tuple(syntax_findings(failures, source))
+    lines = _lines(source, (one.region.line for one in found))
+    return Looked(Findings(found, ()), lines=lines, comments=silencers(source))
+
+
+def check_part(
+    project: int,
+    places: Sequence[tuple[str, str]],
+    looked: Mapping[int, Looked],
+    wishes: Wishes,
+) -> dict[int, Looked]:
+    """Check those files of a project that `read_part` kept here.
+
+    ``places`` are path and origin of all its files, in order, and ``looked`` what reading them
+    gave, here or elsewhere: files that are no KRL belong to no project.
+    """
+    kept = _KEPT.pop(project, {})
+    if not kept:
+        return {}
+    files = []
+    for index, (path, origin) in enumerate(places):
+        known, tree = looked[index], kept.get(index)
+        if known.skipped is None:
+            table = tree.table if tree else known.table
+            files.append(File(path, None, origin, table))
+    # modules are told by their tables, which are the same objects
+    own = {id(tree.table): (index, tree) for index, tree in kept.items()}
+    checked = {}
+    for linked in link(files).projects:
+        for module in linked.modules:
+            if id(module.table) in own:
+                index, tree = own[id(module.table)]
+                syntax = tree.syntax or _again(tree.source)
+                whole = replace(module, syntax=syntax)
+                with uncollected(len(tree.source.text)):
+                    checked[index] = _looked(_checked(linked, whole, tree.source, wishes), tree)
+    return checked
+
+
+def _again(source: Source) -> ast.Module:
+    with uncollected(len(source.text)):
+        syntax = builder().read(source.text, source.path)
+    assert isinstance(syntax, ast.Module), "it could be read before"
+    return syntax
+
+
+def _checked(project: Project, module: Module, source: Source, wishes: Wishes) -> Findings:
+    done = check_module(project, module, source)
+    if not wishes.stops:
+        return done.findings
+    context = Context(
+        project,
+        module,
+        source,
+        done.resolution,
+        System.load(),
+        dict(done.types),
+        dict(done.enumerations),
+        dict(done.values),
+    )
+    found = in_order([*done.findings.diagnostics, *advance_stops.check(context)])
+    return Findings(tuple(found), done.findings.references)
+
+
+def _looked(findings: Findings, tree: _Tree) -> Looked:
+    told: list[Diagnostic] = list(findings.diagnostics)
+    numbers = {one.region.line for one in told} | {one.region.line for one in findings.references}
+    return Looked(findings, lines=_lines(tree.source, numbers), comments=tree.comments)
+
+
+def _lines(source: Source, numbers: Iterable[int]) -> dict[int, str]:
+    """Source lines to show with findings."""
+    lines = {number: source.line(number) for number in numbers}
+    return {number: line for number, line in lines.items() if len(line) <= _LONGEST_LINE}

@@ -1,0 +1,118 @@
+"""What checking a project gave, as a record that can be kept and read back.
+
+Read back is only what the same files, code, tables and wishes gave, and whatever cannot be read is
+worked out again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import astuple, dataclass
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+from typing import Any
+
+from grammar.check.project_check import Content, Wishes
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
+from support.files.discovery import Skipped, digest
+
+__all__ = ["Outcome", "read_outcome", "state_of", "written_outcome"]
+
+#: What findings are made of. Any change to it counts: a stale finding is worse than none.
+_SUFFIXES = (".py", ".tsv", ".g4", ".lark")
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What was found in a project, in order, with source lines by path and number.
+
+    ``files`` were checked, of ``bytes`` in all; ``is_kept``: it was known from before.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    lines: Mapping[tuple[str, int], str]
+    skipped: tuple[Skipped, ...]
+    files: int
+    bytes: int
+    is_kept: bool
+
+
+def state_of(contents: Sequence[Content], wishes: Wishes) -> str:
+    """What an outcome depends on: all files of the project, our code and tables, the wishes."""
+    state = hashlib.sha256(f"{_ours()} {wishes}".encode())
+    for content in contents:
+        line = f"\n{digest(content.data)} {content.origin}\t{content.path}"
+        state.update(line.encode("utf-8", "surrogatepass"))
+    return state.hexdigest()
+
+
+@cache
+def _ours() -> str:
+    """The digest of our own code and tables."""
+    code = hashlib.sha256()
+    for package in ("grammar", "recovery"):
+        for file in sorted(_below(resources.files(package)), key=str):
+            code.update(file.read_bytes())
+    return code.hexdigest()
+
+
+def _below(folder: Traversable) -> Iterator[Traversable]:
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            yield from _below(entry)
+        elif entry.name.endswith(_SUFFIXES):
+            yield entry
+
+
+def written_outcome(outcome: Outcome, state: str) -> dict[str, Any]:
+    """The record of an outcome that belongs to a state."""
+    return {
+        "state": state,
+        "diagnostics": [_written(one) for one in outcome.diagnostics],
+        "lines": [[path, number, line] for (path, number), line in outcome.lines.items()],
+        "skipped": [[one.path, one.reason, one.origin] for one in outcome.skipped],
+        "files": outcome.files,
+        "bytes": outcome.bytes,
+    }
+
+
+def read_outcome(record: Mapping[str, Any], state: str) -> Outcome | None:
+    """The outcome of a record; ``None`` where it belongs to another state or is damaged."""
+    if record.get("state") != state:
+        return None
+    try:
+        return Outcome(
+            tuple(_read(values) for values in record["diagnostics"]),
+            {(path, number): line for path, number, line in record["lines"]},
+            tuple(Skipped(*values) for values in record["skipped"]),
+            record["files"],
+            record["bytes"],
+            True,
+        )
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _written(diagnostic: Diagnostic) -> list[object]:
+    fix = diagnostic.fix
+    return [
+        diagnostic.path,
+        list(astuple(diagnostic.region)),
+        diagnostic.severity,
+        diagnostic.code,
+        diagnostic.message,
+        diagnostic.reason,
+        list(diagnostic.rules),
+        fix and [fix.text, fix.region and list(astuple(fix.region)), fix.replacement],
+    ]
+
+
+def _read(values: Sequence[Any]) -> Diagnostic:
+    path, region, severity, code, message, reason, rules, fix = values
+    mended = None
+    if fix is not None:
+        text, place, replacement = fix
+        mended = Fix(text, None if place is None else Region(*place), replacement)
+    return Diagnostic(path, Region(*region), severity, code, message, reason, tuple(rules), mended)

@@ -1,0 +1,38 @@
+"""Whether an expression is an input, an output, or neither."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from grammar.check.context import Context
+from grammar.semantics.symbols import SignalSymbol
+from grammar.syntax import ast
+
+__all__ = ["Side", "side_of", "written_side"]
+
+Side = Literal["inputs", "outputs"]
+
+_SIDES: dict[str, Side] = {
+    "$IN": "inputs",
+    "$ANIN": "inputs",
+    "$OUT": "outputs",
+    "$OUT_C": "outputs",
+    "$ANOUT": "outputs",
+}
+
+
+def written_side(node: ast.Expression) -> Side | None:
+    """The side of ``$IN[5]`` and its like, as the name tells it."""
+    while isinstance(node, ast.Subscript | ast.Member):
+        node = node.base
+    return _SIDES.get(node.name.key) if isinstance(node, ast.Variable) else None
+
+
+def side_of(context: Context, node: ast.Expression) -> Side | None:
+    """The side of an input, an output, or a signal that stands for some of them."""
+    side = written_side(node)
+    if side is None and isinstance(node, ast.Variable):
+        found = context.found(node.name)
+        if found is not None and isinstance(found.symbol, SignalSymbol):
+            return written_side(found.symbol.first)
+    return side

@@ -1,0 +1,171 @@
+"""Names that nothing declares.
+
+An error only where nothing is missing: a look-up says `NotFound` when every file that could declare
+the name is at hand. Elsewhere the name may come from a package, so it is told as a note, once for a
+whole project: a file gives its `References`, and `of_project` makes findings of all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from grammar.check.context import Context
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.semantics.resolve import Use
+from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
+from grammar.semantics.symbols import Access, Kind, Space, Table
+from grammar.semantics.types import SCALARS
+from grammar.syntax.ast import Span
+
+__all__ = ["Reference", "check", "of_project", "references"]
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A name that a file uses and that may be declared in a file that is not at hand.
+
+    ``region`` is the first place of ``count``.
+    """
+
+    space: Space
+    name: str
+    path: str
+    region: Region
+    count: int
+    is_system: bool
+
+
+_SLUGS = {
+    Space.VALUE: "unknown-name",
+    Space.ROUTINE: "unknown-routine",
+    Space.TYPE: "unknown-type",
+    Space.CHANNEL: "unknown-name",
+}
+_WORDS = {
+    Space.VALUE: "variable",
+    Space.ROUTINE: "routine",
+    Space.TYPE: "type",
+    Space.CHANNEL: "channel",
+}
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Tell the names that are certain to be unknown, each once in a file."""
+    told: set[tuple[Space, str]] = set()
+    for use in context.resolution.open_uses:
+        if use.space not in _SLUGS or not isinstance(use.answer, NotFound):
+            continue
+        key = use.space, use.name.key
+        if key not in told:
+            told.add(key)
+            yield _unknown(context, use)
+    if context.module.suffix != ".dat" and context.project.data_of(context.module) is None:
+        yield from _data_missing(context)
+
+
+def _data_missing(context: Context) -> Iterator[Diagnostic]:
+    """The data list of a program is not at hand, and the program uses unknown variables."""
+    for use in context.resolution.open_uses:
+        is_open = isinstance(use.answer, MaybeElsewhere)
+        if use.space is Space.VALUE and is_open and not use.name.text.startswith("$"):
+            message = f"{context.module.name} may have a data list that is not at hand"
+            yield context.finding("data-list-missing", context.table.span, message)
+            return
+
+
+def _unknown(context: Context, use: Use) -> Diagnostic:
+    space, name = use.space, use.name
+    assert space is not None, "members belong to types"
+    hidden = use.answer.hidden if isinstance(use.answer, NotFound) else None
+    word = _WORDS[space]
+    if hidden and hidden.module and hidden.symbol.kind is not Kind.EXTERNAL:
+        message = f"{name.text} of {hidden.module.path} cannot be seen from here"
+        slug = "routine-not-global" if space is Space.ROUTINE else _SLUGS[space]
+        return context.finding(slug, name, message, reason=_why_hidden(hidden))
+    fix = context.hints.meant(name.text, _visible(context, space, name.span))
+    return context.finding(_SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
+
+
+def _why_hidden(hidden: Found) -> str:
+    module = hidden.module
+    if hidden.symbol.kind is Kind.ROUTINE or module is None or module.table is None:
+        return "it is not GLOBAL"
+    if module.table.is_public:
+        return "it is not GLOBAL"
+    return "its data list is not PUBLIC"
+
+
+def _visible(context: Context, space: Space, span: Span) -> Iterator[str]:
+    """The names that somebody may have meant, those nearby first."""
+    for routine in context.routines:
+        if routine.node.span[0] <= span[0] < routine.node.span[1]:
+            yield from _names(routine.table.table, space)
+    yield from _names(context.table.table, space)
+    data = context.project.data_of(context.module)
+    if data is not None and data.table is not None:
+        yield from _names(data.table.table, space)
+    for module in context.project.modules:
+        if module.table is not None and module not in (context.module, data):
+            yield from _names(module.table.table, space, Access.GLOBAL)
+    system = context.system
+    match space:
+        case Space.VALUE:
+            yield from (name for name in system.variables if name.startswith("$"))
+        case Space.ROUTINE:
+            yield from system.functions
+        case Space.TYPE:
+            yield from (*SCALARS, *system.types)
+
+
+def _names(table: Table, space: Space, access: Access | None = None) -> Iterator[str]:
+    for symbol in table.spaces[space].values():
+        if access is None or symbol.access is access:
+            yield symbol.name
+
+
+# ------------------------------------------------------------------------ what may be elsewhere
+
+
+def references(context: Context) -> tuple[Reference, ...]:
+    """The names in a file that other files may declare, in the order of their first places."""
+    uses: dict[tuple[Space, str], list[Use]] = {}
+    for use in context.resolution.open_uses:
+        if use.space in _SLUGS and _may_be_elsewhere(use):
+            uses.setdefault((use.space, use.name.key), []).append(use)
+    return tuple(
+        Reference(
+            space,
+            some[0].name.text,
+            context.source.path,
+            Region.of(context.source, some[0].name.span),
+            len(some),
+            space is Space.VALUE and key.startswith("$"),
+        )
+        for (space, key), some in uses.items()
+    )
+
+
+def _may_be_elsewhere(use: Use) -> bool:
+    """Whether a name comes from a file that is not at hand; what several declare does not."""
+    if isinstance(use.answer, MaybeElsewhere):
+        return use.answer.reason is not Reason.AMBIGUOUS
+    return isinstance(use.answer, Found)  # only EXT announces it
+
+
+def of_project(found: Iterable[Reference]) -> Iterator[Diagnostic]:
+    """One note for each name that the files of a project take from elsewhere."""
+    uses: dict[tuple[Space, str], list[Reference]] = {}
+    for reference in found:
+        uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
+    for some in uses.values():
+        first = min(some, key=lambda reference: (reference.path, reference.region))
+        count = sum(reference.count for reference in some)
+        uses_of_it = "used once" if count == 1 else f"used {count} times"
+        if first.is_system:
+            slug = "unknown-system-name"
+            message = f"{first.name} is in no table of system variables; {uses_of_it}"
+        else:
+            slug = "unknown-external"
+            message = f"the {_WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
+        yield diagnose(slug, first.path, first.region, message, severity="note")

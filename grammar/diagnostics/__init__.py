@@ -1,0 +1,1 @@
+"""Findings as values: codes, messages, source context, SARIF."""

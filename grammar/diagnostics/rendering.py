@@ -1,0 +1,96 @@
+"""Findings as text: the source line with a caret below, the reason, what would mend it.
+
+    R1/main.src:12:15: error KSS2296: ORI_TYPE has no constant #CONST
+      12 |   $ORI_TYPE = #CONST
+         |               ^^^^^^
+         = a constant is looked up in the enumeration of its place [TYP-20]
+         = did you mean #CONSTANT?
+
+Files are written by others: whatever a terminal would obey instead of showing is made visible.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Callable, Iterable, Iterator
+
+from grammar.diagnostics.diagnostic import Diagnostic, in_order
+
+__all__ = ["rendered", "summary"]
+
+# Of a longer line only the part around the caret is shown, in characters.
+_LONGEST_LINE = 110
+_AHEAD_OF_CARET = 40
+
+
+def rendered(
+    diagnostics: Iterable[Diagnostic], line_of: Callable[[str, int], str]
+) -> Iterator[str]:
+    """The lines of text for findings, in order, each finding followed by an empty line.
+
+    ``line_of`` gives a line of a file by path and number, empty where there is none.
+    """
+    for diagnostic in in_order(diagnostics):
+        yield from _lines(diagnostic, line_of(diagnostic.path, diagnostic.region.line))
+        yield ""
+
+
+def summary(diagnostics: Iterable[Diagnostic]) -> str:
+    """How many there are of each severity: ``2 errors, 1 note``."""
+    found = [diagnostic.severity for diagnostic in diagnostics]
+    counts = ((found.count(severity), severity) for severity in ("error", "warning", "note"))
+    parts = [f"{count} {word}{'s' * (count != 1)}" for count, word in counts if count]
+    return ", ".join(parts) or "no findings"
+
+
+def _lines(diagnostic: Diagnostic, source: str) -> Iterator[str]:
+    region = diagnostic.region
+    place = f"{diagnostic.path}:{region.line}:{region.column}"
+    yield _visible(f"{place}: {diagnostic.severity} {diagnostic.code}: {diagnostic.message}")
+    number = str(region.line)
+    margin = " " * (len(number) + 3)
+    if source.strip():
+        shown, start, end = _window(diagnostic, source)
+        caret = " " * _width(shown[:start]) + "^" * max(1, _width(shown[start:end]))
+        yield f"  {number} | {_visible(shown)}".rstrip()
+        yield f"{margin}| {caret}"
+    rules = f"[{', '.join(diagnostic.rules)}]" if diagnostic.rules else ""
+    if diagnostic.reason or rules:
+        yield _visible(f"{margin}= {' '.join(filter(None, (diagnostic.reason, rules)))}")
+    if diagnostic.fix:
+        yield _visible(f"{margin}= {diagnostic.fix.text}")
+
+
+def _window(diagnostic: Diagnostic, source: str) -> tuple[str, int, int]:
+    """The part of a line to show, and where in it the caret begins and ends."""
+    region = diagnostic.region
+    start = min(region.column - 1, len(source))
+    end = region.end_column - 1 if region.end_line == region.line else len(source)
+    end = min(max(end, start), len(source))
+    if len(source) <= _LONGEST_LINE:
+        return source, start, end
+    first = max(0, min(start - _AHEAD_OF_CARET, len(source) - _LONGEST_LINE))
+    last = first + _LONGEST_LINE
+    before, after = "…" * (first > 0), "…" * (last < len(source))
+    shift = len(before) - first
+    return f"{before}{source[first:last]}{after}", start + shift, min(end, last) + shift
+
+
+def _visible(text: str) -> str:
+    """A text that a terminal shows and does not obey; every character keeps its place."""
+    if text.isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() else " " if c == "\t" or unicodedata.category(c) == "Zs" else "�"
+        for c in text
+    )
+
+
+def _width(text: str) -> int:
+    """How many columns a terminal needs for a text."""
+    if text.isascii():
+        return len(text)
+    return sum(
+        0 if unicodedata.combining(c) else 1 + (unicodedata.east_asian_width(c) in "WF")
+        for c in text
+    )

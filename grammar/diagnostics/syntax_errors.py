@@ -1,0 +1,358 @@
+"""What a line that cannot be read was meant to be: syntax failures as findings, with a fix.
+
+The recogniser tells the first token that no program could have, and all that could have come. Here
+that becomes a sentence. The mistakes that people make again and again are known by their tokens:
+``=`` in a condition, END IF, ELSEIF, THEN left out, operators of C, a block that is not closed. All
+others are told with what was expected.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.error_site import Site
+from grammar.diagnostics.expected_tokens import NAMES, STATEMENTS, in_words
+from grammar.diagnostics.open_blocks import CLOSERS, Opened, innermost, lead, open_blocks
+from grammar.syntax.build import SyntaxFailure, builder
+from grammar.syntax.source import Source
+
+__all__ = ["MOST_TOLD", "syntax_findings"]
+
+#: Who has more lines that cannot be read has a file that is no KRL.
+MOST_TOLD = 1_000
+_LONGEST_TOKEN = 60
+# Nobody writes lines of so many characters, and going through one takes long.
+_FARTHEST = 20_000
+_BEGINNING = re.compile(r"[$A-Z_]")
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[Diagnostic]:
+    """Findings for the failures of a text; those that only follow from others are left out."""
+    told = [failure for failure in failures if not failure.follows] or list(failures)
+    shown = told[:MOST_TOLD]
+    blocks = open_blocks(source, (failure.line for failure in shown))
+    found = [_finding(Site(failure, source, blocks[failure.line])) for failure in shown]
+    if len(told) > len(shown):
+        message = f"{len(told) - len(shown):,} more lines that cannot be read are not told"
+        found.append(diagnose("too-large", source.path, found[-1].region, message))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Mistake:
+    """What is wrong: the words for it, and where, if not at the offending token."""
+
+    message: str
+    fix: Fix | None = None
+    reason: str = ""
+    slug: str = "syntax"
+    region: Region | None = None
+
+
+def _finding(site: Site) -> Diagnostic:
+    failure = site.failure
+    region = _offending(site)
+    if failure.reason is not None:
+        message = f"this line is {failure.reason}, so the file was not checked"
+        return diagnose("too-large", site.source.path, region, message)
+    mistake = None
+    if failure.column <= _FARTHEST:
+        mistake = next(filter(None, (known(site) for known in _KNOWN)), None)
+    mistake = mistake or _unexpected(site)
+    return diagnose(
+        mistake.slug,
+        site.source.path,
+        mistake.region or region,
+        mistake.message,
+        reason=mistake.reason,
+        fix=mistake.fix,
+    )
+
+
+def _offending(site: Site) -> Region:
+    """The offending token; at the end of a text, its last line that says something."""
+    failure, source = site.failure, site.source
+    if failure.text:
+        shown = source.line(failure.line)[failure.column - 1 :]
+        width = min(len(failure.text.splitlines()[0]), len(shown)) if failure.text.strip() else 0
+        end = failure.column + width
+        return Region(failure.line, failure.column, failure.line, end)
+    line = min(failure.line, len(source.lines))
+    while line > 1 and not source.line(line).strip():
+        line -= 1
+    column = len(source.line(line).rstrip()) + 1
+    return Region(line, column, line, column)
+
+
+def _unexpected(site: Site) -> _Mistake:
+    words = in_words(site.failure.expected)
+    reason = f"expected: {words}" if words else ""
+    if not site.failure.text:
+        return _Mistake("the file ends too early", reason=reason)
+    if not site.failure.text.strip():
+        return _Mistake("the line ends too early", reason=reason)
+    return _Mistake(f"{_shown(site)} cannot stand here", reason=reason)
+
+
+def _shown(site: Site) -> str:
+    """The offending token as written, as far as it fits into a message."""
+    text = site.failure.text.strip()
+    cut = f"{text[:_LONGEST_TOKEN]}…" if len(text) > _LONGEST_TOKEN else text
+    return cut if cut[:1].isalnum() or cut[:1] in '"$#_' else f'"{cut}"'
+
+
+# ----------------------------------------------------------------------------------------- blocks
+
+
+def _blocks(site: Site) -> _Mistake | None:
+    """A block that is not closed, or closed and never opened."""
+    if not site.failure.text:
+        return None if site.block is None else _not_closed(site, site.block)
+    word = lead(site.code)
+    if site.place > (1 if site.word(0) == "GLOBAL" else 0) or word != site.text:
+        return None
+    if word == "END" and (two := _end_in_two_words(site)):
+        return two
+    if word in ("DEF", "DEFFCT", "DEFDAT") and site.block is not None:
+        return _not_closed(site, site.block)
+    openers = CLOSERS.get(word) or _PARTS.get(word)
+    if openers is None or site.block is None:
+        return None
+    if site.block.word in openers:
+        return _Mistake(f"a second {word}") if word in ("ELSE", "DEFAULT") else None
+    if innermost(site.block, openers) is not None:
+        return _not_closed(site, site.block)
+    if word in ("END", "ENDFCT", "ENDDAT"):
+        meant = _outermost(site.block)
+        if site.block is not meant:
+            return _not_closed(site, site.block)
+        message = f"{meant.word} on line {meant.line} is closed by {meant.closer}"
+        return _Mistake(message, site.swap(meant.closer, site.place))
+    reason = ""
+    if site.block.outer is not None:
+        reason = f"{site.block.word} on line {site.block.line} is open, with {site.block.closer}"
+    return _Mistake(f"{word} without {openers[0]}", reason=reason)
+
+
+#: The parts of a block that are no ends of it.
+_PARTS = {"ELSE": ("IF",), "CASE": ("SWITCH",), "DEFAULT": ("SWITCH",)}
+
+
+def _outermost(block: Opened) -> Opened:
+    while block.outer is not None:
+        block = block.outer
+    return block
+
+
+def _not_closed(site: Site, block: Opened) -> _Mistake:
+    place = f"{block.word} on line {block.line}"
+    slug = "endloop-missing" if block.word == "LOOP" else "syntax"
+    return _Mistake(
+        f"{place} is not closed",
+        Fix(f"write {block.closer} before {site.text.split()[0] if site.text else 'the end'}"),
+        reason=f"{block.closer} is missing",
+        slug=slug,
+    )
+
+
+def _end_in_two_words(site: Site) -> _Mistake | None:
+    closer = f"END{site.word(1)}"
+    if not site.word(1) or not (closer in CLOSERS or closer in _FOREIGN):
+        return None
+    closer = _FOREIGN.get(closer, closer)
+    message = f"{site.word(0)} {site.word(1)} is written as one word"
+    return _Mistake(message, site.swap(closer, 0, 1))
+
+
+#: Words of other languages at the beginning of a line.
+_FOREIGN = {
+    "END_IF": "ENDIF", "FI": "ENDIF", "END_FOR": "ENDFOR", "NEXT": "ENDFOR", "ENDDO": "ENDWHILE",
+    "END_WHILE": "ENDWHILE", "WEND": "ENDWHILE", "END_LOOP": "ENDLOOP", "ENDREPEAT": "UNTIL",
+    "END_CASE": "ENDSWITCH", "ENDCASE": "ENDSWITCH", "ENDSELECT": "ENDSWITCH", "ENDDEF": "END",
+    "ENDPROC": "END", "ENDSUB": "END", "ENDFUNCTION": "ENDFCT", "ENDFUNC": "ENDFCT",
+    "ENDDEFFCT": "ENDFCT", "ENDDEFDAT": "ENDDAT", "END_DAT": "ENDDAT", "BREAK": "EXIT",
+}  # fmt: skip
+
+
+def _foreign(site: Site) -> _Mistake | None:
+    """A word of another language in place of one of KRL."""
+    word = site.word(0)
+    if site.place > 1 or site.expects("INTEGER"):
+        return None
+    if word in ("ELSEIF", "ELSIF", "ELIF") and site.place == 1:
+        message = f"KRL has no {word}"
+        fix = Fix("write ELSE, and on the next line an IF with an ENDIF of its own")
+        return _Mistake(message, fix, region=site.region(0))
+    if word in _FOREIGN and site.is_at_end:
+        meant = _FOREIGN[word]
+        fix = Fix("write UNTIL and when to end") if meant == "UNTIL" else site.swap(meant, 0)
+        return _Mistake(f"KRL has no {word}", fix, region=site.region(0))
+    if word == "ELSE" and site.text == "IF":
+        fix = Fix("write IF on the next line, and an ENDIF of its own")
+        return _Mistake("IF stands on the line of ELSE", fix)
+    return None
+
+
+# ------------------------------------------------------------------------------- signs and words
+
+
+def _signs(site: Site) -> _Mistake | None:
+    """Signs that mean something else in KRL, or nothing."""
+    text, place = site.text, site.place
+    if text == "=" and site.expects("=="):
+        last = place + 1 if site.word(place + 1) == "=" else None
+        return _Mistake("a comparison is written ==", site.swap("==", place, last))
+    if text == "==" and site.expects("="):
+        return _Mistake("an assignment is written =", site.swap("=", place))
+    if text == ":=":
+        fix = site.swap("=", place)
+        return _Mistake("an assignment is written =", fix, region=site.region(place))
+    if text == "=" and site.word(place - 1) in ("STEP", "CA"):
+        return _Mistake(f"{site.word(place - 1)} has no =", site.swap("", place))
+    if text in _OF_C and (site.expects("INTEGER") or site.expects("*")):
+        meant = _OF_C[text]
+        return _Mistake(f"KRL has no {text}", site.swap(meant, place))
+    if text in ("%", "MOD") and site.expects("*"):
+        return _Mistake(f"KRL has no {text}", Fix("A - (A / B) * B is the rest of integers"))
+    if site.word(0) == "//" and place <= 1:
+        return _Mistake("a comment begins with a semicolon", site.swap(";", 0))
+    if text == '"':
+        return _Mistake("the text is not closed", Fix('write " behind it'))
+    if text == "'":
+        fix = Fix("write 'B101' or 'H1F'; texts stand in double quotation marks")
+        return _Mistake("what stands behind ' is no number in bits", fix)
+    if text == "." and site.word(place + 1)[:1].isdigit() and site.expects("INTEGER"):
+        return _Mistake("a number begins with a digit", site.swap("0.", place))
+    if text in ("@", "`", "\\", "?", "~", "!", "§"):
+        return _Mistake(f"{text} is no sign of KRL")
+    return None
+
+
+_OF_C = {
+    "!=": "<>", "!": "NOT ", "&&": "AND", "||": "OR", "&": "B_AND", "|": "B_OR", "^": "B_EXOR",
+    "~": "B_NOT ", "XOR": "EXOR",
+}  # fmt: skip
+
+
+def _words(site: Site) -> _Mistake | None:
+    """A word too many, too few, or in the wrong order."""
+    text, place = site.text, site.place
+    if site.failure.rule == "ifStatement" and site.expects("THEN"):
+        if site.is_at_end:
+            return _Mistake("THEN is missing", site.append(" THEN"))
+        if text == "DO":
+            return _Mistake("IF has THEN and no DO", site.swap("THEN", place))
+    if place > 0 and text in ("DO", "THEN", "OF") and site.expects("NEWLINE"):
+        return _Mistake(f"{lead(site.code)} has no {text}", site.swap("", place))
+    if text == "BY" and site.expects("STEP"):
+        return _Mistake("KRL has no BY", site.swap("STEP", place))
+    if text == "DECL" and site.word(place - 1) == "GLOBAL":
+        fix = site.swap("DECL GLOBAL", place - 1, place)
+        return _Mistake("GLOBAL stands behind DECL", fix, reason="DECL GLOBAL is right [SCO-04]")
+    if site.failure.rule == "interrupt" and place == 1 and site.expects("OFF"):
+        switch = site.word(2)
+        if switch in ("ON", "OFF", "ENABLE", "DISABLE"):
+            fix = site.swap(f"{switch} {site.tokens[1][0]}", 1, 2)
+            return _Mistake(f"the number stands behind {switch}", fix)
+    if site.failure.rule in ("procedure", "function") and site.failure.expected == ("(",):
+        return _Mistake("the parentheses are missing", site.append("( )"))
+    return None
+
+
+def _ends(site: Site) -> _Mistake | None:
+    """A line that ends too early."""
+    if not site.is_at_end:
+        return None
+    if len(site.words) == 1 and site.expects("(", "="):
+        name = site.tokens[0][0]
+        message = f"{name[:_LONGEST_TOKEN]} alone is no statement"
+        return _Mistake(message, Fix("parentheses behind it would make it a call"))
+    closer = next((one for one in ")]}" if site.expects(one)), "")
+    return _Mistake(f"{closer} is missing", site.append(closer)) if closer else None
+
+
+# -------------------------------------------------------------------------- names, declarations
+
+
+def _declarations(site: Site) -> _Mistake | None:
+    """Declarations with what belongs elsewhere, or without what they need."""
+    text, rule, is_data = site.text, site.failure.rule, _is_data(site)
+    if not is_data and text == "=" and rule == "declaration":
+        message = "an initial value in a routine"
+        fix = Fix("assign behind the declarations, or declare it in the data list")
+        return _Mistake(message, fix, slug="initial-outside-data-list")
+    if not is_data and text == "CONST" and site.expects("REAL"):
+        return _Mistake("CONST in a routine", slug="constant-outside-data-list")
+    if site.place == 1 and _is_name(site, 0) and _is_name(site, 1) and site.expects("="):
+        following = site.word(2)
+        if following in ("", ",", "[") or (is_data and following == "="):
+            first = site.region(0)
+            here = Region(first.line, first.column, first.line, first.column)
+            message = f"DECL is missing before {site.tokens[0][0]}"
+            fix = Fix("write DECL before it", here, "DECL ")
+            return _Mistake(message, fix, slug="decl-missing")
+    is_instruction = lead(site.code) in STATEMENTS or text == "("
+    if is_data and is_instruction and rule in ("dataList", "initialisation"):
+        message = f"{site.tokens[0][0]} in a data list"
+        return _Mistake(message, slug="misplaced-instruction", region=site.region(0))
+    return None
+
+
+def _names(site: Site) -> _Mistake | None:
+    """Names that are none, and statements where none can be."""
+    text, place = site.text, site.place
+    is_name = site.expects("NAME") and not site.expects("INTEGER") and not site.expects("HALT")
+    if is_name and _is_keyword(text):
+        return _Mistake(f"{_shown(site)} is a keyword and cannot be a name")
+    if is_name and text[:1].isdigit() and _WORD.search(text):
+        return _Mistake("a name does not begin with a digit")
+    if site.failure.rule == "module" and text:
+        if lead(site.code) in CLOSERS and place > 0:
+            return _Mistake(f"nothing can stand behind {site.word(0)}")
+        return _Mistake(f"{_shown(site)} stands outside all routines")
+    if place > 0 and site.expects("NEWLINE") and _opens_statement(site):
+        fix = Fix("write it on a line of its own")
+        return _Mistake("a second statement on this line", fix)
+    return None
+
+
+def _opens_statement(site: Site) -> bool:
+    if site.text in STATEMENTS:
+        return True
+    if not _BEGINNING.match(site.text) or _is_keyword(site.text):
+        return False
+    return site.text not in NAMES and "=" in site.words[site.place :]
+
+
+def _is_name(site: Site, place: int) -> bool:
+    word = site.word(place)
+    return bool(_WORD.fullmatch(word)) and not _is_keyword(word)
+
+
+def _is_data(site: Site) -> bool:
+    return innermost(site.block, ("DEFDAT",)) is not None
+
+
+def _is_keyword(word: str) -> bool:
+    """Whether a word cannot be a name."""
+    if not _WORD.fullmatch(word):
+        return False
+    lexer = builder().parser.recognizer.lexer
+    kind = lexer.kinds[word]
+    return lexer.is_keyword(kind) and lexer.names[kind] not in NAMES
+
+
+#: In this order: the first that knows the mistake tells it.
+_KNOWN: tuple[Callable[[Site], _Mistake | None], ...] = (
+    _blocks,
+    _foreign,
+    _signs,
+    _words,
+    _ends,
+    _declarations,
+    _names,
+)

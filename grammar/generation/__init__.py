@@ -1,0 +1,1 @@
+"""Valid programs made at random from a seed."""

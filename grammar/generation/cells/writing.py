@@ -1,0 +1,42 @@
+"""Writes synthetic cells into a folder until there is as much as was asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+
+from grammar.generation.cells.cells import files
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["Written", "write_cells"]
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """How much was written."""
+
+    cells: int
+    files: int
+    bytes: int
+
+
+def write_cells(folder: Path, size: int, seed: int = 1, on_bytes: Progress = unheard) -> Written:
+    """Write cells below ``folder`` until they have ``size`` bytes, or less than a file more.
+
+    The same size and seed give the same files everywhere, and a larger size the same and more.
+    ``on_bytes`` is told the bytes of each file once it is written. Memory does not grow with the
+    size. Raises OSError when a file cannot be written.
+    """
+    written = number_of_files = 0
+    for cell in count(1):
+        for file in files(seed, cell):
+            place = folder / file.path
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(file.data)
+            number_of_files += 1
+            written += len(file.data)
+            on_bytes(len(file.data))
+            if written >= size:
+                return Written(cell, number_of_files, written)
+    raise AssertionError("cells never end")

@@ -1,0 +1,244 @@
+"""Reading a ``.g4`` file into data (`grammar.notation.model`), with Lark.
+
+The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, imports or left recursion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput, UnexpectedToken
+
+from grammar.notation.model import (
+    MAX_CODE_POINT,
+    Alternative,
+    CharRange,
+    CharSet,
+    Element,
+    Grammar,
+    GrammarError,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+    normalised,
+)
+from grammar.notation.wellformed import problem
+from support.files.untrusted import read_bytes
+
+__all__ = [
+    "Alternative",
+    "CharSet",
+    "Element",
+    "Grammar",
+    "GrammarError",
+    "Group",
+    "Literal",
+    "Reference",
+    "Repeat",
+    "Rule",
+    "read",
+    "read_file",
+    "read_rule",
+]
+
+
+@cache
+def _reader(start: str) -> Lark:
+    text = resources.files(__package__).joinpath("g4.lark").read_text(encoding="utf-8")
+    return Lark(text, parser="lalr", start=start, propagate_positions=True, maybe_placeholders=True)
+
+
+def read(text: str, *, source: str = "grammar") -> Grammar:
+    """Read the text of a ``.g4`` file.
+
+    Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
+    rule is defined twice, refers to what does not exist, or is left-recursive.
+    """
+    tree = _parse(text, "start", source)
+    header, *rest = tree.children
+    options: tuple[tuple[str, str], ...] = ()
+    rules: list[Rule] = []
+    gaps: list[str] = []
+    end = 0
+    for node in rest:
+        assert isinstance(node, Tree)
+        if node.data == "options":
+            given = [o.children for o in node.children if isinstance(o, Tree)]
+            options = tuple((str(name), str(value)) for name, value in given)
+            continue
+        start = node.meta.start_pos
+        gaps.append(text[end:start])
+        end = node.meta.end_pos
+        rules.append(_rule(node, text[start:end], start, source))
+    gaps.append(text[end:])
+    assert isinstance(header, Tree)
+    grammar = Grammar(str(header.children[0]), options, tuple(rules), tuple(gaps))
+    wrong = problem(grammar)
+    if wrong:
+        raise GrammarError(f"{source}:{wrong}")
+    return grammar
+
+
+def read_file(path: Path) -> Grammar:
+    """Read a ``.g4`` file; raises `GrammarError` when it cannot be read."""
+    try:
+        text = read_bytes(path).decode("utf-8")
+    except OSError as error:
+        raise GrammarError(f"{path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise GrammarError(f"{path}: not a grammar (not UTF-8 text)") from None
+    return read(text, source=str(path))
+
+
+@lru_cache(maxsize=1 << 14)
+def read_rule(text: str) -> Rule:
+    """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
+    return _rule(_parse(text, "rule", "rule"), text, 0, "rule")
+
+
+def _parse(text: str, start: str, source: str) -> Tree[Token]:
+    try:
+        return _reader(start).parse(text)
+    except UnexpectedInput as error:
+        ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
+        place = len(text) if ended else int(getattr(error, "pos_in_stream", None) or 0)
+        found = text[place : place + 12].splitlines()
+        what = f"unexpected {found[0]!r}" if found else "unexpected end"
+        raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
+
+
+# --------------------------------------------------------------------------- tree to data
+
+
+def _rule(node: Tree[Token], text: str, offset: int, source: str) -> Rule:
+    parts: list[Any] = list(node.children)
+    fragment, name, alternatives, *commands = parts
+    assert isinstance(alternatives, Tree)
+    try:
+        return Rule(
+            name=str(name),
+            alternatives=_alternatives(alternatives, offset),
+            is_fragment=fragment is not None,
+            commands=tuple(_command(c) for c in commands if isinstance(c, Tree)),
+            text=text,
+        )
+    except GrammarError as error:
+        raise GrammarError(f"{source}:{node.meta.line}: rule {name}: {error}") from None
+
+
+def _command(node: Tree[Token]) -> str:
+    parts: list[Any] = list(node.children)
+    name, argument = parts
+    if (name, argument is None) not in (("skip", True), ("channel", False)):
+        raise GrammarError(f"the command {name} is not of our style")
+    return str(name) if argument is None else f"{name}({argument})"
+
+
+def _alternatives(node: Tree[Token], offset: int) -> tuple[Alternative, ...]:
+    out: list[Alternative] = []
+    for child in node.children:
+        assert isinstance(child, Tree)
+        parts: list[Any] = list(child.children)
+        *elements, label = parts
+        converted = tuple(_element(e, offset) for e in elements if isinstance(e, Tree))
+        span = (converted[0].span[0], converted[-1].span[1]) if converted else (0, 0)
+        out.append(Alternative(converted, None if label is None else str(label), span))
+    return tuple(out)
+
+
+def _element(node: Tree[Token], offset: int) -> Element:
+    span = (node.meta.start_pos - offset, node.meta.end_pos - offset)
+    first = node.children[0] if node.children else None
+    match node.data:
+        case "reference":
+            return Reference(str(first), span)
+        case "literal":
+            return Literal(_unescape(str(first)[1:-1]), span)
+        case "charset":
+            return CharSet(_ranges(str(first)[1:-1]), span)
+        case "range":
+            low, high = (_unescape(str(c)[1:-1]) for c in node.children)
+            if len(low) > 1 or len(high) > 1 or low > high:
+                raise GrammarError(f"{low!r}..{high!r} is no range of characters")
+            return CharSet(((ord(low), ord(high)),), span)
+        case "wildcard":
+            return CharSet(((0, MAX_CODE_POINT),), span)
+        case "complement":
+            assert isinstance(first, Tree)
+            return CharSet(_complement(_element(first, offset)), span)
+        case "group":
+            assert isinstance(first, Tree)
+            return Group(_alternatives(first, offset), span)
+        case _:
+            item, suffix = node.children
+            assert isinstance(item, Tree)
+            match str(suffix):
+                case "?" | "*" | "+" as operator:
+                    return Repeat(_element(item, offset), operator, span)
+                case other:
+                    raise GrammarError(f"non-greedy {other!r} is not of our style")
+
+
+_ESCAPES = {"n": "\n", "r": "\r", "t": "\t", "b": "\b", "f": "\f"}
+
+
+def _characters(body: str) -> Iterator[tuple[str, bool]]:
+    """Characters of a quoted text or set, each with whether it was escaped."""
+    i = 0
+    while i < len(body):
+        if body[i] != "\\":
+            yield body[i], False
+            i += 1
+        elif body[i + 1] == "u":
+            yield chr(int(body[i + 2 : i + 6], 16)), True
+            i += 6
+        else:
+            yield _ESCAPES.get(body[i + 1], body[i + 1]), True
+            i += 2
+
+
+def _unescape(body: str) -> str:
+    return "".join(character for character, _ in _characters(body))
+
+
+def _ranges(body: str) -> tuple[CharRange, ...]:
+    items = list(_characters(body))
+    found: list[CharRange] = []
+    i = 0
+    while i < len(items):
+        low = ord(items[i][0])
+        if i + 2 < len(items) and items[i + 1] == ("-", False):
+            high = ord(items[i + 2][0])
+            if low > high:
+                raise GrammarError(f"[{body}] has a range that runs backwards")
+            found.append((low, high))
+            i += 3
+        else:
+            found.append((low, low))
+            i += 1
+    return normalised(found)
+
+
+def _complement(element: Element) -> tuple[CharRange, ...]:
+    if isinstance(element, Literal) and len(element.text) == 1:
+        inner: tuple[CharRange, ...] = ((ord(element.text), ord(element.text)),)
+    elif isinstance(element, CharSet):
+        inner = element.ranges
+    else:
+        raise GrammarError("only a set of characters can be negated")
+    out: list[CharRange] = []
+    start = 0
+    for low, high in inner:
+        if start < low:
+            out.append((start, low - 1))
+        start = high + 1
+    if start <= MAX_CODE_POINT:
+        out.append((start, MAX_CODE_POINT))
+    return tuple(out)

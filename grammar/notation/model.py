@@ -1,0 +1,222 @@
+"""The grammar as data: rules, alternatives and elements, each with the text it was written in.
+
+Every rule keeps the exact text it was read from, and the text between rules is kept beside it, so
+printing is concatenation: comments and layout survive, and an edit (`grammar.notation.edits`)
+changes the text of one rule only. Spans are offsets into the rule's own text for the same reason.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal as OneOf
+
+__all__ = [
+    "MAX_CODE_POINT",
+    "Alternative",
+    "CharRange",
+    "CharSet",
+    "Element",
+    "Grammar",
+    "GrammarError",
+    "Group",
+    "Literal",
+    "Reference",
+    "Repeat",
+    "Rule",
+    "Span",
+    "normalised",
+    "walk",
+]
+
+Span = tuple[int, int]
+#: Code points, both ends included.
+CharRange = tuple[int, int]
+MAX_CODE_POINT = 0x10FFFF
+
+
+class GrammarError(Exception):
+    """The text is no grammar of our style; the message names the line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A rule or token by its name; tokens begin with a capital letter."""
+
+    name: str
+    span: Span = field(compare=False)
+
+    @property
+    def is_token(self) -> bool:
+        """Whether it names a token."""
+        return self.name[0].isupper()
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """Quoted text, unescaped."""
+
+    text: str
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class CharSet:
+    """One character out of sorted, disjoint ranges: ``[a-z]``, ``~["]``, ``'a'..'z'``, ``.``."""
+
+    ranges: tuple[CharRange, ...]
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Alternatives in parentheses."""
+
+    alternatives: tuple[Alternative, ...]
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """An element with a suffix: ``?``, ``*`` or ``+``."""
+
+    item: Element
+    operator: OneOf["?", "*", "+"]
+    span: Span = field(compare=False)
+
+
+Element = Reference | Literal | CharSet | Group | Repeat
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """A sequence of elements, possibly empty, with the label after ``#`` where there is one."""
+
+    elements: tuple[Element, ...]
+    label: str | None
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One parser or lexer rule with the exact text it was read from (name to ``;``)."""
+
+    name: str
+    alternatives: tuple[Alternative, ...]
+    is_fragment: bool = False
+    commands: tuple[str, ...] = ()
+    text: str = field(default="", compare=False)
+
+    @property
+    def is_lexer(self) -> bool:
+        """Whether it is a rule of the lexer."""
+        return self.name[0].isupper()
+
+    @property
+    def is_skipped(self) -> bool:
+        """Whether the parser never sees this token."""
+        return any(c == "skip" or c.startswith("channel(") for c in self.commands)
+
+    def source_of(self, node: Element | Alternative) -> str:
+        """The text of a part of this rule, as written."""
+        return self.text[node.span[0] : node.span[1]]
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """A grammar file: rules in order, and the text around them.
+
+    ``gaps[i]`` is the text before rule ``i``; the last one follows the last rule.
+    """
+
+    name: str
+    options: tuple[tuple[str, str], ...]
+    rules: tuple[Rule, ...]
+    gaps: tuple[str, ...]
+
+    @cached_property
+    def by_name(self) -> dict[str, Rule]:
+        """The rules by their names."""
+        return {rule.name: rule for rule in self.rules}
+
+    @property
+    def start(self) -> str:
+        """Name of the first parser rule, where every program begins."""
+        return next(rule.name for rule in self.rules if not rule.is_lexer)
+
+    @property
+    def case_insensitive(self) -> bool:
+        """Whether letters match in either case."""
+        return ("caseInsensitive", "true") in self.options
+
+    @cached_property
+    def text(self) -> str:
+        """The file, byte for byte where nothing was edited."""
+        pieces = [self.gaps[0]]
+        for rule, gap in zip(self.rules, self.gaps[1:], strict=True):
+            pieces += (rule.text, gap)
+        return "".join(pieces)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Digest of the text, the key under which results are kept."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    @cached_property
+    def literal_tokens(self) -> dict[str, str]:
+        """Token names by the literal that is their whole rule; upper case where case is ignored."""
+        found: dict[str, str] = {}
+        for rule in self.rules:
+            if rule.is_lexer and not rule.is_fragment and len(rule.alternatives) == 1:
+                elements = rule.alternatives[0].elements
+                if len(elements) == 1 and isinstance(elements[0], Literal):
+                    found.setdefault(self.fold(elements[0].text), rule.name)
+        return found
+
+    def fold(self, text: str) -> str:
+        """``text`` as the lexer compares it."""
+        return text.upper() if self.case_insensitive else text
+
+    def token_of(self, element: Reference | Literal) -> str:
+        """Name of the token that a reference or quoted text in a parser rule stands for."""
+        if isinstance(element, Reference):
+            return element.name
+        return self.literal_tokens[self.fold(element.text)]
+
+    def with_rule(self, rule: Rule) -> Grammar:
+        """The same grammar with the rule of that name replaced."""
+        index = next(i for i, old in enumerate(self.rules) if old.name == rule.name)
+        changed = replace(self, rules=(*self.rules[:index], rule, *self.rules[index + 1 :]))
+        if not rule.is_lexer:  # the tokens are the same: no need to gather them again
+            changed.__dict__["literal_tokens"] = self.literal_tokens
+        return changed
+
+
+def walk(node: Element | Alternative) -> Iterator[Element]:
+    """Every element below ``node``, outermost first, itself included."""
+    match node:
+        case Alternative(elements=elements):
+            for element in elements:
+                yield from walk(element)
+        case Group(alternatives=alternatives):
+            yield node
+            for alternative in alternatives:
+                yield from walk(alternative)
+        case Repeat(item=item):
+            yield node
+            yield from walk(item)
+        case _:
+            yield node
+
+
+def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
+    """The same characters as sorted, disjoint, non-touching ranges."""
+    merged: list[CharRange] = []
+    for low, high in sorted(ranges):
+        if merged and low <= merged[-1][1] + 1:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
+        else:
+            merged.append((low, high))
+    return tuple(merged)

@@ -1,0 +1,215 @@
+"""Is a grammar well formed: defined, reachable in finite time, free of left recursion?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from grammar.notation.model import (
+    Alternative,
+    CharSet,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
+
+__all__ = ["problem", "shortest_lengths"]
+
+# Words that ANTLR's own language keeps for itself, so no rule can be called so.
+_RESERVED = frozenset(
+    "catch channels finally fragment grammar import lexer locals mode options parser "
+    "private protected public returns throws tokens".split()
+)
+
+
+def problem(grammar: Grammar) -> str | None:
+    """What is wrong with a grammar, as its line and one line of text, or ``None``."""
+    names = [rule.name for rule in grammar.rules]
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            return f"{_line(grammar, index)}: rule {name} is defined twice"
+        if name in _RESERVED:
+            return f"{_line(grammar, index)}: ANTLR keeps the word {name} for itself"
+    if all(rule.is_lexer for rule in grammar.rules):
+        return "1: no parser rule"
+    for index, rule in enumerate(grammar.rules):
+        for element in (e for a in rule.alternatives for e in walk(a)):
+            wrong = _problem(grammar, rule, element)
+            if wrong:
+                return f"{_line(grammar, index, element.span[0])}: rule {rule.name}: {wrong}"
+    cycle = _left_recursion(grammar)
+    if cycle:
+        what = "recursive tokens" if cycle[0][0].isupper() else "left recursion"
+        line = _line(grammar, names.index(cycle[0]))
+        return f"{line}: {what} through {' → '.join(cycle)}"
+    endless = next((n for n, c in shortest_lengths(grammar).items() if c == math.inf), None)
+    if endless is None:
+        return None
+    line = _line(grammar, names.index(endless))
+    return f"{line}: rule {endless} has no end: every alternative needs it again"
+
+
+def _line(grammar: Grammar, index: int, offset: int = 0) -> int:
+    """The line on which a rule, or what stands at ``offset`` in its text, begins."""
+    pairs = zip(grammar.gaps[: index + 1], grammar.rules[: index + 1], strict=True)
+    ahead = sum(gap.count("\n") + rule.text.count("\n") for gap, rule in pairs)
+    return 1 + ahead - grammar.rules[index].text.count("\n", offset)
+
+
+def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
+    match element:
+        case Reference(name=name):
+            if name == "EOF":
+                return None if not rule.is_lexer else "EOF in a lexer rule"
+            target = grammar.by_name.get(name)
+            if target is None:
+                return f"{name} is not defined"
+            if not rule.is_lexer and target.is_fragment:
+                return f"{name} is a fragment, not a token"
+            if rule.is_lexer and not target.is_lexer:
+                return f"{name} is a parser rule"
+        case Literal(text=text) if not rule.is_lexer:
+            if grammar.fold(text) not in grammar.literal_tokens:
+                return f"no token is defined as {text!r}"
+        case CharSet() if not rule.is_lexer:
+            return "a set of characters in a parser rule"
+    return None
+
+
+def _nullable_rules(grammar: Grammar) -> frozenset[str]:
+    """Names of the rules that match nothing at all."""
+    found: set[str] = set()
+
+    def empty(element: Element) -> bool:
+        match element:
+            case Reference(name=name):
+                return name in found
+            case Group(alternatives=alternatives):
+                return any(all(map(empty, a.elements)) for a in alternatives)
+            case Repeat(item=item, operator=operator):
+                return operator != "+" or empty(item)
+            case _:
+                return False
+
+    grown = True
+    while grown:
+        grown = False
+        for rule in grammar.rules:
+            if rule.name not in found and any(
+                all(map(empty, a.elements)) for a in rule.alternatives
+            ):
+                found.add(rule.name)
+                grown = True
+    return frozenset(found)
+
+
+def _left_recursion(grammar: Grammar) -> list[str] | None:
+    """Names of rules on a left-recursive cycle, the first one repeated at the end, or ``None``.
+
+    Lexer rules may not be recursive at all.
+    """
+    nullable = _nullable_rules(grammar)
+
+    def leading(elements: tuple[Element, ...]) -> Iterator[str]:
+        for element in elements:
+            match element:
+                case Reference(name=name):
+                    yield name
+                    if name not in nullable:
+                        return
+                case Group(alternatives=alternatives):
+                    for alternative in alternatives:
+                        yield from leading(alternative.elements)
+                    if not any(_may_be_empty(a.elements, nullable) for a in alternatives):
+                        return
+                case Repeat(item=item, operator=operator):
+                    yield from leading((item,))
+                    if operator == "+" and not _may_be_empty((item,), nullable):
+                        return
+                case _:
+                    return
+
+    edges = {
+        rule.name: {
+            name
+            for a in rule.alternatives
+            for name in (_referred(a) if rule.is_lexer else leading(a.elements))
+        }
+        for rule in grammar.rules
+    }
+    return _cycle(edges)
+
+
+def _cycle(edges: Mapping[str, set[str]]) -> list[str] | None:
+    """A way through ``edges`` that comes back to where it began, or ``None``."""
+    done: set[str] = set()
+    for root, first in edges.items():
+        path = [root]
+        stack: list[Iterator[str]] = [iter(first)]
+        while stack:
+            step = next((n for n in stack[-1] if n in edges and n not in done), None)
+            if step is None:
+                stack.pop()
+                done.add(path.pop())
+            elif step in path:
+                return [*path[path.index(step) :], step]
+            else:
+                path.append(step)
+                stack.append(iter(edges[step]))
+    return None
+
+
+def _referred(alternative: Alternative) -> Iterator[str]:
+    return (e.name for e in walk(alternative) if isinstance(e, Reference))
+
+
+def _may_be_empty(elements: tuple[Element, ...], nullable: frozenset[str]) -> bool:
+    for element in elements:
+        match element:
+            case Reference(name=name):
+                if name not in nullable:
+                    return False
+            case Group(alternatives=alternatives):
+                if not any(_may_be_empty(a.elements, nullable) for a in alternatives):
+                    return False
+            case Repeat(item=item, operator=operator):
+                if operator == "+" and not _may_be_empty((item,), nullable):
+                    return False
+            case _:
+                return False
+    return True
+
+
+def shortest_lengths(grammar: Grammar) -> Mapping[str, float]:
+    """Tokens in the shortest sentence of each parser rule; infinite where there is none."""
+    rules = [rule for rule in grammar.rules if not rule.is_lexer]
+    lengths: dict[str, float] = dict.fromkeys((rule.name for rule in rules), math.inf)
+    changed = True
+    while changed:
+        changed = False
+        for rule in rules:
+            length = min(
+                sum(shortest_length(e, lengths) for e in a.elements) for a in rule.alternatives
+            )
+            if length < lengths[rule.name]:
+                lengths[rule.name] = length
+                changed = True
+    return lengths
+
+
+def shortest_length(element: Element, lengths: Mapping[str, float]) -> float:
+    """Tokens in the shortest text of an element, given those of the rules."""
+    match element:
+        case Reference(name=name):
+            return lengths[name] if name in lengths else float(name != "EOF")
+        case Group(alternatives=alternatives):
+            return min(sum(shortest_length(e, lengths) for e in a.elements) for a in alternatives)
+        case Repeat(item=item, operator=operator):
+            return shortest_length(item, lengths) if operator == "+" else 0
+        case _:
+            return 1

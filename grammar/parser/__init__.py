@@ -1,0 +1,1 @@
+"""Reading text under any grammar: lexer, recogniser, parse trees, failures, ambiguity."""

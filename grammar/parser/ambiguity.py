@@ -1,0 +1,65 @@
+"""Ambiguity: does a text have two readings?
+
+The recogniser follows all readings at once and forgets how it came to a configuration. Here the
+ways are kept: where one configuration is reached in two ways, the text between has two readings.
+Alternatives of one rule with the same tokens are one reading: the rule's automaton has them once.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+from grammar.parser.recognizer import Configuration, Recognizer, State
+
+__all__ = ["is_ambiguous"]
+
+_MOST_NODES = 200_000
+
+_Node = tuple[int, Configuration, bool]  # tokens read, where we are, whether a token was just read
+
+
+def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> bool:
+    """Whether the tokens, read from ``state``, have two readings that end alike.
+
+    Tokens that cannot be read have none.
+    """
+    network = recognizer.network
+    start = recognizer.restore(recognizer.frames(state))
+    before: dict[_Node, set[_Node]] = defaultdict(set)
+    layer = {(0, c, True) for c in start.core.kernel}
+    for index, kind in enumerate(kinds):
+        reached: set[_Node] = set()
+        seen = set(layer)
+        todo = list(layer)
+        while todo:
+            node = todo.pop()
+            _, (position, stack), _ = node
+            following: list[_Node] = [
+                (index, (entry, stack.push(back)), False) for entry, back in network.calls[position]
+            ]
+            if network.final[position] and stack.rest is not None:
+                following.append((index, (stack.position, stack.rest), False))
+            for other in following:
+                before[other].add(node)
+                if other not in seen:
+                    seen.add(other)
+                    todo.append(other)
+            target = network.shifts[position].get(kind)
+            if target is not None:
+                shifted = (index + 1, (target, stack), True)
+                before[shifted].add(node)
+                reached.add(shifted)
+        layer = reached
+        if len(before) > _MOST_NODES:
+            return True  # nothing with one reading needs so many ways
+    alive = set(layer)
+    todo = list(layer)
+    while todo:
+        ways = before[todo.pop()]
+        if len(ways) > 1:
+            return True
+        for node in ways - alive:
+            alive.add(node)
+            todo.append(node)
+    return False

@@ -1,0 +1,253 @@
+"""The lexer, derived from the lexer rules of the grammar as ANTLR reads them.
+
+Longest match first, then the order of the rules; what no rule matches is an ``ERROR`` token of one
+character. Two steps keep plain Python fast: one compiled pattern cuts the text into lexemes at C
+speed, and each distinct lexeme is classified once and remembered.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
+from itertools import takewhile
+
+from grammar.notation.model import (
+    CharSet,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+)
+from grammar.parser.dfa import (
+    automaton_of,
+    both_cases,
+    class_of,
+    first_characters,
+    overlap,
+    pattern_of,
+)
+
+__all__ = ["EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of"]
+
+#: Kinds below zero are not tokens of the grammar.
+SKIPPED = -1
+ERROR = -2
+#: The end of the file, in every lexer.
+EOF = 0
+
+# Memory stays flat on corpora of any size: long lexemes (strings) are not remembered, and the
+# memory starts afresh when point tables have filled it with numbers.
+_LONGEST_REMEMBERED = 48
+_MOST_REMEMBERED = 400_000
+
+
+#: Place among the rules and kind: of two rules that match the same text the first one wins.
+_Ranked = tuple[int, int]
+
+
+class _Kinds(dict[str, int]):
+    """Kind by lexeme, filled as lexemes are met."""
+
+    __slots__ = ("fold", "literals", "others", "other_ranks")
+
+    def __init__(
+        self,
+        literals: Mapping[str, _Ranked],
+        others: re.Pattern[str],
+        other_ranks: Sequence[_Ranked],
+        fold: Callable[[str], str],
+    ) -> None:
+        self.literals = literals
+        self.others = others
+        self.other_ranks = other_ranks
+        self.fold = fold
+
+    def __missing__(self, lexeme: str) -> int:
+        kind = self._classify(lexeme)
+        if len(lexeme) <= _LONGEST_REMEMBERED:
+            if len(self) >= _MOST_REMEMBERED:
+                self.clear()
+            self[lexeme] = kind
+        return kind
+
+    def _classify(self, lexeme: str) -> int:
+        if not lexeme:
+            return SKIPPED
+        found = self.others.fullmatch(lexeme)
+        ways = [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
+        # literals are ASCII or exact: str.upper would also fold letters that ANTLR keeps apart
+        literal = self.literals.get(self.fold(lexeme) if lexeme.isascii() else lexeme)
+        if literal is not None:
+            ways.append(literal)
+        return min(ways)[1] if ways else ERROR
+
+
+class Lexer:
+    """Cuts text into tokens.
+
+    ``names[kind]`` is the name of a token; kind 0 is ``EOF``. ``display[kind]`` is what a person
+    reads in an expected set: the quoted text of punctuation and keywords, else the name.
+    """
+
+    def __init__(self, grammar: Grammar) -> None:
+        rules = [r for r in grammar.rules if r.is_lexer and not r.is_fragment]
+        self.names: tuple[str, ...] = ("EOF", *(r.name for r in rules))
+        self.kind_of = {name: kind for kind, name in enumerate(self.names)}
+        texts = {name: text for text, name in grammar.literal_tokens.items()}
+        self.display = tuple(texts.get(name, name) for name in self.names)
+        self._wider: dict[str, Lexer] = {}
+        self._keywords = frozenset(
+            self.kind_of[name] for name, text in texts.items() if text[0].isalpha()
+        )
+        literals = {
+            text: self._ranked(grammar.by_name[name])
+            for text, name in grammar.literal_tokens.items()
+        }
+        names_of_literals = set(grammar.literal_tokens.values())
+        others = [r for r in rules if r.name not in names_of_literals]
+        classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
+        ranks = [self._ranked(rule) for rule in others]
+        fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
+        self.kinds = _Kinds(literals, classify, ranks, fold)
+        # A literal that another token matches whole (a keyword that could be a name) adds nothing
+        # to where tokens end, and leaving it out keeps the automaton small.
+        tokens = re.compile("|".join(_translate(grammar, r) for r in others if not r.is_skipped))
+        cutting = [
+            r
+            for r in rules
+            if r.is_skipped
+            or r.name not in names_of_literals
+            or not tokens.fullmatch(_only_literal(r))
+        ]
+        self._automaton = automaton_of(grammar, cutting)
+        self._leaves_out_skipped = not any(r.is_skipped for r in rules)
+        self._pattern = self._pattern_for(grammar, cutting)
+
+    def _ranked(self, rule: Rule) -> _Ranked:
+        kind = self.kind_of[rule.name]
+        return kind, SKIPPED if rule.is_skipped else kind
+
+    def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | None:
+        """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do."""
+        skipped = [r for r in rules if r.is_skipped]
+        tokens = [r for r in rules if not r.is_skipped]
+        if skipped and tokens:
+            skip, token = automaton_of(grammar, skipped), automaton_of(grammar, tokens)
+            if not overlap(first_characters(skip), first_characters(token)):
+                skip_pattern, token_pattern = pattern_of(skip), pattern_of(token)
+                if skip_pattern and token_pattern:
+                    self._leaves_out_skipped = True
+                    return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
+        everything = pattern_of(self._automaton)
+        return re.compile(f"({everything}|[\\s\\S])") if everything else None
+
+    def with_keyword(self, word: str) -> Lexer:
+        """The lexer of the same rules plus a keyword; kinds keep their numbers.
+
+        ``word`` has to be a name to this lexer, so that reserving it moves no token's end.
+        """
+        known = self._wider.get(word)
+        if known is not None:
+            return known
+        wider = self._wider[word] = copy(self)
+        wider._wider = {}
+        kind = len(self.names)
+        wider.names = (*self.names, word)
+        wider.display = (*self.display, word)
+        wider.kind_of = {**self.kind_of, word: kind}
+        wider._keywords = self._keywords | {kind}
+        old = self.kinds
+        wider.kinds = _Kinds(
+            {**old.literals, word: (0, kind)}, old.others, old.other_ranks, old.fold
+        )
+        return wider
+
+    def is_keyword(self, kind: int) -> bool:
+        """Whether the token is one word that the grammar reserves."""
+        return kind in self._keywords
+
+    @property
+    def leaves_out_skipped(self) -> bool:
+        """Whether `lexemes` has tokens only."""
+        return self._leaves_out_skipped
+
+    def lexemes(self, text: str) -> list[str]:
+        """The texts of the tokens in order; skipped ones may be among them."""
+        if self._pattern is None:
+            return [text[start:end] for start, end in self._spans(text)]
+        found: list[str] = self._pattern.findall(text)
+        while found and not found[-1]:  # what is skipped at the end leads to no token
+            found.pop()
+        return found
+
+    def offsets(self, text: str, start: int = 0) -> Iterator[int]:
+        """Where each of the `lexemes` from ``start`` on begins in ``text``."""
+        if self._pattern is None:
+            return (begin for begin, _ in self._spans(text, start))
+        begins = (found.start(1) for found in self._pattern.finditer(text, start))
+        return takewhile(len(text).__gt__, begins)
+
+    def offsets_of_tokens(self, text: str) -> list[int]:
+        """Where each token begins in ``text``."""
+        pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
+        return [offset for lexeme, offset in pairs if self.kinds[lexeme] != SKIPPED]
+
+    def _spans(self, text: str, start: int = 0) -> Iterator[tuple[int, int]]:
+        """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
+        while start < len(text):
+            end = max(self._automaton.longest(text, start), start + 1)
+            yield start, end
+            start = end
+
+
+def _only_literal(rule: Rule) -> str:
+    element = rule.alternatives[0].elements[0]
+    assert isinstance(element, Literal)
+    return element.text
+
+
+def _translate(grammar: Grammar, rule: Rule) -> str:
+    """A pattern for ``re`` with the language of a lexer rule; used only to match whole lexemes."""
+
+    def sequence(elements: tuple[Element, ...]) -> str:
+        return "".join(map(element, elements))
+
+    def element(node: Element) -> str:
+        match node:
+            case Literal(text=text):
+                return "".join(character(((ord(c), ord(c)),)) for c in text)
+            case CharSet(ranges=ranges):
+                return character(ranges)
+            case Reference(name=name):
+                inner = grammar.by_name[name].alternatives
+                return f"(?:{'|'.join(sequence(a.elements) for a in inner)})"
+            case Group(alternatives=alternatives):
+                return f"(?:{'|'.join(sequence(a.elements) for a in alternatives)})"
+            case Repeat(item=item, operator=operator):
+                return f"(?:{element(item)}){operator}"
+
+    def character(ranges: tuple[tuple[int, int], ...]) -> str:
+        return class_of(both_cases(ranges) if grammar.case_insensitive else ranges)
+
+    return "|".join(sequence(a.elements) for a in rule.alternatives)
+
+
+_lexers: dict[tuple[str, ...], Lexer] = {}
+
+
+def lexer_of(grammar: Grammar) -> Lexer:
+    """The lexer of a grammar; grammars with the same lexer rules share one."""
+    key = (
+        str(grammar.case_insensitive),
+        *(r.text for r in grammar.rules if r.is_lexer),
+    )
+    lexer = _lexers.get(key)
+    if lexer is None:
+        if len(_lexers) >= 64:
+            _lexers.clear()
+        lexer = _lexers[key] = Lexer(grammar)
+    return lexer

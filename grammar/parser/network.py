@@ -1,0 +1,423 @@
+"""Parser rules as a transition network: one deterministic automaton a rule.
+
+A *position* is a state of one rule's automaton. From it the network reads a token, calls a rule and
+returns to another position of the same rule, or leaves the rule. Positions are small integers; the
+automaton of a rule is built once for its text and shared by every grammar that has that rule, so
+that a candidate edit costs one rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
+from grammar.parser.lexer import Lexer, lexer_of
+
+__all__ = [
+    "Network",
+    "RuleAutomaton",
+    "is_left_recursive",
+    "may_be_empty",
+    "network_of",
+    "with_rule",
+]
+
+Symbol = str  # the name of a token or a rule
+
+
+@dataclass(frozen=True, slots=True)
+class RuleAutomaton:
+    """States of one rule; 0 is its start. ``edges[state]`` maps a symbol to the next state.
+
+    ``places[state]`` are the addresses (`grammar.notation.edits`) of the elements before which the
+    rule may stand in that state; one past the last element stands for the end of a sequence.
+    """
+
+    edges: tuple[Mapping[Symbol, int], ...]
+    final: frozenset[int]
+    places: tuple[frozenset[tuple[int, ...]], ...]
+
+
+#: A position, and the positions to return to from it, the outermost first.
+_Way = tuple[int, tuple[int, ...]]
+
+
+class Reach(dict[int, Sequence[_Way]]):
+    """What can be done from a position before its rule ends, calls followed.
+
+    As a dictionary: token kind to the ways it can be read, as the position after it and the
+    positions to return to; worked out when a kind is first asked for, for most never are. ``ends``
+    says whether the rule may end without reading, and ``rules`` names the rules that have a part in
+    all this.
+    """
+
+    __slots__ = ("_first", "_network", "_sites", "_steps", "ends", "rules")
+
+    def __init__(
+        self, network: Network, steps: Sequence[int], rules: frozenset[str], *, ends: bool
+    ) -> None:
+        """``steps`` are the positions of the same rule reached without reading."""
+        super().__init__()
+        self._network = network
+        self._steps = steps
+        self._first: frozenset[int] | None = None
+        self._sites: Sequence[_Way] | None = None
+        self.ends = ends
+        self.rules = rules
+
+    def __missing__(self, kind: int) -> Sequence[_Way]:
+        network = self._network
+        found: list[_Way] = []
+        for here in self._steps:
+            target = network.shifts[here].get(kind)
+            if target is not None:
+                found.append((target, ()))
+            for entry, back in network.calls[here]:
+                for position, returns in network.reach(entry)[kind]:
+                    found.append((position, (back, *returns)))
+        self[kind] = found
+        return found
+
+    @property
+    def first(self) -> frozenset[int]:
+        """The token kinds that may come."""
+        if self._first is None:
+            network = self._network
+            shifts = (network.shifts[here] for here in self._steps)
+            called = (network.reach(e).first for h in self._steps for e, _ in network.calls[h])
+            self._first = frozenset[int]().union(*shifts, *called)
+        return self._first
+
+    @property
+    def sites(self) -> Sequence[_Way]:
+        """The positions reached without reading, and the positions to return to."""
+        if self._sites is None:
+            network = self._network
+            found: list[_Way] = []
+            for here in self._steps:
+                found.append((here, ()))
+                for entry, back in network.calls[here]:
+                    for position, returns in network.reach(entry).sites:
+                        found.append((position, (back, *returns)))
+            self._sites = found
+        return self._sites
+
+    __hash__ = object.__hash__  # type: ignore[assignment]  # a dict has none
+    __eq__ = object.__eq__
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """The whole grammar, positions numbered across rules.
+
+    ``shifts[p]`` maps a token kind to the next position, ``calls[p]`` lists (first position of the
+    called rule, position to return to), ``final[p]`` says whether the rule may end at ``p``, and
+    ``rule[p]`` names the rule ``p`` lies in.
+    """
+
+    lexer: Lexer
+    automata: Mapping[str, RuleAutomaton]
+    shifts: tuple[Mapping[int, int], ...]
+    calls: tuple[tuple[tuple[int, int], ...], ...]
+    final: tuple[bool, ...]
+    rule: tuple[str, ...]
+    entry: Mapping[str, int]
+    start: int
+    known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
+
+    def passing(self) -> frozenset[int]:
+        """Positions from which there is no way on but to leave the rule."""
+        ways = zip(self.final, self.shifts, self.calls, strict=True)
+        return frozenset(p for p, (f, s, c) in enumerate(ways) if f and not s and not c)
+
+    def reach(self, position: int) -> Reach:
+        """What can be done from a position. A grammar with left recursion has no answer."""
+        found = self.known.get(position)
+        return self._reach(position) if found is None else found
+
+    def _reach(self, position: int) -> Reach:
+        rules = {self.rule[position]}
+        ends = False
+        steps = [position]
+        for here in steps:  # grows while it is walked
+            ends = ends or self.final[here]
+            for entry, back in self.calls[here]:
+                called = self.reach(entry)
+                rules |= called.rules
+                if called.ends and back not in steps:
+                    steps.append(back)
+        found = self.known[position] = Reach(self, steps, frozenset(rules), ends=ends)
+        return found
+
+
+def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
+    """Link the automata of all parser rules; ``lexer`` saves deriving it from the grammar."""
+    lexer = lexer or lexer_of(grammar)
+    automata = {r.name: rule_automaton(grammar, r) for r in grammar.rules if not r.is_lexer}
+    entry: dict[str, int] = {}
+    size = 0
+    for name, automaton in automata.items():
+        entry[name] = size
+        size += len(automaton.edges)
+    shifts: list[Mapping[int, int]] = []
+    calls: list[tuple[tuple[int, int], ...]] = []
+    final: list[bool] = []
+    rule: list[str] = []
+    for name, automaton in automata.items():
+        base = entry[name]
+        for state, edges in enumerate(automaton.edges):
+            shifts.append({lexer.kind_of[s]: base + t for s, t in edges.items() if s not in entry})
+            calls.append(tuple((entry[s], base + t) for s, t in edges.items() if s in entry))
+            final.append(state in automaton.final)
+            rule.append(name)
+    return Network(
+        lexer,
+        automata,
+        tuple(shifts),
+        tuple(calls),
+        tuple(final),
+        tuple(rule),
+        entry,
+        entry[grammar.start],
+    )
+
+
+def with_rule(network: Network, grammar: Grammar, rule: Rule, lexer: Lexer) -> Network:
+    """The network with the automaton of one rule exchanged for that of its new text.
+
+    Positions of all other rules, and the first one of this, keep their numbers; ``grammar`` already
+    has the new rule, and ``lexer`` numbers its tokens as the network's does. Costs far less than
+    linking anew, which is what makes trying thousands of edits possible.
+    """
+    automaton = rule_automaton(grammar, rule)
+    entry, first = network.entry, network.entry[rule.name]
+    size = len(network.rule) - 1
+    place = [first, *range(size + 1, size + len(automaton.edges))]
+    added = len(automaton.edges) - 1
+    shifts = [*network.shifts, *({} for _ in range(added))]
+    calls = [*network.calls, *(() for _ in range(added))]
+    final = [*network.final, *(False for _ in range(added))]
+    for state, edges in enumerate(automaton.edges):
+        p = place[state]
+        shifts[p] = {lexer.kind_of[s]: place[t] for s, t in edges.items() if s not in entry}
+        calls[p] = tuple((entry[s], place[t]) for s, t in edges.items() if s in entry)
+        final[p] = state in automaton.final
+    return replace(
+        network,
+        lexer=lexer,
+        shifts=tuple(shifts),
+        calls=tuple(calls),
+        final=tuple(final),
+        rule=(*network.rule, *(rule.name for _ in range(added))),
+        automata={**network.automata, rule.name: automaton},
+        known={p: r for p, r in network.known.items() if rule.name not in r.rules},
+    )
+
+
+_automata: dict[tuple[str, tuple[tuple[str, str], ...]], RuleAutomaton] = {}
+
+
+def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
+    """The minimal automaton of one parser rule over the names of tokens and rules."""
+    quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
+    names = {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
+    key = (rule.text, tuple(sorted(names.items())))
+    found = _automata.get(key)
+    if found is None:
+        if len(_automata) >= 20_000:
+            _automata.clear()
+        found = _automata[key] = _build(rule, names)
+    return found
+
+
+def _elements(rule: Rule) -> Iterable[Element]:
+    stack: list[Element] = [e for a in rule.alternatives for e in a.elements]
+    while stack:
+        element = stack.pop()
+        yield element
+        if isinstance(element, Group):
+            stack += [e for a in element.alternatives for e in a.elements]
+        elif isinstance(element, Repeat):
+            stack.append(element.item)
+
+
+class _Fragments:
+    """Thompson's construction over symbols; ``None`` is an empty step."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        self.names = names
+        self.edges: list[list[tuple[Symbol | None, int]]] = [[]]
+        self.places: dict[int, list[tuple[int, ...]]] = {}
+
+    def state(self) -> int:
+        self.edges.append([])
+        return len(self.edges) - 1
+
+    def choice(
+        self, sequences: Iterable[tuple[Element, ...]], start: int, address: tuple[int, ...] = ()
+    ) -> int:
+        end = self.state()
+        for number, elements in enumerate(sequences, 1):
+            last = start
+            for place, element in enumerate(elements, 1):
+                self.places.setdefault(last, []).append((*address, number, place))
+                last = self.element(element, last, (*address, number, place))
+            self.places.setdefault(last, []).append((*address, number, len(elements) + 1))
+            self.edges[last].append((None, end))
+        return end
+
+    def element(self, element: Element, start: int, address: tuple[int, ...]) -> int:
+        match element:
+            case Reference(name=name):
+                return self.step(name, start)
+            case Literal(text=text):
+                return self.step(self.names[text], start)
+            case Group(alternatives=alternatives):
+                return self.choice((a.elements for a in alternatives), start, address)
+            case Repeat(item=item, operator=operator):
+                before, after = self.state(), self.state()
+                self.edges[start].append((None, before))
+                end = self.element(item, before, address)
+                self.edges[end].append((None, after))
+                if operator != "+":
+                    self.edges[before].append((None, after))
+                if operator != "?":
+                    self.edges[end].append((None, before))
+                return after
+            case _:
+                raise AssertionError("sets of characters do not occur in parser rules")
+
+    def step(self, symbol: Symbol, start: int) -> int:
+        end = self.state()
+        self.edges[start].append((symbol, end))
+        return end
+
+
+def _build(rule: Rule, names: Mapping[str, str]) -> RuleAutomaton:
+    fragments = _Fragments(names)
+    end = fragments.choice((a.elements for a in rule.alternatives), 0)
+
+    def closure(states: Iterable[int]) -> frozenset[int]:
+        seen = set(states)
+        todo = list(seen)
+        while todo:
+            for symbol, target in fragments.edges[todo.pop()]:
+                if symbol is None and target not in seen:
+                    seen.add(target)
+                    todo.append(target)
+        return frozenset(seen)
+
+    index = {closure([0]): 0}
+    order = list(index)
+    table: list[dict[Symbol, int]] = []
+    for states in order:  # grows while it is walked
+        targets: dict[Symbol, set[int]] = {}
+        for state in sorted(states):
+            for symbol, target in fragments.edges[state]:
+                if symbol is not None:
+                    targets.setdefault(symbol, set()).add(target)
+        row: dict[Symbol, int] = {}
+        for symbol, raw in targets.items():
+            closed = closure(raw)
+            if closed not in index:
+                index[closed] = len(order)
+                order.append(closed)
+            row[symbol] = index[closed]
+        table.append(row)
+    places = [{a for s in states for a in fragments.places.get(s, ())} for states in order]
+    return _minimal(table, [end in states for states in order], places)
+
+
+def _minimal(
+    table: list[dict[Symbol, int]], final: list[bool], places: list[set[tuple[int, ...]]]
+) -> RuleAutomaton:
+    block = [int(f) for f in final]
+    while True:
+        keys: dict[object, int] = {}
+        refined = [
+            keys.setdefault(
+                (block[s], frozenset((symbol, block[t]) for symbol, t in row.items())), len(keys)
+            )
+            for s, row in enumerate(table)
+        ]
+        if len(keys) == len(set(block)):
+            break
+        block = refined
+    number: dict[int, int] = {}
+    for b in block:  # states keep the order in which they are met; the start stays 0
+        number.setdefault(b, len(number))
+    edges: list[dict[Symbol, int]] = [{} for _ in number]
+    merged: list[set[tuple[int, ...]]] = [set() for _ in number]
+    for s, row in enumerate(table):
+        edges[number[block[s]]] = {symbol: number[block[t]] for symbol, t in row.items()}
+        merged[number[block[s]]] |= places[s]
+    return RuleAutomaton(
+        tuple(edges),
+        frozenset(number[block[s]] for s, f in enumerate(final) if f),
+        tuple(map(frozenset, merged)),
+    )
+
+
+def may_be_empty(network: Network) -> frozenset[str]:
+    """Rules that may end without a token."""
+    return _emptied(network, frozenset(), network.entry)
+
+
+def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> frozenset[str]:
+    """The ``known`` rules that may be empty, and those of ``rules`` that may be for that reason."""
+    found = set(known)
+    while True:
+        more = {r for r in rules if r not in found and _opening(network, r, found)[1]}
+        if not more:
+            return frozenset(found)
+        found |= more
+
+
+def _opening(network: Network, name: str, empty: Collection[str]) -> tuple[set[str], list[int]]:
+    """The rules that a rule may call before it has read a token, and where it may then end."""
+    entry = network.entry[name]
+    callees: set[str] = set()
+    steps = [entry]
+    for position in steps:  # grows while it is walked
+        for callee, back in network.calls[position]:
+            called = network.rule[callee]
+            callees.add(called)
+            if called in empty and back not in steps:
+                steps.append(back)
+    return callees, [p for p in steps if network.final[p]]
+
+
+def is_left_recursive(
+    network: Network, changed: Iterable[str] | None = None, empty: frozenset[str] = frozenset()
+) -> bool:
+    """Whether a rule can call itself before it has read a token: no simulation would end.
+
+    Where only the rules ``changed`` are other than in a network without such a rule, whose
+    `may_be_empty` is ``empty``, the others are looked at as far as these lead to them.
+    """
+    rules: Collection[str] = network.entry if changed is None else frozenset(changed)
+    known = _emptied(network, empty.difference(rules), rules)
+    if changed is not None and known != empty:
+        rules, known = network.entry, may_be_empty(network)
+    leading: dict[str, set[str]] = {}
+    return any(_reaches(network, leading, known, name) for name in rules)
+
+
+def _reaches(
+    network: Network, leading: dict[str, set[str]], empty: frozenset[str], name: str
+) -> bool:
+    """Whether a name leads back to itself."""
+    seen: set[str] = set()
+    todo = [name]
+    while todo:
+        here = todo.pop()
+        if here not in leading:
+            leading[here] = _opening(network, here, empty)[0]
+        for callee in leading[here]:
+            if callee == name:
+                return True
+            if callee not in seen:
+                seen.add(callee)
+                todo.append(callee)
+    return False

@@ -1,0 +1,159 @@
+"""From text to its parse tree, under any grammar, in a fraction of a second for a megabyte.
+
+`grammar.parser.derivation` tells which rules begin and end before each token. What that comes to
+within a line is the same for every line with the same actions, so it is worked out once: the
+outlines of all that begins and ends on the line, and what stays open at its end or was open before.
+A file is put together from its lines, some look-ups and appends each. Nothing here or in what it
+rests on recurses over the text, so depth of nesting meets no limit.
+
+Where a text has two readings the tree is that of ANTLR (see `grammar.parser.derivation`). A grammar
+in which a loop may go round without reading, which ANTLR refuses, has trees too; how often such a
+loop then goes round for nothing is not laid down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from grammar.parser.derivation import Action, Begin, Deriver
+from grammar.parser.lexer import SKIPPED
+from grammar.parser.recognizer import Recognizer, State
+from grammar.parser.tree import Outline, Tree
+
+__all__ = ["Parser", "Stop"]
+
+# Memory stays flat on corpora of any size: lines that are built alike, and the outlines in them,
+# are remembered up to this number, and enormous lines not at all.
+_MOST_REMEMBERED = 50_000
+_LONGEST_REMEMBERED = 1_000
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """The first token at which no program can go on, and the recogniser's state before it.
+
+    ``line`` and ``column`` count from 1, ``offset`` from 0; ``text`` is the token as written, empty
+    at the end of the file. `grammar.parser.failures` finds all failures of a file.
+    """
+
+    line: int
+    column: int
+    offset: int
+    text: str
+    state: State
+
+
+#: What a line does to the open rules: ends the innermost (``None``) and those it is the last thing
+#: in, begins one within it that stays open, or adds to it a child that is complete.
+_Change = None | Begin | Outline | int
+
+
+class Parser:
+    """Parses texts under the grammar of a recogniser; remembers what it has worked out."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self._deriver = Deriver(recognizer.grammar, recognizer.lexer)
+        self._changes: dict[tuple[int, ...], tuple[_Change, ...]] = {}
+        self._outlines: dict[tuple[str, tuple[Outline | int, ...]], Outline] = {}
+
+    def parse(self, text: str) -> Tree | Stop:
+        """The tree of a text, or where it stops being one of a program."""
+        lexer = self.recognizer.lexer
+        lexemes = lexer.lexemes(text)
+        kinds = self.recognizer.kinds_of(lexemes)
+        if not lexer.leaves_out_skipped:
+            lexemes = [lexeme for lexeme in lexemes if lexer.kinds[lexeme] != SKIPPED]
+        lexemes.append("")
+        derivation = self._deriver.derive(kinds)
+        if derivation is None:
+            return self._stop(text, kinds, lexemes)
+        outline = self._outline(kinds, derivation.actions)
+        return Tree(text, lexer, kinds, lexemes, outline, derivation.is_unique)
+
+    def _stop(self, text: str, kinds: Sequence[int], lexemes: Sequence[str]) -> Stop:
+        state, index = self.recognizer.run(self.recognizer.start, kinds)
+        assert index is not None, "the recogniser accepts what cannot be derived"
+        nothing = Tree(text, self.recognizer.lexer, kinds, lexemes, Outline("", ()), True)
+        offset = nothing.offsets[index]
+        return Stop(*nothing.place(offset), offset, lexemes[index], state)
+
+    # --------------------------------------------------------------------------- outlines
+
+    def _outline(self, kinds: Sequence[int], actions: Sequence[int]) -> Outline:
+        children: list[Outline | int] = []
+        rules = [Begin(self.recognizer.grammar.start, False)]
+        outer: list[list[Outline | int]] = []
+        for line in self._lines(kinds, actions):
+            for change in self._changes_of(line):
+                if change is None:
+                    is_last = True
+                    while is_last:
+                        rule, is_last = rules.pop()
+                        outline = Outline(rule, tuple(children))
+                        children = outer.pop()
+                        children.append(outline)
+                elif isinstance(change, Begin):
+                    rules.append(change)
+                    outer.append(children)
+                    children = []
+                else:
+                    children.append(change)
+        while outer:
+            outline = Outline(rules.pop().rule, tuple(children))
+            children = outer.pop()
+            children.append(outline)
+        return Outline(rules.pop().rule, tuple(children))
+
+    def _lines(self, kinds: Sequence[int], actions: Sequence[int]) -> Iterator[tuple[int, ...]]:
+        """The actions of each line of a file, and of what follows the last one."""
+        start, count, line_kind = 0, len(kinds), self.recognizer.line_kind
+        while start < count:
+            try:
+                end = kinds.index(line_kind, start) + 1
+            except ValueError:
+                end = count
+            yield tuple(actions[start:end])
+            start = end
+
+    def _changes_of(self, line: tuple[int, ...]) -> tuple[_Change, ...]:
+        found = self._changes.get(line)
+        if found is None:
+            if max(len(self._changes), len(self._outlines)) >= _MOST_REMEMBERED:
+                self._changes.clear()
+                self._outlines.clear()
+            numbered = self._deriver.actions
+            found = tuple(self._worked_out(numbered[number] for number in line))
+            if len(line) <= _LONGEST_REMEMBERED:
+                self._changes[line] = found
+        return found
+
+    def _worked_out(self, actions: Iterable[Action]) -> Iterator[_Change]:
+        """What the actions of a line come to."""
+        changes: list[_Change] = []
+        begun: list[tuple[Begin, list[Outline | int]]] = []
+        for steps, kind in actions:
+            for step in steps:
+                if step is not None:
+                    begun.append((step, []))
+                    continue
+                while begun:
+                    (rule, is_last), inside = begun.pop()
+                    (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
+                    if not is_last:
+                        break
+                else:  # what ends began on an earlier line
+                    changes.append(None)
+            (begun[-1][1] if begun else changes).append(kind)
+        yield from changes
+        for begin, inside in begun:
+            yield begin
+            yield from inside
+
+    def _shared(self, rule: str, children: tuple[Outline | int, ...]) -> Outline:
+        """The one outline that is built like this."""
+        found = self._outlines.get((rule, children))
+        if found is None:
+            found = self._outlines[rule, children] = Outline(rule, children)
+        return found

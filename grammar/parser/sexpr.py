@@ -1,0 +1,183 @@
+"""Trees as S-expressions: short enough to read, exact enough to test a grammar by.
+
+A rule is ``(rule child …)``, a token its text. What any reader knows is left out: tokens that the
+rule cannot do without, brackets, separators between two neighbours, line ends, and what read
+nothing. A rule that then has one child and nothing left out but line ends is not shown, only its
+child: ``X = 1 + A[2]`` is ``(assignment X (sum 1 + (variable A (index 2))))`` however many levels
+of precedence lie between.
+
+The functions recurse over the depth of a tree: they are made for trees that people read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+
+from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
+from grammar.parser.tree import Node, Token, Tree
+
+__all__ = ["Expression", "ExpressionError", "Shortener", "read", "write"]
+
+#: A token's text, or the name of a rule and what it consists of.
+Expression = str | tuple["Expression", ...]
+
+_BRACKETS = frozenset("()[]{}")
+_SEPARATORS = frozenset(",.")
+_LINE_END = "NEWLINE"
+# an atom with blanks or parentheses in it stands in backquotes, which KRL does not have
+_ATOM = r"\"[^\"\n]*\"|`[^`\n]*`|[^\s()`\"]+"
+_LEXEME = re.compile(rf"\s*({_ATOM}|[()])")
+_PLAIN = re.compile(r"\"[^\"\n]*\"|[^\s()`\"]+")
+_WIDTH = 88
+
+
+class ExpressionError(Exception):
+    """The text is no S-expression; the message says where."""
+
+
+class Shortener:
+    """Makes S-expressions of the trees of one grammar."""
+
+    def __init__(self, grammar: Grammar) -> None:
+        fixed = frozenset(grammar.literal_tokens.values())
+        self._needed = {
+            rule.name: fixed.intersection(
+                *(frozenset(_needed(grammar, a.elements)) for a in rule.alternatives)
+            )
+            for rule in grammar.rules
+            if not rule.is_lexer
+        }
+
+    def expression(self, tree: Tree) -> Expression:
+        """The tree of a program."""
+        return self._of(tree.root)
+
+    def _of(self, node: Node) -> Expression:
+        children = [child for child in node.children if not _says_nothing(child)]
+        only = children[0] if len(children) == 1 else None
+        if isinstance(only, Node):
+            return self._of(only)
+        if isinstance(only, Token) and not self._is_known(node.rule, only):
+            return only.text
+        shown: list[Expression] = [node.rule]
+        for before, child, after in _with_neighbours(children):
+            if isinstance(child, Node):
+                shown.append(self._of(child))
+            elif not self._is_known(node.rule, child) and not (
+                child.text in _SEPARATORS and _are_items(before, after)
+            ):
+                shown.append(child.text)
+        return tuple(shown)
+
+    def _is_known(self, rule: str, token: Token) -> bool:
+        return token.kind in self._needed[rule] or token.text in _BRACKETS
+
+
+def _needed(grammar: Grammar, elements: Iterable[Element]) -> Iterator[str]:
+    """Names of the tokens that a sequence of elements always has itself."""
+    for element in elements:
+        match element:
+            case Reference() if not element.is_token:
+                pass
+            case Reference() | Literal():
+                yield grammar.token_of(element)
+            case Group(alternatives=(Alternative(elements=inner),)):
+                yield from _needed(grammar, inner)
+            case Repeat(item=item, operator="+"):
+                yield from _needed(grammar, [item])
+
+
+def _says_nothing(child: Node | Token) -> bool:
+    """Whether it is line ends only, or the end of the file, or nothing at all."""
+    if isinstance(child, Token):
+        return child.kind in (_LINE_END, "EOF")
+    names, kinds = child.tree.lexer.names, child.tree.kinds[child.first : child.stop]
+    return all(names[kind] == _LINE_END for kind in kinds)
+
+
+def _with_neighbours(
+    children: Sequence[Node | Token],
+) -> Iterator[tuple[Node | Token | None, Node | Token, Node | Token | None]]:
+    return zip([None, *children], children, [*children[1:], None], strict=False)
+
+
+def _are_items(*children: Node | Token | None) -> bool:
+    """Whether all are there, and none is a bracket or separator itself."""
+    return all(
+        isinstance(child, Node) or (child is not None and child.text not in _BRACKETS | _SEPARATORS)
+        for child in children
+    )
+
+
+# ------------------------------------------------------------------------ as text and back
+
+
+def write(expression: Expression, width: int = _WIDTH) -> str:
+    """The expression as text, in lines of ``width`` where it is longer than one."""
+    return "\n".join(_lines(expression, width))
+
+
+def _lines(expression: Expression, width: int) -> Iterator[str]:
+    flat = _flat(expression)
+    inner = (i for i, e in enumerate(expression) if not isinstance(e, str))
+    # what identifies a rule, its name and the tokens it begins with, stays on the first line
+    lead = next(inner, None)
+    if len(flat) <= width or lead is None:
+        yield flat
+        return
+    rest = [f"  {line}" for line in _inner_lines(expression[lead:], width - 2)]
+    yield from [f"({' '.join(map(_flat, expression[:lead]))}", *rest[:-1]]
+    yield f"{rest[-1]})"
+
+
+def _inner_lines(children: Iterable[Expression], width: int) -> Iterator[str]:
+    """Each rule in lines of its own; the tokens between two rules share one."""
+    for are_tokens, run in groupby(children, lambda child: isinstance(child, str)):
+        if are_tokens:
+            yield " ".join(map(_flat, run))
+        else:
+            for child in run:
+                yield from _lines(child, width)
+
+
+def _flat(expression: Expression) -> str:
+    if isinstance(expression, str):
+        return expression if _PLAIN.fullmatch(expression) else f"`{expression}`"
+    return f"({' '.join(map(_flat, expression))})"
+
+
+def read(text: str) -> Expression:
+    """The expression that `write` wrote; raises `ExpressionError`."""
+    outer: list[list[Expression]] = []
+    current: list[Expression] = []
+    place = 0
+    while text[place:].strip():
+        found = _LEXEME.match(text, place)
+        if found is None:
+            place = len(text) - len(text[place:].lstrip())
+            raise ExpressionError(f"line {_line(text, place)}: a quote is not closed")
+        place = found.end()
+        match found[1]:
+            case "(":
+                outer.append(current)
+                current = []
+            case ")":
+                if not outer:
+                    raise ExpressionError(f"line {_line(text, place)}: ) without (")
+                if not current or not isinstance(current[0], str):
+                    raise ExpressionError(f"line {_line(text, place)}: a rule without a name")
+                inner, current = tuple(current), outer.pop()
+                current.append(inner)
+            case atom:
+                current.append(atom.strip("`"))
+    if outer:
+        raise ExpressionError(f"line {_line(text, place)}: ( without )")
+    if len(current) != 1:
+        raise ExpressionError("not one tree but " + str(len(current)))
+    return current[0]
+
+
+def _line(text: str, place: int) -> int:
+    return text.count("\n", 0, place) + 1

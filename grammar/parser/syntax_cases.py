@@ -1,0 +1,153 @@
+"""Cases of syntax: a title, KRL source, and the tree or the error that it has to give.
+
+    ====================
+    an IF without ELSE
+    ====================
+
+    DEF A()
+    IF B THEN
+      HALT
+    ENDIF
+    END
+
+    --------------------
+
+    (procedure A (ifStatement B (halt)))
+
+Bars are lines of three or more signs. ``:error`` below the title says that the source is no
+program; the expectation is then ``LINE:COLUMN`` of the first token that no program has there, and
+the token. Blank lines around the source are no part of it. How trees are written is told in
+`grammar.parser.sexpr`.
+
+``python -m grammar.parser.syntax_cases PATH…`` tells which cases of files or folders differ. With
+``--update`` it writes the trees of the grammar in force into the files: look at every changed line
+before it is kept. It never makes an error of a tree or a tree of an error.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.parser.parse import Parser, Stop
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sexpr import ExpressionError, Shortener, read, write
+
+__all__ = ["Case", "CaseError", "CaseReader", "main", "read_cases"]
+
+_BAR = re.compile(r"={3,}")
+_RULE = re.compile(r"-{3,}")
+_MARK = ":error"
+
+
+class CaseError(Exception):
+    """The text holds no cases; the message names the line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One case. ``lines`` are where its expectation stands: the first line and the one after it."""
+
+    title: str
+    source: str
+    is_error: bool
+    expected: str
+    lines: tuple[int, int]
+
+
+def read_cases(text: str) -> list[Case]:
+    """The cases of a file; raises `CaseError` where it is not built as told above."""
+    lines = text.split("\n")
+    bars = [i for i, line in enumerate(lines) if _BAR.fullmatch(line.rstrip())]
+    if len(bars) % 2 or "".join(lines[: bars[0] if bars else None]).strip():
+        raise CaseError("line 1: cases begin with a title between two bars of =")
+    cases = []
+    ends = [*bars[2::2], len(lines)]
+    for above, below, end in zip(bars[::2], bars[1::2], ends, strict=False):
+        title, *marks = (line.strip() for line in lines[above + 1 : below])
+        if not title or marks not in ([], [_MARK]):
+            raise CaseError(f"line {above + 2}: a title, and {_MARK} below it or nothing")
+        rules = [i for i in range(below + 1, end) if _RULE.fullmatch(lines[i].rstrip())]
+        if len(rules) != 1:
+            raise CaseError(f"line {below + 1}: between source and expectation stands one bar of -")
+        source = "\n".join(lines[below + 1 : rules[0]]).strip("\n") + "\n"
+        expected = "\n".join(lines[rules[0] + 1 : end]).strip()
+        cases.append(Case(title, source, bool(marks), expected, (rules[0] + 1, end)))
+    return cases
+
+
+class CaseReader:
+    """Reads cases under one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self._parser = Parser(recognizer)
+        self._shortener = Shortener(recognizer.grammar)
+
+    def outcome(self, case: Case) -> tuple[bool, str]:
+        """Whether the source is an error, and that error or the tree, as text."""
+        tree = self._parser.parse(case.source)
+        if isinstance(tree, Stop):
+            token = tree.text.strip() or ("end of line" if tree.text else "end of file")
+            return True, f"{tree.line}:{tree.column} {token}"
+        return False, write(self._shortener.expression(tree))
+
+    def difference(self, case: Case) -> str | None:
+        """What the source gives where that is not what is expected, else ``None``."""
+        is_error, found = self.outcome(case)
+        if is_error != case.is_error:
+            return f"no program: {found}" if is_error else f"no error, but\n{found}"
+        try:
+            wanted = case.expected
+            expected = " ".join(wanted.split()) if is_error else write(read(wanted))
+        except ExpressionError as error:
+            return f"the expectation is no tree ({error}), found\n{found}"
+        return None if expected == found else f"found\n{found}\nexpected\n{expected}"
+
+    def updated(self, text: str) -> str:
+        """A file of cases with what it should expect, all else as it was.
+
+        A case stays when it is an error and should be none, or the other way round.
+        """
+        lines = text.split("\n")
+        for case in reversed(read_cases(text)):
+            is_error, found = self.outcome(case)
+            if is_error == case.is_error and self.difference(case) is not None:
+                lines[slice(*case.lines)] = ["", *found.split("\n"), ""]
+        return "\n".join(lines)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point; exit status 0 all as expected, 1 some differ, 2 a file that cannot be read."""
+    parser = argparse.ArgumentParser(prog="python -m grammar.parser.syntax_cases")
+    parser.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="file or folder")
+    parser.add_argument("--update", action="store_true", help="write what is found into the files")
+    options = parser.parse_args(arguments)
+    reader = CaseReader(Recognizer(read_file(GRAMMAR)))
+    differing = 0
+    files = [f for p in options.paths for f in (sorted(p.glob("*.txt")) if p.is_dir() else [p])]
+    for path in files:
+        try:
+            text = path.read_text(encoding="utf-8")
+            if options.update:
+                path.write_text(reader.updated(text), encoding="utf-8", newline="\n")
+                text = path.read_text(encoding="utf-8")
+            cases = read_cases(text)
+        except (OSError, ValueError, CaseError) as error:
+            sys.stderr.write(f"grammar.parser.syntax_cases: {path}: {error}\n")
+            return 2
+        for case in cases:
+            difference = reader.difference(case)
+            if difference is not None:
+                differing += 1
+                sys.stdout.write(f"{path}:{case.lines[0]}: {case.title}\n{difference}\n\n")
+    return 1 if differing else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,354 @@
+"""From many files to projects: which files belong together, and who sees what of whom.
+
+`link` takes the files of a call, from folders, archives or one by one, and makes a `Workspace` of
+`Project`s. A project is what one controller holds: a folder with R1 or STEU in it, as every backup
+has, and files around it are another project. Files without such a layout form one project for each
+origin, unless they hold several $CONFIG lists: then each of these begins a project. Projects see
+nothing of one another.
+
+Within a project, a `.src` or `.sub` and the `.dat` of the same name in the same folder are one
+module [SCO-01]. Seen from everywhere are first routines and GLOBAL ones, what is GLOBAL in a PUBLIC
+data list, and all that the controller's own lists declare, those whose name begins with a dollar
+sign [SCO-04].
+
+To come by a scope: ``project.scope(module)`` for a file, ``project.scope(module, routine)`` inside
+one of ``module.table.routines``; then ``scope.find(Space.VALUE, "NAME")``.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence, Set
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from grammar.semantics.declared_types import DeclaredTypes
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import (
+    Answer,
+    Found,
+    Globals,
+    MaybeElsewhere,
+    Module,
+    NotFound,
+    Outer,
+    Reason,
+    Scope,
+    SystemScope,
+    Veiled,
+    nearest,
+)
+from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import (
+    Access,
+    ImportSymbol,
+    Kind,
+    ModuleTable,
+    RoutineTable,
+    Space,
+    Symbol,
+)
+from grammar.syntax import ast
+
+__all__ = ["Clash", "File", "Project", "Workspace", "link"]
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file to link. ``path`` has ``/``; files of different origins never share a project.
+
+    A file that cannot be read has neither ``syntax`` nor ``table``: that it is there matters all
+    the same. ``table`` may come from a cache, as it depends on the content alone; without
+    ``syntax`` others can refer to the file.
+    """
+
+    path: str
+    syntax: ast.Module | None
+    origin: str = ""
+    table: ModuleTable | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Clash:
+    """Declarations of one name that are all seen from everywhere."""
+
+    space: Space
+    declarations: tuple[Found, ...]
+
+
+class Project:
+    """The files of one controller. ``root`` is their folder, as the paths have it.
+
+    ``is_controller``: whether it is laid out like a controller's drive. ``is_complete``: whether
+    what is declared nowhere is certain to be missing. ``clashes`` are names that several modules
+    declare for everybody; outside a controller's drive these may just be copies. ``types`` are the
+    types of what is declared.
+    """
+
+    def __init__(
+        self,
+        root: str,
+        is_controller: bool,
+        modules: Sequence[Module],
+        system: SystemScope,
+        is_complete: bool | None,
+    ) -> None:
+        self.root = root
+        self.is_controller = is_controller
+        self.modules = tuple(modules)
+        self._data = {_place(module): module for module in modules if module.suffix == ".dat"}
+        self._lists: dict[str, list[Module]] = {}
+        for module in self._data.values():
+            self._lists.setdefault(module.name, []).append(module)
+        self._scopes: dict[Module, Scope] = {}
+        self._inner: dict[tuple[Module, RoutineTable], Scope] = {}
+        self._names: dict[Space, dict[str, list[Found]]] = {space: {} for space in Space}
+        self._hidden: dict[Space, dict[str, Found]] = {space: {} for space in Space}
+        self._gap: dict[Space, Reason] = {}
+        self._globals = Globals(self._names, self._hidden, self._gap, system)
+        self._collect()
+        if is_complete is None:
+            is_complete = _has_all(modules) and not any(map(self._misses, modules))
+        self.is_complete = is_complete
+        self._gap.update(_gap(modules, is_complete))
+        self.types = DeclaredTypes()
+        self.clashes = tuple(
+            Clash(space, tuple(found))
+            for space, names in self._names.items()
+            for found in names.values()
+            if len(found) > 1
+        )
+
+    def scope(self, module: Module, routine: RoutineTable | None = None) -> Scope:
+        """What is known in a file that can be read, or in one of its routines."""
+        if routine is None:
+            scope = self._scopes.get(module)
+            if scope is None:
+                scope = self._scopes[module] = self._scope(module)
+            return scope
+        inner = self._inner.get((module, routine))
+        if inner is None:
+            inner = Scope(module, routine, routine.table, self.scope(module))
+            self._inner[module, routine] = inner
+        return inner
+
+    def data_of(self, module: Module) -> Module | None:
+        """The data list that belongs to a program, readable or not."""
+        return None if module.suffix == ".dat" else self._data.get(_place(module))
+
+    def imported(self, found: Found) -> Answer:
+        """What an IMPORT stands for: data of another list, which has to be PUBLIC [ADV-05]."""
+        symbol, module = found.symbol, found.module
+        assert isinstance(symbol, ImportSymbol), "only an IMPORT stands for something else"
+        assert module is not None, "the controller imports nothing"
+        source = symbol.source
+        while isinstance(source, ast.Subscript | ast.Member):
+            source = source.base
+        key = source.name.key if isinstance(source, ast.Variable) else ""
+        lists = [other for other in self._lists.get(symbol.module, ()) if other.table]
+        there = [self.scope(other).own(Space.VALUE, key) for other in lists]
+        seen = [found for found in there if found and _is_public(found)]
+        if seen:
+            return nearest(seen, module.folder)
+        reason = self._gap.get(Space.VALUE)
+        if reason is not None and not lists:
+            return MaybeElsewhere(reason)
+        return NotFound(next(filter(None, there), None))
+
+    def _scope(self, module: Module) -> Scope:
+        assert module.table is not None, "nothing is known of a file that cannot be read"
+        outer: Outer = self._globals.near(module.folder)
+        data = self.data_of(module)
+        if data is not None:
+            outer = self.scope(data) if data.table else Veiled(outer)
+        return Scope(module, None, module.table.table, outer, module.table.externals)
+
+    def _misses(self, module: Module) -> bool:
+        """Whether a module calls what nothing declares or announces."""
+        if module.table is None:
+            return False
+        find = self.scope(module).find
+        return any(not isinstance(find(Space.ROUTINE, key), Found) for key in module.table.calls)
+
+    def _collect(self) -> None:
+        """Sort what the modules declare by whether it is seen from everywhere."""
+        announced: list[Found] = []
+        for module in self.modules:
+            if module.table is None:
+                continue
+            scope = self.scope(module)
+            is_list = module.suffix == ".dat"
+            for space, symbol in module.table.table.symbols():
+                found = scope.own(space, symbol.key)
+                assert found is not None, "a scope has what its table has"
+                if not _is_exported(symbol, module):
+                    self._hidden[space].setdefault(symbol.key, found)
+                elif symbol.kind is Kind.EXTERNAL or (space is Space.ROUTINE and is_list):
+                    announced.append(found)
+                else:
+                    self._names[space].setdefault(symbol.key, []).append(found)
+        for found in announced:  # EXT, EXTP in a data list; the routine itself says more
+            key = found.symbol.key
+            if not isinstance(self._globals.system.find(Space.ROUTINE, key), Found):
+                self._names[Space.ROUTINE].setdefault(key, [found])
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """All projects of a call, in the order of their roots; every file is in one of them."""
+
+    projects: tuple[Project, ...]
+
+    def modules(self) -> Iterator[tuple[Project, Module]]:
+        """All files with their projects."""
+        for project in self.projects:
+            for module in project.modules:
+                yield project, module
+
+
+def link(
+    files: Iterable[File], system: System | None = None, is_complete: bool | None = None
+) -> Workspace:
+    """Group files to projects. Linear in the number of files and of what they declare.
+
+    ``system`` is what the controller brings along, by default that of any release, and the same for
+    all projects. ``is_complete`` tells whether no file is missing; where it is not told, a project
+    counts as complete when it has what every backup has and calls nothing that is not there: a
+    package that is missing may bring data as well as routines.
+    """
+    projects, scope = [], SystemScope(system or System.load())
+    for root, is_controller, members in _grouped(files):
+        modules = [_module(file) for file in members]
+        projects.append(Project(root, is_controller, modules, scope, is_complete))
+    return Workspace(tuple(projects))
+
+
+# ------------------------------------------------------------------------------------- modules
+
+
+def _module(file: File) -> Module:
+    path = PurePosixPath(file.path.replace("\\", "/"))
+    table = file.table
+    if table is None and file.syntax is not None:
+        table = table_of(file.syntax)
+    folder, suffix = path.parent.as_posix(), path.suffix.lower()
+    return Module(file.path, folder, path.stem.upper(), suffix, table, file.syntax)
+
+
+def _place(module: Module) -> tuple[str, str]:
+    """What a program and its data list have in common."""
+    return module.folder.casefold(), module.name
+
+
+def _is_exported(symbol: Symbol, module: Module) -> bool:
+    """Whether a symbol of the first level is seen from everywhere.
+
+    The routine that carries the name of the file is, even where it wrongly is not the first one.
+    """
+    return symbol.access is Access.GLOBAL or (
+        symbol.kind is Kind.ROUTINE and symbol.key == module.name and module.suffix != ".dat"
+    )
+
+
+def _is_public(found: Found) -> bool:
+    table = found.module.table if found.module else None
+    return table is not None and (table.is_public or table.is_system)
+
+
+def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
+    """Why a name that is found nowhere may be right all the same."""
+    everything = [Space.VALUE, Space.ROUTINE, Space.TYPE, Space.CHANNEL]
+    gap = {} if is_complete else dict.fromkeys(everything, Reason.MODULES_MISSING)
+    for module in modules:
+        if module.table is None:
+            spaces = everything if module.suffix == ".dat" else [Space.ROUTINE]
+            gap |= dict.fromkeys(spaces, Reason.UNREADABLE)
+    return gap
+
+
+def _has_all(modules: Sequence[Module]) -> bool:
+    """Whether the files are those that every backup of a controller has."""
+    lists = {module.table.key for module in modules if module.table and module.table.is_system}
+    return {"$CONFIG", "$MACHINE"} <= lists and any(module.name == "BAS" for module in modules)
+
+
+# ------------------------------------------------------------------------------------ projects
+
+_DRIVES = {"r1", "steu"}
+#: What lies in these: a folder called R1 alone may be somebody's name for a robot.
+_ROOMS = {"program", "system", "mada", "tp", "folgen"}
+_CONFIG = "$config.dat"
+
+_Folder = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A file and the folders it lies in, as written and with letter case left aside."""
+
+    file: File
+    folders: _Folder
+    folded: _Folder
+    name: str
+
+
+def _placed(file: File) -> _Placed:
+    *folders, name = file.path.replace("\\", "/").split("/")
+    return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
+
+
+def _grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
+    """The files of each project with its root, and whether that is a controller's drive."""
+    by_origin: dict[str, list[_Placed]] = defaultdict(list)
+    for file in files:
+        by_origin[file.origin].append(_placed(file))
+    for origin in sorted(by_origin):
+        groups: dict[tuple[bool, _Folder], list[_Placed]] = defaultdict(list)
+        loose = []
+        drives = {root for placed in by_origin[origin] for root in _drive_roots(placed.folded)}
+        for placed in by_origin[origin]:
+            root = _last(drives, placed.folded, _DRIVES)
+            if root is None:
+                loose.append(placed)
+            else:
+                groups[True, root].append(placed)
+        configs = {_config_root(placed.folded) for placed in loose if placed.name == _CONFIG}
+        for placed in loose:
+            root = _last(configs, placed.folded) if len(configs) > 1 else None
+            groups[False, root or ()].append(placed)
+        for (is_controller, root), members in sorted(groups.items()):
+            depth = len(root) or _shared(members)
+            shown = "/".join(members[0].folders[:depth])
+            yield shown, is_controller, [placed.file for placed in members]
+
+
+def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
+    """The folders on a path that are certain to hold the drives of a controller."""
+    for depth, name in enumerate(folders):
+        if name in _DRIVES:
+            is_below_krc = depth > 0 and folders[depth - 1] == "krc"
+            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in _ROOMS):
+                yield folders[:depth]
+
+
+def _last(roots: Set[_Folder], folders: _Folder, inside: Set[str] | None = None) -> _Folder | None:
+    """The innermost root that a path leads through, into a folder of one of those names."""
+    for depth in range(len(folders), -1, -1):
+        if folders[:depth] in roots and (
+            inside is None or (depth < len(folders) and folders[depth] in inside)
+        ):
+            return folders[:depth]
+    return None
+
+
+def _config_root(folders: _Folder) -> _Folder:
+    return folders[:-1] if folders and folders[-1] == "system" else folders
+
+
+def _shared(members: Sequence[_Placed]) -> int:
+    """How many folders all files have in common."""
+    first, last = min(placed.folded for placed in members), max(p.folded for p in members)
+    return next(
+        (depth for depth, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),
+        min(len(first), len(last)),
+    )

@@ -1,0 +1,339 @@
+"""What the controller brings along: system variables, types, functions, messages, as data.
+
+The tables in ``system/`` say each with its source and, where known, the releases that have it;
+``system/README.md`` tells how to read and extend them. A newer release is a change of the tables
+only. They are read when first asked for, and an entry is made when it is looked up.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Literal, TypeVar
+
+from grammar.semantics.rules import is_confirmed, tiers
+from grammar.semantics.types import (
+    BOOL,
+    SCALARS,
+    UNKNOWN,
+    Array,
+    Enumeration,
+    Member,
+    Structure,
+    Type,
+)
+
+__all__ = ["Function", "Message", "Parameter", "Release", "System", "Variable"]
+
+#: A release of the controller's software, KSS: 8.6 is ``(8, 6)``.
+Release = tuple[int, int]
+
+_Row = Mapping[str, str]
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable of the controller.
+
+    ``type`` is `UNKNOWN` where no controller-written declaration was at hand; sizes of arrays are
+    the largest documented. A ``signal`` tells whether inputs or outputs stand behind it, or
+    "unconnected", and is INT when it is a group. ``access``: "read" is write-protected, "write"
+    may be written; ``access_unconfirmed`` where only recollection says so. ``limits`` are the
+    lowest and highest value. Reading or writing it stops the advance run where ``stops_on_read``
+    or ``stops_on_write`` name the rules that say so. ``twin`` has its value in the main run.
+    ``file`` is the name of the file that declares it in a delivered controller, which another one
+    may declare otherwise: "" for the controller itself.
+    """
+
+    name: str
+    type: Type
+    signal: Literal["inputs", "outputs", "unconnected"] | None
+    access: Literal["read", "write"] | None
+    access_unconfirmed: bool
+    limits: tuple[int, int] | None
+    stops_on_read: tuple[str, ...]
+    stops_on_write: tuple[str, ...]
+    twin: str | None
+    file: str
+    source: tuple[str, ...]
+    meaning: str
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """The rules among the sources."""
+        return tuple(key for key in self.source if key in tiers())
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a predefined function."""
+
+    name: str
+    type: Type
+    is_out: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A predefined routine; ``result`` is ``None`` where it has no value.
+
+    ``has_more`` tells that further arguments of any type may follow. ``stops`` are the rules that
+    say that it stops the advance run.
+    """
+
+    name: str
+    result: Type | None
+    parameters: tuple[Parameter, ...]
+    has_more: bool
+    stops: tuple[str, ...]
+    source: tuple[str, ...]
+    meaning: str
+
+    @property
+    def is_unconfirmed(self) -> bool:
+        """Whether its parameters are known from recollection only: no reason for an error."""
+        rules = [key for key in self.source if key in tiers()]
+        return "R" in self.source or (len(rules) == len(self.source) and not is_confirmed(rules))
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A message of the controller, in our words.
+
+    ``phase`` is "check" where it comes before a program runs, else "run"; ``kind`` says how it is
+    to be treated (state, acknowledgement, notification) where that is known, else it is empty.
+    """
+
+    number: int
+    phase: Literal["check", "run"]
+    kind: str
+    text: str
+    source: tuple[str, ...]
+
+
+class _Entries(Mapping[str, _T]):
+    """The entries of a table that a release has, by name in any letter case; made when asked for.
+
+    Of several rows with the same name the first counts, which is the newest.
+    """
+
+    def __init__(self, table: str, release: Release | None, make: Callable[[_Row], _T]) -> None:
+        self._columns, rows = _table(table)
+        if release is not None and "releases" in self._columns:
+            place = self._columns.index("releases")
+            rows = [row for row in rows if _is_in(release, row[place])]
+        self._rows = {row[0].upper(): row for row in reversed(rows)}
+        self._make = make
+        self._made: dict[str, _T] = {}
+
+    def __getitem__(self, name: str) -> _T:
+        key = name.upper()
+        found = self._made.get(key)
+        if found is None:
+            row = dict(zip(self._columns, self._rows[key], strict=True))
+            found = self._made[key] = self._make(row)
+        return found
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.upper() in self._rows
+
+    def cell(self, name: str, column: str) -> str:
+        """What a row of the table has in a column, as written."""
+        return self._rows[name.upper()][self._columns.index(column)]
+
+    def __iter__(self) -> Iterator[str]:
+        return reversed(self._rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+
+class System:
+    """What a controller of one release has predefined. `System.load` makes and remembers it.
+
+    Names are looked up in any letter case and listed in upper case.
+    """
+
+    def __init__(self, release: Release | None) -> None:
+        self.release = release
+        self._functions = _Entries("functions", release, self._function)
+        self._messages = _Entries("messages", release, _message)
+        self._types = _Entries("types", release, self._type)
+        self._variables = _Entries("variables", release, self._variable)
+
+    @staticmethod
+    @cache
+    def load(release: str | None = None) -> System:
+        """What is predefined in a release, "8.6" or "KSS 8.6.2".
+
+        Without a release it is all that any release has, as the newest one has it. Raises
+        `ValueError` where no release can be read from the text.
+        """
+        if release is None:
+            return System(None)
+        found = re.search(r"(\d+)\.(\d+)", release)
+        if not found:
+            raise ValueError(f"not a release such as 8.6: {release!r}")
+        return System((int(found[1]), int(found[2])))
+
+    @property
+    def variables(self) -> Mapping[str, Variable]:
+        """Variables, those of a delivered ``$config.dat`` included (`Variable.file`)."""
+        return self._variables
+
+    @property
+    def types(self) -> Mapping[str, Type]:
+        """Structures and enumerations; `UNKNOWN` where only the name is known.
+
+        Those that a delivered ``$config.dat`` declares are open: another one may have more.
+        """
+        return self._types
+
+    def is_described(self, type_: Type) -> bool:
+        """Whether a rule tells what parts a type has, and not the tables of one release alone.
+
+        Types that files declare are described by these.
+        """
+        if (
+            not isinstance(type_, Structure | Enumeration)
+            or self._types.get(type_.name) is not type_
+        ):
+            return True
+        return any(key in tiers() for key in self._types.cell(type_.name, "source").split())
+
+    @property
+    def functions(self) -> Mapping[str, Function]:
+        """Functions and procedures that no file declares."""
+        return self._functions
+
+    def message(self, number: int) -> Message | None:
+        """The message of a number, where it is known."""
+        return self._messages.get(str(number))
+
+    @property
+    def messages(self) -> list[Message]:
+        """All known messages, by number."""
+        return [self._messages[number] for number in self._messages]
+
+    # ----------------------------------------------------------------------- from the tables
+
+    def _named(self, name: str) -> Type:
+        """The type of a name in a table; with a question mark nobody can be sure of it."""
+        if name.startswith("?"):
+            return UNKNOWN
+        return SCALARS[name] if name in SCALARS else self._types[name]
+
+    def _typed(self, name: str, sizes: str) -> Type:
+        element = self._named(name)
+        if not sizes or element == UNKNOWN:
+            return element
+        return Array(
+            element, tuple(int(size) if size.isdigit() else None for size in _split(sizes))
+        )
+
+    def _variable(self, row: _Row) -> Variable:
+        type_name, _, side = row["type"].partition(" ")
+        is_signal = type_name == "SIGNAL"
+        access = row["access"]
+        low, _, high = row["range"].partition("..")
+        ways, _, stops = row["stops"].partition(" ")
+        rules = tuple(stops.split())
+        return Variable(
+            name=row["name"],
+            type=BOOL if is_signal else self._typed(type_name, row["size"]),
+            signal=_SIDES[side] if is_signal else None,
+            access=_ACCESS[access.rstrip("?")],
+            access_unconfirmed=access.endswith("?"),
+            limits=(int(low), int(high)) if high else None,
+            stops_on_read=rules if "r" in ways else (),
+            stops_on_write=rules if "w" in ways else (),
+            twin=row["twin"] or None,
+            file=row["file"],
+            source=tuple(row["source"].split()),
+            meaning=row["meaning"].removeprefix("-"),
+        )
+
+    def _type(self, row: _Row) -> Type:
+        name, content, is_open = row["name"], row["content"], row["content"].endswith("...")
+        if row["kind"] == "enum":
+            constants = tuple(word for word in content.split() if word != "...")
+            return Enumeration(name, constants, is_open)
+        if row["kind"] == "struct":
+            groups = (group.split() for group in _split(content, ";") if group != "...")
+            members = tuple(
+                Member(member, self._typed(type_name, sizes))
+                for type_name, *words in groups
+                for member, sizes in map(_indexed, words)
+            )
+            return Structure(name, members, is_open)
+        return UNKNOWN
+
+    def _function(self, row: _Row) -> Function:
+        parameters = _split(row["parameters"], ";")
+        return Function(
+            name=row["name"],
+            result=self._named(row["result"]) if row["result"] else None,
+            parameters=tuple(self._parameter(text) for text in parameters if text != "..."),
+            has_more="..." in parameters,
+            stops=tuple(row["stops"].split()),
+            source=tuple(row["source"].split()),
+            meaning=row["meaning"].removeprefix("-"),
+        )
+
+    def _parameter(self, text: str) -> Parameter:
+        mode, type_name, word = text.split()
+        name, sizes = _indexed(word)
+        return Parameter(name, self._typed(type_name, sizes), mode == "OUT")
+
+
+_SIDES: Mapping[str, Literal["inputs", "outputs", "unconnected"]] = {
+    "IN": "inputs",
+    "OUT": "outputs",
+    "": "unconnected",
+}
+_ACCESS: Mapping[str, Literal["read", "write"] | None] = {"r": "read", "rw": "write", "": None}
+
+
+def _message(row: _Row) -> Message:
+    return Message(
+        number=int(row["number"]),
+        phase="check" if row["phase"] == "check" else "run",
+        kind=row["class"],
+        text=row["text"],
+        source=tuple(row["source"].split()),
+    )
+
+
+@cache
+def _table(name: str) -> tuple[list[str], list[list[str]]]:
+    """The names of the columns of a table, and its rows."""
+    file = resources.files("grammar").joinpath("system", f"{name}.tsv")
+    columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
+    return columns, rows
+
+
+def _is_in(release: Release | None, releases: str) -> bool:
+    """Whether a release lies in a range such as ``8.6..``, ``..4.1``; an empty one has all."""
+    if release is None or not releases:
+        return True
+    low, _, high = releases.partition("..")
+    return (not low or _number(low) <= release) and (not high or release <= _number(high))
+
+
+def _number(release: str) -> Release:
+    major, _, minor = release.partition(".")
+    return int(major), int(minor)
+
+
+def _split(text: str, separator: str = ",") -> list[str]:
+    return [part.strip() for part in text.split(separator)] if text else []
+
+
+def _indexed(word: str) -> tuple[str, str]:
+    """``NAME[32]`` as name and sizes; no sizes where it is no array, ``?`` for an unknown one."""
+    name, _, sizes = word.partition("[")
+    return name, sizes.rstrip("]")

@@ -1,0 +1,247 @@
+"""What each name in a file means: `resolve` looks up all of them.
+
+The answers are keyed by the `ast.Name` nodes, by identity: of variables, calls, types, labels and
+channels, used or declared, and of members wherever the structure is known. Names that are not there
+follow from a type that is not known here: constants of enumerations, which their target decides
+[TYP-16], components of an aggregate whose target only the type checker knows, members of what a
+function or an operator gives.
+
+Linear in the size of the file, and without recursion: depth of nesting meets no limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from grammar.semantics.link import Project
+from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason, Scope
+from grammar.semantics.symbols import Kind, Space, TypeSymbol
+from grammar.syntax import ast
+from grammar.syntax.references import PLANS
+
+__all__ = ["Resolution", "Use", "resolve"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Use:
+    """A name that has no declaration in the project, where it stands, and what is known of it.
+
+    ``space`` is ``None`` for a member that a known structure does not have.
+    """
+
+    space: Space | None
+    name: ast.Name
+    module: Module
+    answer: Answer
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Resolution:
+    """The answers for one file, and those of its uses that lead to no declaration in the project.
+
+    ``open_uses`` are in the order of the file. Calls of routines that only EXT announces are there
+    too: their answer is `Found`, but what they do is known to nobody.
+    """
+
+    module: Module
+    answers: Mapping[ast.Name, Answer]
+    open_uses: tuple[Use, ...]
+
+    def found(self, name: ast.Name) -> Found | None:
+        """What a name means, if that is known."""
+        answer = self.answers.get(name)
+        return answer if isinstance(answer, Found) else None
+
+
+def resolve(project: Project, module: Module) -> Resolution:
+    """Look all names of a file up; one without a tree has none."""
+    if module.syntax is None or module.table is None:
+        return Resolution(module, {}, ())
+    content, scope = module.syntax.content, project.scope(module)
+    walk = _Walk()
+    if isinstance(content, ast.DataList):
+        walk.resolve(scope, content.items)
+    else:
+        for routine, table in zip(content.routines, module.table.routines, strict=True):
+            inner = project.scope(module, table)
+            walk.name(scope, routine.name, Space.ROUTINE)
+            if routine.result:
+                walk.resolve(scope, [routine.result])
+            walk.resolve(inner, [*routine.parameters, *routine.body])
+    return Resolution(module, walk.answers, tuple(walk.open_uses(module)))
+
+
+class _Walk:
+    """Looks up the names of one file."""
+
+    def __init__(self) -> None:
+        self.answers: dict[ast.Name, Answer] = {}
+        self._open: list[tuple[Space | None, ast.Name]] = []
+        self._members: dict[Found, dict[str, Answer]] = {}
+
+    def resolve(self, scope: Scope, nodes: Iterable[ast.Node]) -> None:
+        """Look up what stands below some nodes, in that scope."""
+        todo: list[ast.Node | None] = list(nodes)
+        while todo:
+            node = todo.pop()
+            kind = type(node)
+            plan = PLANS.get(kind)
+            if plan is None:
+                continue
+            special = _SPECIAL.get(kind)
+            if special is not None:
+                special(self, scope, node, todo)
+                continue
+            use, below = plan
+            if use is not None:
+                name, space = getattr(node, use[0]), use[1]
+                if _is_announced(self.name(scope, name, space)) and kind is ast.Call:
+                    self._open.append((space, name))
+            for field in below:
+                value = getattr(node, field)
+                if type(value) is tuple:
+                    todo.extend(value)
+                else:
+                    todo.append(value)
+
+    def name(self, scope: Scope, name: ast.Name, space: Space) -> Answer:
+        """Look one name up."""
+        answer = self.answers[name] = scope.find(space, name.text.upper())
+        if type(answer) is not Found:
+            self._open.append((space, name))
+        return answer
+
+    def open_uses(self, module: Module) -> Iterator[Use]:
+        """Uses without a declaration, in the order of the text."""
+        for space, name in sorted(self._open, key=lambda use: use[1].span):
+            yield Use(space, name, module, self.answers[name])
+
+    # ------------------------------------------------------------------------ members
+
+    def member(self, structure: Found, name: ast.Name) -> Answer:
+        """Look a member of a structure up."""
+        assert isinstance(structure.symbol, TypeSymbol), "only types have members"
+        known, key = self._members.setdefault(structure, {}), name.text.upper()
+        answer = known.get(key)
+        if answer is None:
+            symbol = structure.symbol.members.get(key)
+            answer = Found(symbol, structure.scope) if symbol else _no_member(structure.symbol)
+            known[key] = answer
+        self.answers[name] = answer
+        if type(answer) is not Found:
+            self._open.append((None, name))
+        return answer
+
+    def chain(self, scope: Scope, node: ast.Node, todo: list[ast.Node | None]) -> Found | None:
+        """Look up ``a.b[1].c``; gives the structure of what it names, if that has a known one."""
+        links: list[ast.Member | ast.Subscript] = []
+        while isinstance(node, ast.Member | ast.Subscript):
+            links.append(node)
+            node = node.base
+        answer: Answer | None = None
+        if isinstance(node, ast.Variable):
+            answer = self.name(scope, node.name, Space.VALUE)
+        else:
+            todo.append(node)
+        structure = _structure(answer)
+        for link in reversed(links):
+            if isinstance(link, ast.Subscript):
+                todo.extend(link.indices)
+            elif structure is not None:
+                structure = _structure(self.member(structure, link.name))
+        return structure
+
+    def aggregate(
+        self,
+        scope: Scope,
+        node: ast.Aggregate,
+        structure: Found | None,
+        todo: list[ast.Node | None],
+    ) -> None:
+        """Look up what an aggregate for a value of that structure names."""
+        inner: list[tuple[ast.Aggregate, Found | None]] = [(node, structure)]
+        while inner:
+            node, structure = inner.pop()
+            if node.type is not None:
+                structure = _as_structure(self.name(scope, node.type, Space.TYPE))
+            for component in node.components:
+                answer = self.member(structure, component.name) if structure else None
+                if component.indices:
+                    todo.extend(component.indices)
+                if isinstance(component.value, ast.Aggregate):
+                    inner.append((component.value, _structure(answer)))
+                else:
+                    todo.append(component.value)
+
+
+def _is_announced(answer: Answer) -> bool:
+    """Whether all that is known of a routine is its EXT."""
+    return isinstance(answer, Found) and answer.symbol.kind is Kind.EXTERNAL
+
+
+def _structure(answer: Answer | None) -> Found | None:
+    """The structure of a variable, a member, or the result of a function."""
+    return _as_structure(answer.type_symbol()) if isinstance(answer, Found) else None
+
+
+def _as_structure(answer: Answer | None) -> Found | None:
+    if isinstance(answer, Found) and answer.symbol.kind is Kind.STRUCTURE:
+        return answer
+    return None
+
+
+def _no_member(structure: TypeSymbol) -> Answer:
+    return MaybeElsewhere(Reason.SYSTEM) if structure.is_open else NotFound()
+
+
+# ---------------------------------------------------------------- nodes that need more than a plan
+
+_Special = Callable[[_Walk, Scope, Any, list[ast.Node | None]], object]
+
+
+def _assignment(
+    walk: _Walk, scope: Scope, node: ast.Assignment, todo: list[ast.Node | None]
+) -> None:
+    structure = walk.chain(scope, node.target, todo)
+    if isinstance(node.value, ast.Aggregate):
+        walk.aggregate(scope, node.value, structure, todo)
+    else:
+        todo.append(node.value)
+
+
+def _declaration(
+    walk: _Walk, scope: Scope, node: ast.VariableDeclaration, todo: list[ast.Node | None]
+) -> None:
+    structure = _as_structure(walk.name(scope, node.type, Space.TYPE))
+    for declarator in node.declarators:
+        walk.name(scope, declarator.name, Space.VALUE)
+        todo.extend(declarator.indices or ())
+        if isinstance(declarator.value, ast.Aggregate):
+            walk.aggregate(scope, declarator.value, structure, todo)
+        else:
+            todo.append(declarator.value)
+
+
+def _importation(
+    walk: _Walk, scope: Scope, node: ast.Importation, todo: list[ast.Node | None]
+) -> None:
+    walk.name(scope, node.type, Space.TYPE)
+    walk.name(scope, node.declarator.name, Space.VALUE)
+    todo.extend(node.declarator.indices or ())
+
+
+def _free_aggregate(
+    walk: _Walk, scope: Scope, node: ast.Aggregate, todo: list[ast.Node | None]
+) -> None:
+    walk.aggregate(scope, node, None, todo)
+
+
+_SPECIAL: dict[type[Any], _Special] = {
+    ast.Aggregate: _free_aggregate,
+    ast.Assignment: _assignment,
+    ast.Importation: _importation,
+    ast.Member: _Walk.chain,
+    ast.VariableDeclaration: _declaration,
+}

@@ -1,0 +1,384 @@
+"""Where a name is looked up, and what a look-up can answer.
+
+Scopes lie within one another: a routine (parameters, local data), its program (the routines of
+the file), the data list of the same name [SCO-05], all that is GLOBAL in the project [SCO-04], the
+controller itself. The innermost declaration counts, so a local one shadows a global one.
+
+A look-up answers `Found`, `NotFound` or `MaybeElsewhere`. The last is the answer wherever the files
+at hand cannot tell: a loose file without its $CONFIG, a module that does not parse, a call of a
+package that was not handed in. Who checks may be sure of `Found` and `NotFound` and has to keep
+silent about the rest; `Reason` says why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Protocol
+
+from grammar.semantics.predefined import Function, System
+from grammar.semantics.symbols import (
+    Access,
+    Kind,
+    ModuleTable,
+    ParameterSymbol,
+    RoutineSymbol,
+    RoutineTable,
+    Space,
+    Symbol,
+    Table,
+    TypeSymbol,
+)
+from grammar.semantics.types import SCALARS, Array, Enumeration, Scalar, Structure, Type
+from grammar.syntax import ast
+
+__all__ = [
+    "Answer",
+    "Found",
+    "Globals",
+    "MaybeElsewhere",
+    "Module",
+    "NotFound",
+    "Outer",
+    "Reason",
+    "Scope",
+    "SystemScope",
+    "Veiled",
+    "nearest",
+]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Module:
+    """A file of a project.
+
+    ``path`` as it was handed in, with ``/``. ``name`` is that of the file without its ending, in
+    upper case, and ``suffix`` its ending in lower case. ``table`` is ``None`` where the file cannot
+    be read; ``syntax`` also where only its tables are at hand, so that it can be referred to.
+    """
+
+    path: str
+    folder: str
+    name: str
+    suffix: str
+    table: ModuleTable | None
+    syntax: ast.Module | None
+
+    @property
+    def is_misnamed(self) -> bool:
+        """Whether the first routine or data list has another name than the file [SCO-01]."""
+        return self.table is not None and self.table.key != self.name
+
+
+class Reason(Enum):
+    """Why a look-up cannot tell."""
+
+    MODULES_MISSING = "not every module of the controller is here"
+    UNREADABLE = "a module that may declare it cannot be read"
+    AMBIGUOUS = "several modules declare it, and none of them is nearer than the others"
+    SYSTEM = "the controller may know it: system variables and packages differ between releases"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """The symbol that a name means, and the scope that declares it.
+
+    Names in its declaration, that of its type above all, have to be looked up in that scope.
+    """
+
+    symbol: Symbol
+    scope: Scope
+
+    @property
+    def module(self) -> Module | None:
+        """The file that declares it; ``None`` for what the controller itself brings."""
+        return self.scope.module
+
+    def type_symbol(self) -> Answer | None:
+        """The type that the declaration names, of an array its elements'; ``None`` without one."""
+        written, given = self.symbol.type, self.symbol.given
+        if written is not None:
+            return self.scope.find(Space.TYPE, written.key)
+        if isinstance(given, Array):
+            given = given.element
+        if isinstance(given, Structure | Enumeration | Scalar):
+            return self.scope.find(Space.TYPE, given.name.upper())
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class NotFound:
+    """Nothing has that name. ``hidden`` is a declaration of it that cannot be seen from here."""
+
+    hidden: Found | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MaybeElsewhere:
+    """Nothing at hand has that name, or several things have; it may well be right."""
+
+    reason: Reason
+    candidates: tuple[Found, ...] = ()
+
+
+Answer = Found | NotFound | MaybeElsewhere
+
+
+class Outer(Protocol):
+    """What a scope asks for names that it does not have."""
+
+    def find(self, space: Space, key: str) -> Answer:
+        """Look a name in upper case up."""
+
+
+class Scope:
+    """The names that can be seen in one place.
+
+    ``module`` is ``None`` for the controller itself, ``routine`` is ``None`` outside a routine.
+    """
+
+    __slots__ = ("_externals", "_memory", "_outer", "_table", "module", "routine")
+
+    def __init__(
+        self,
+        module: Module | None,
+        routine: RoutineTable | None,
+        table: Table,
+        outer: Outer,
+        externals: Mapping[str, Symbol] | None = None,
+    ) -> None:
+        self.module = module
+        self.routine = routine
+        self._table = table
+        self._outer = outer
+        self._externals = externals or {}
+        self._memory: dict[tuple[Space, str], Found] = {}
+
+    def find(self, space: Space, key: str) -> Answer:
+        """What a name in upper case means here; what is found is the same object each time."""
+        known = self._memory.get((space, key))
+        if known is not None:
+            return known
+        answer = self._answer(space, key)
+        if isinstance(answer, Found):
+            self._memory[space, key] = answer
+        return answer
+
+    def own(self, space: Space, key: str) -> Found | None:
+        """The symbol of that name if this very scope declares it."""
+        symbol = self._table.find(space, key)
+        return self._here(space, key, symbol) if symbol else None
+
+    def shadowed(self) -> Iterator[tuple[Found, Found]]:
+        """Each symbol of this scope beside the one further out that it hides."""
+        for space, symbol in self._table.symbols():
+            if space is not Space.LABEL and symbol.kind is not Kind.EXTERNAL:
+                outer = self._outer.find(space, symbol.key)
+                if isinstance(outer, Found):
+                    yield self._here(space, symbol.key, symbol), outer
+
+    def _here(self, space: Space, key: str, symbol: Symbol) -> Found:
+        known = self._memory.get((space, key))
+        if known and known.symbol is symbol:
+            return known
+        found = Found(symbol, self)
+        if symbol.kind is not Kind.EXTERNAL:
+            self._memory[space, key] = found
+        return found
+
+    def _answer(self, space: Space, key: str) -> Answer:
+        symbol = self._table.find(space, key)
+        if symbol is not None and symbol.kind is not Kind.EXTERNAL:
+            return self._here(space, key, symbol)
+        if space is Space.LABEL:
+            return NotFound()
+        outer = self._outer.find(space, key)
+        if space is Space.ROUTINE:
+            # EXT announces a routine of another module: the routine itself says more.
+            announced = symbol or self._externals.get(key)
+            if announced is not None and not isinstance(outer, Found):
+                return Found(announced, self)
+        return outer
+
+
+class SystemScope(Scope):
+    """What the controller brings along, without any file; symbols are made when they are asked for.
+
+    The entry behind a symbol has the same name in `System.variables`, `System.functions` or
+    `System.types`.
+    """
+
+    __slots__ = ("system",)
+
+    def __init__(self, system: System) -> None:
+        super().__init__(None, None, Table({space: {} for space in Space}, ()), self)
+        self.system = system
+
+    def own(self, space: Space, key: str) -> Found | None:
+        """The symbol of that name if the controller has it."""
+        answer = self.find(space, key)
+        return answer if isinstance(answer, Found) else None
+
+    def _answer(self, space: Space, key: str) -> Answer:
+        symbol = self._symbol(space, key)
+        return Found(symbol, self) if symbol else NotFound()
+
+    def _symbol(self, space: Space, key: str) -> Symbol | None:
+        if space is Space.VALUE and key in self.system.variables:
+            variable = self.system.variables[key]
+            return _given(Kind.VARIABLE, variable.name, variable.type)
+        if space is Space.ROUTINE and key in self.system.functions:
+            return _routine(self.system.functions[key])
+        if space is Space.TYPE:
+            if key in SCALARS:
+                return _type(key, SCALARS[key])
+            if key in self.system.types:
+                return _type(key, self.system.types[key])
+        return None
+
+
+def _given(kind: Kind, name: str, type_: Type | None) -> Symbol:
+    return Symbol(kind, name, _NO_SPAN, Access.GLOBAL, given=type_)
+
+
+def _routine(function: Function) -> RoutineSymbol:
+    parameters = tuple(
+        ParameterSymbol(
+            Kind.PARAMETER,
+            parameter.name,
+            _NO_SPAN,
+            Access.ROUTINE,
+            given=parameter.type,
+            mode="OUT" if parameter.is_out else "IN",
+        )
+        for parameter in function.parameters
+    )
+    return RoutineSymbol(
+        Kind.ROUTINE,
+        function.name,
+        _NO_SPAN,
+        Access.GLOBAL,
+        given=function.result,
+        parameters=parameters,
+        has_more=function.has_more,
+    )
+
+
+def _type(key: str, type_: Type) -> TypeSymbol:
+    kind, members, is_open = Kind.PLAIN_TYPE, dict[str, Symbol](), False
+    if isinstance(type_, Structure):
+        kind, is_open = Kind.STRUCTURE, type_.is_open
+        for member in type_.members:
+            members[member.name.upper()] = _given(Kind.MEMBER, member.name, member.type)
+    elif isinstance(type_, Enumeration):
+        kind, is_open = Kind.ENUMERATION, type_.is_open
+        for name in type_.constants:
+            members[name.upper()] = _given(Kind.ENUM_CONSTANT, name, type_)
+    name = type_.name if isinstance(type_, Structure | Enumeration) else key
+    return TypeSymbol(
+        kind, name, _NO_SPAN, Access.GLOBAL, given=type_, members=members, is_open=is_open
+    )
+
+
+_NO_SPAN = (0, 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Globals:
+    """What can be seen in a whole project, and beyond it the controller.
+
+    ``names`` may hold several declarations of a name. ``hidden`` are declarations that are not
+    GLOBAL. ``gap`` is why a name that is not here may be declared all the same, by space; a space
+    without a reason is known completely.
+    """
+
+    names: Mapping[Space, Mapping[str, Sequence[Found]]]
+    hidden: Mapping[Space, Mapping[str, Found]]
+    gap: Mapping[Space, Reason]
+    system: Scope
+    _copies: dict[tuple[Space, str], Mapping[str, Answer]] = field(default_factory=dict)
+
+    def near(self, folder: str) -> Outer:
+        """These names as the files of a folder see them."""
+        return _Near(self, folder)
+
+    def find(self, space: Space, key: str, folder: str) -> Answer:
+        """What a name in upper case means in the files of a folder."""
+        found = self.names[space].get(key, ())
+        if len(found) == 1:
+            return found[0]
+        if found:
+            if (space, key) not in self._copies:
+                self._copies[space, key] = _by_folder(found)
+            return _seen_from(self._copies[space, key], folder)
+        answer = self.system.find(space, key)
+        if isinstance(answer, Found):
+            return answer
+        if key.startswith("$"):
+            return MaybeElsewhere(Reason.SYSTEM)
+        hidden = self.hidden[space].get(key)
+        reason = self.gap.get(space)
+        if reason is None:
+            return NotFound(hidden)
+        return MaybeElsewhere(reason, (hidden,) if hidden else ())
+
+
+@dataclass(frozen=True, slots=True)
+class _Near:
+    """All that is GLOBAL, as seen from one folder."""
+
+    names: Globals
+    folder: str
+
+    def find(self, space: Space, key: str) -> Answer:
+        return self.names.find(space, key, self.folder)
+
+
+@dataclass(frozen=True, slots=True)
+class Veiled:
+    """What is seen through a data list that cannot be read: it may declare any variable itself."""
+
+    outer: Outer
+
+    def find(self, space: Space, key: str) -> Answer:
+        """Look a name in upper case up."""
+        answer = self.outer.find(space, key)
+        if space is Space.ROUTINE or key.startswith("$"):
+            return answer
+        if isinstance(answer, Found) and answer.module is None:  # what every program is made of
+            return answer
+        candidates = (answer,) if isinstance(answer, Found) else ()
+        return MaybeElsewhere(Reason.UNREADABLE, candidates)
+
+
+def nearest(found: Sequence[Found], folder: str) -> Answer:
+    """The declaration whose file shares most folders with this one, if there is such a one.
+
+    A controller refuses two of a name; folders that people collect programs in are full of copies.
+    """
+    return _seen_from(_by_folder(found), folder)
+
+
+def _by_folder(found: Sequence[Found]) -> dict[str, Answer]:
+    """What is declared below each folder, so that many copies are no more work than one."""
+    below: dict[str, list[Found]] = {}
+    for one in found:
+        for folder in _upwards(one.module.folder if one.module else ""):
+            below.setdefault(folder, []).append(one)
+    return {
+        folder: some[0] if len(some) == 1 else MaybeElsewhere(Reason.AMBIGUOUS, tuple(some))
+        for folder, some in below.items()
+    }
+
+
+def _seen_from(below: Mapping[str, Answer], folder: str) -> Answer:
+    return next((below[at] for at in _upwards(folder) if at in below), NotFound())
+
+
+def _upwards(folder: str) -> Iterator[str]:
+    """A folder and all that it lies in, up to the one that has no name."""
+    yield folder
+    while folder:
+        folder = folder.rpartition("/")[0]
+        yield folder

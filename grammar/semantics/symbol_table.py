@@ -1,0 +1,282 @@
+"""What one file declares: from its tree to its `ModuleTable`.
+
+Linear in the size of the file and without recursion. Nothing that a file can say is an error here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import chain
+
+from grammar.semantics.symbols import (
+    Access,
+    Duplicate,
+    ImportSymbol,
+    Kind,
+    ModuleTable,
+    ParameterSymbol,
+    RoutineSymbol,
+    RoutineTable,
+    SignalSymbol,
+    Space,
+    Symbol,
+    Table,
+    TypeSymbol,
+    WrittenType,
+)
+from grammar.syntax import ast
+from grammar.syntax.references import calls_in
+
+__all__ = ["table_of"]
+
+
+def table_of(module: ast.Module) -> ModuleTable:
+    """The tables of one file."""
+    content = module.content
+    if isinstance(content, ast.DataList):
+        scope = _Scope(_access_in(content))
+        for item in content.items:
+            if not isinstance(item, ast.Assignment):
+                scope.declare(item)
+        name, is_public = content.name, content.is_public
+        return ModuleTable(name.text, name.span, True, is_public, scope.table(), (), frozenset())
+    scope = _Scope({True: Access.GLOBAL, False: Access.MODULE})
+    routines = []
+    for index, routine in enumerate(content.routines):
+        inner = _routine_table(routine, is_main=index == 0)
+        scope.add(Space.ROUTINE, inner.routine)
+        routines.append(inner)
+    name = content.routines[0].name
+    calls = calls_in(content.routines)
+    return ModuleTable(name.text, name.span, False, False, scope.table(), tuple(routines), calls)
+
+
+def _access_in(content: ast.DataList) -> Mapping[bool, Access]:
+    """How far a declaration of a data list is seen, with the word GLOBAL and without it."""
+    if content.name.text.startswith("$"):
+        return {True: Access.GLOBAL, False: Access.GLOBAL}
+    return {True: Access.GLOBAL if content.is_public else Access.MODULE, False: Access.MODULE}
+
+
+def _routine_table(routine: ast.Routine, is_main: bool) -> RoutineTable:
+    scope = _Scope({True: Access.ROUTINE, False: Access.ROUTINE})
+    declarations: list[ast.VariableDeclaration] = []
+    for node in _declared_in(routine.body):
+        if isinstance(node, ast.VariableDeclaration):
+            declarations.append(node)
+        elif isinstance(node, ast.Label):
+            scope.name(Space.LABEL, Kind.LABEL, node.name)
+        else:
+            scope.declare(node)
+    parameters = _parameters(routine, declarations)
+    for parameter in parameters:
+        scope.add(Space.VALUE, parameter)
+    awaited = {parameter.key for parameter in parameters}
+    for declaration in declarations:
+        for declarator in declaration.declarators:
+            if declarator.name.key in awaited:  # gives the parameter its type and is no second name
+                awaited.remove(declarator.name.key)
+            else:
+                scope.variable(declaration, declarator)
+    access = Access.GLOBAL if is_main or routine.is_global else Access.MODULE
+    result = routine.result
+    symbol = RoutineSymbol(
+        Kind.ROUTINE,
+        routine.name.text,
+        routine.name.span,
+        access,
+        WrittenType(result.name.text, result.indices) if result else None,
+        parameters=parameters,
+    )
+    return RoutineTable(symbol, scope.table())
+
+
+def _declared_in(
+    body: tuple[ast.Statement, ...],
+) -> Iterator[ast.Definition | ast.Label]:
+    """Declarations and labels of a routine, misplaced ones in blocks too, in their order."""
+    todo = [iter(body)]
+    while todo:
+        for statement in todo[-1]:
+            if isinstance(statement, _DECLARING):
+                yield statement
+            elif isinstance(statement, _BLOCKS):
+                todo.append(iter(_inside(statement)))
+                break
+        else:
+            todo.pop()
+
+
+_DECLARING = (
+    ast.VariableDeclaration,
+    ast.Label,
+    ast.Signal,
+    ast.External,
+    ast.Enumeration,
+    ast.Structure,
+    ast.ChannelDefinition,
+    ast.Importation,
+)
+_BLOCKS = (ast.If, ast.For, ast.While, ast.Repeat, ast.Loop, ast.Switch)
+
+
+def _inside(
+    block: ast.If | ast.For | ast.While | ast.Repeat | ast.Loop | ast.Switch,
+) -> tuple[ast.Statement, ...]:
+    if isinstance(block, ast.If):
+        return block.body + (block.otherwise or ())
+    if isinstance(block, ast.Switch):
+        bodies = [branch.body for branch in block.branches]
+        return tuple(chain(*bodies, block.default or ()))
+    return block.body
+
+
+def _parameters(
+    routine: ast.Routine, declarations: list[ast.VariableDeclaration]
+) -> tuple[ParameterSymbol, ...]:
+    """The parameters of a routine, with the types that the declarations in its body give them."""
+    types: dict[str, WrittenType] = {}
+    if routine.parameters:
+        for declaration in declarations:
+            for declarator in declaration.declarators:
+                written = WrittenType(declaration.type.text, declarator.indices)
+                types.setdefault(declarator.name.key, written)
+    found = []
+    for parameter in routine.parameters:
+        written_type = types.get(parameter.name.key)
+        if written_type and written_type.indices is None and parameter.indices is not None:
+            written_type = replace(written_type, indices=parameter.indices)
+        found.append(
+            ParameterSymbol(
+                Kind.PARAMETER,
+                parameter.name.text,
+                parameter.name.span,
+                Access.ROUTINE,
+                written_type,
+                mode=parameter.mode or "OUT",
+            )
+        )
+    return tuple(found)
+
+
+class _Scope:
+    """Collects the symbols of one table; ``access`` by whether the word GLOBAL is written."""
+
+    def __init__(self, access: Mapping[bool, Access]) -> None:
+        self._access = access
+        self._spaces: dict[Space, dict[str, Symbol]] = {space: {} for space in Space}
+        self._duplicates: list[Duplicate] = []
+
+    def table(self) -> Table:
+        return Table(self._spaces, tuple(self._duplicates))
+
+    def add(self, space: Space, symbol: Symbol) -> None:
+        self._put(self._spaces[space], symbol)
+
+    def _put(self, names: dict[str, Symbol], symbol: Symbol) -> None:
+        first = names.setdefault(symbol.key, symbol)
+        if first is not symbol:
+            self._duplicates.append(Duplicate(first, symbol))
+
+    def name(self, space: Space, kind: Kind, name: ast.Name) -> None:
+        """Add what has nothing but a name."""
+        self.add(space, Symbol(kind, name.text, name.span, self._access[False]))
+
+    def variable(self, declaration: ast.VariableDeclaration, declarator: ast.Declarator) -> None:
+        is_constant, name = declaration.is_constant, declarator.name
+        self.add(
+            Space.VALUE,
+            Symbol(
+                Kind.CONSTANT if is_constant else Kind.VARIABLE,
+                name.text,
+                name.span,
+                self._access[declaration.is_global],
+                WrittenType(declaration.type.text, declarator.indices),
+                declarator.value if is_constant else None,
+            ),
+        )
+
+    def declare(self, node: ast.Definition) -> None:
+        """Add what a declaration introduces."""
+        if isinstance(node, ast.VariableDeclaration):
+            for declarator in node.declarators:
+                self.variable(node, declarator)
+        elif isinstance(node, ast.Enumeration):
+            self._enumeration(node)
+        elif isinstance(node, ast.Structure):
+            self._structure(node)
+        elif isinstance(node, ast.Signal):
+            self._signal(node)
+        elif isinstance(node, ast.External):
+            self._external(node)
+        elif isinstance(node, ast.ChannelDefinition):
+            self.name(Space.CHANNEL, Kind.CHANNEL, node.name)
+        else:
+            self._import(node)
+
+    def _enumeration(self, node: ast.Enumeration) -> None:
+        access, constants = self._access[node.is_global], dict[str, Symbol]()
+        for name in node.constants:
+            constant = Symbol(Kind.ENUM_CONSTANT, name.text, name.span, access)
+            self._put(constants, constant)
+        self._type(Kind.ENUMERATION, node.name, access, constants)
+
+    def _structure(self, node: ast.Structure) -> None:
+        access, members = self._access[node.is_global], dict[str, Symbol]()
+        for group in node.groups:
+            for declarator in group.declarators:
+                written = WrittenType(group.type.text, declarator.indices)
+                name = declarator.name
+                self._put(members, Symbol(Kind.MEMBER, name.text, name.span, access, written))
+        self._type(Kind.STRUCTURE, node.name, access, members)
+
+    def _type(
+        self, kind: Kind, name: ast.Name, access: Access, members: Mapping[str, Symbol]
+    ) -> None:
+        self.add(Space.TYPE, TypeSymbol(kind, name.text, name.span, access, members=members))
+
+    def _signal(self, node: ast.Signal) -> None:
+        name, access = node.name, self._access[node.is_global]
+        self.add(
+            Space.VALUE,
+            SignalSymbol(
+                Kind.SIGNAL, name.text, name.span, access, first=node.first, last=node.last
+            ),
+        )
+
+    def _external(self, node: ast.External) -> None:
+        access = self._access[False]
+        parameters = tuple(
+            ParameterSymbol(
+                Kind.PARAMETER,
+                parameter.name.text if parameter.name else "",
+                (parameter.name or parameter).span,
+                Access.ROUTINE,
+                WrittenType(parameter.type.text, parameter.indices),
+                mode=parameter.mode or "OUT",
+            )
+            for parameter in node.parameters
+        )
+        result = WrittenType(node.result.name.text, node.result.indices) if node.result else None
+        kind = Kind.EXTERNAL if node.keyword in {"EXT", "EXTFCT"} else Kind.ROUTINE
+        name = node.name
+        self.add(
+            Space.ROUTINE,
+            RoutineSymbol(kind, name.text, name.span, access, result, parameters=parameters),
+        )
+
+    def _import(self, node: ast.Importation) -> None:
+        name = node.declarator.name
+        self.add(
+            Space.VALUE,
+            ImportSymbol(
+                Kind.IMPORT,
+                name.text,
+                name.span,
+                self._access[False],
+                WrittenType(node.type.text, node.declarator.indices),
+                module=node.path[-1].key,
+                source=node.source,
+            ),
+        )

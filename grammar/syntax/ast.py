@@ -1,0 +1,675 @@
+"""The abstract syntax tree: one node a concept of KRL, made by `grammar.syntax.build`.
+
+Nodes are frozen and compare by identity, so that side tables (types, symbols) can be keyed by them;
+`grammar.syntax.walk.same` compares by what they say. Every node has a span: offsets of its first
+character and of the one behind its last in the text it was read from. Comments and folds are no
+nodes: they are the text between the tokens, and `grammar.syntax.source` has them by line.
+
+Sequences are tuples. What a program may leave out is ``None``. Blocks nest without a limit, so
+walks over statements must not recurse; within a line nodes lie at most
+`grammar.syntax.node_plans.MAX_DEPTH` deep.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+Span = tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """What every node has: where it stands, as offsets into its text."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Name(Node):
+    """A name as written. Letter case does not tell names apart: compare ``key``.
+
+    Types whose names are keywords (INT, FRAME, E6POS …) are in upper case, as all keywords are.
+    """
+
+    text: str
+
+    @property
+    def key(self) -> str:
+        """The name in upper case [TYP-05]."""
+        return self.text.upper()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TypeName(Node):
+    """A type by its name; ``indices`` where it is an array: CHAR[128] [TYP-17]."""
+
+    name: Name
+    indices: tuple[Expression | None, ...] | None
+
+
+# ------------------------------------------------------------------------------------ expressions
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class IntegerLiteral(Node):
+    """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
+
+    A number of more than 1,000 digits is read as ten to the power of 1,000.
+    """
+
+    value: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RealLiteral(Node):
+    """A number with a decimal point or an exponent; ``text`` as written [TYP-02]."""
+
+    text: str
+
+    @property
+    def value(self) -> float:
+        """The number, not yet rounded to the controller's precision."""
+        return float(self.text)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoolLiteral(Node):
+    """TRUE or FALSE."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BitLiteral(Node):
+    """A binary or hexadecimal integer, ``'B101'`` or ``'HFF'``; ``text`` as written [TYP-04]."""
+
+    text: str
+    value: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StringLiteral(Node):
+    """A text without its quotation marks; of one letter it is a CHAR as well [TYP-03, TYP-11]."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EnumConstant(Node):
+    """``#NAME``; its enumeration follows from where it is used [TYP-16]."""
+
+    name: Name
+
+
+Literal = IntegerLiteral | RealLiteral | BoolLiteral | BitLiteral | StringLiteral | EnumConstant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Variable(Node):
+    """A variable by its name; system variables begin with a dollar sign."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Subscript(Node):
+    """``base[indices]``; an index left out means all of that dimension [TYP-08, TYP-11]."""
+
+    base: Expression
+    indices: tuple[Expression | None, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Member(Node):
+    """``base.name``, a member of a structure."""
+
+    base: Expression
+    name: Name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChannelName(Node):
+    """``:NAME``, a channel as an argument."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call(Node):
+    """A routine called; an argument left out is ``None`` [SCO-13]. ``F()`` has no arguments."""
+
+    name: Name
+    arguments: tuple[Expression | None, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unary(Node):
+    """``operator`` is NOT, B_NOT, + or -, in upper case."""
+
+    operator: str
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Binary(Node):
+    """Two operands and what joins them [ARI-05].
+
+    ``operator`` is one of ``+ - * / : == <> < > <= >=``, AND, OR, EXOR, B_AND, B_OR, B_EXOR; ``=>``
+    and ``=<`` become the usual spelling.
+    """
+
+    operator: str
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parenthesised(Node):
+    """An expression in parentheses, kept so that it is printed as its author wrote it."""
+
+    inner: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Component(Node):
+    """A component in an aggregate: its name, an index for arrays, and its value."""
+
+    name: Name
+    indices: tuple[Expression | None, ...] | None
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Aggregate(Node):
+    """``{X 1, Y 2}``; components left out get no value [TYP-19]. ``type`` is the prefix."""
+
+    type: Name | None
+    components: tuple[Component, ...]
+
+
+Expression = (
+    Literal
+    | Variable
+    | Subscript
+    | Member
+    | ChannelName
+    | Call
+    | Unary
+    | Binary
+    | Parenthesised
+    | Aggregate
+)
+
+
+# ----------------------------------------------------------------------------------- declarations
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Declarator(Node):
+    """A name that a declaration introduces; initial values stand in data lists only [TYP-10]."""
+
+    name: Name
+    indices: tuple[Expression | None, ...] | None
+    value: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VariableDeclaration(Node):
+    """Variables of one type. ``has_decl``: whether DECL was written [TYP-06]."""
+
+    has_decl: bool
+    is_global: bool
+    is_constant: bool
+    type: Name
+    declarators: tuple[Declarator, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Enumeration(Node):
+    """ENUM: a type and its constants, in order [TYP-16]."""
+
+    is_global: bool
+    name: Name
+    constants: tuple[Name, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MemberGroup(Node):
+    """Members of a structure that share their type."""
+
+    type: Name
+    declarators: tuple[Declarator, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Structure(Node):
+    """STRUC: a type and its members, in order [TYP-14]."""
+
+    is_global: bool
+    name: Name
+    groups: tuple[MemberGroup, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Signal(Node):
+    """A name for an input or output, or for those from ``first`` to ``last`` [IOT-03].
+
+    A predefined signal that is connected to nothing has FALSE as its ``first``.
+    """
+
+    has_decl: bool
+    is_global: bool
+    name: Name
+    first: Expression
+    last: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExternalParameter(Node):
+    """A parameter of an external routine; ``mode`` is IN, OUT or ``None``."""
+
+    type: Name
+    name: Name | None
+    indices: tuple[Expression | None, ...] | None
+    mode: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class External(Node):
+    """A routine of another module; ``keyword`` is EXT, EXTP, EXTFCT or EXTFCTP [SCO-10]."""
+
+    keyword: str
+    result: TypeName | None
+    name: Name
+    parameters: tuple[ExternalParameter, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChannelDefinition(Node):
+    """CHANNEL: its name, the interface it uses, and the structure that describes it."""
+
+    name: Name
+    interface: Name
+    description: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Importation(Node):
+    """IMPORT: a variable of another data list under a name of its own [ADV-05]."""
+
+    has_decl: bool
+    type: Name
+    declarator: Declarator
+    path: tuple[Name, ...]
+    source: Expression
+
+
+Definition = (
+    VariableDeclaration
+    | Enumeration
+    | Structure
+    | Signal
+    | External
+    | ChannelDefinition
+    | Importation
+)
+
+
+# ------------------------------------------------------------------------------------- statements
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assignment(Node):
+    """``target = value``; in a data list, the initial value of an element or a text [TYP-10]."""
+
+    target: Expression
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CallStatement(Node):
+    """A routine called for what it does."""
+
+    call: Call
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class If(Node):
+    """IF; ``otherwise`` is ``None`` without ELSE."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+    otherwise: tuple[Statement, ...] | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class For(Node):
+    """FOR from ``first`` to ``last``, both included [CTL-05]."""
+
+    counter: Name
+    first: Expression
+    last: Expression
+    step: Expression | None
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class While(Node):
+    """WHILE: tested before each pass [CTL-01]."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Repeat(Node):
+    """REPEAT … UNTIL: tested after each pass, ends when TRUE [CTL-01]."""
+
+    body: tuple[Statement, ...]
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loop(Node):
+    """LOOP: endless, left by EXIT [CTL-01]."""
+
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaseBranch(Node):
+    """CASE: constants or names of constants, and what is done [CTL-04]."""
+
+    values: tuple[Expression, ...]
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Switch(Node):
+    """SWITCH; ``default`` is ``None`` without DEFAULT [CTL-03, CTL-04]."""
+
+    selector: Expression
+    branches: tuple[CaseBranch, ...]
+    default: tuple[Statement, ...] | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Exit(Node):
+    """EXIT: leaves the innermost loop [CTL-02]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Goto(Node):
+    """GOTO a label of the same routine [CTL-07]."""
+
+    label: Name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Label(Node):
+    """``NAME:``, where a GOTO goes."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Return(Node):
+    """RETURN, with a value in functions [CTL-09]."""
+
+    value: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Halt(Node):
+    """HALT [CTL-08]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Continue(Node):
+    """CONTINUE: the next line does not stop the advance run [ADV-08]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OnErrorProceed(Node):
+    """ON_ERROR_PROCEED: an error of the next statement is noted in $ERR [TYP-13]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Confirm(Node):
+    """CONFIRM: acknowledges a message by its number."""
+
+    number: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WaitFor(Node):
+    """WAIT FOR a condition [CTL-12]."""
+
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WaitSeconds(Node):
+    """WAIT SEC, a time in seconds [TIM-06]."""
+
+    duration: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SignalOn(Node):
+    """ANIN ON, ANOUT ON or DIGIN ON; ``keyword`` is the first word [IOT-05, IOT-09]."""
+
+    keyword: str
+    assignment: Assignment
+    delay: Expression | None
+    minimum: Expression | None
+    maximum: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SignalOff(Node):
+    """ANIN OFF, ANOUT OFF or DIGIN OFF."""
+
+    keyword: str
+    variable: Expression
+
+
+# --------------------------------------------------------------------------------------- motions
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion(Node):
+    """A motion of any kind but those of option packages.
+
+    ``kind`` is its keyword: PTP, LIN, CIRC, SPTP, SLIN, SCIRC, SPL, their _REL forms, or ASYPTP.
+    ``auxiliary`` is the first point of a circle, ``angle`` follows CA [MOT-13].
+    ``values`` stand behind WITH [SPL-08], ``criteria`` are C_PTP, C_DIS, C_ORI, C_VEL or C_SPL
+    [BLD-06], ``reference`` is #BASE or #TOOL [MOT-14].
+    """
+
+    kind: str
+    auxiliary: Expression | None
+    target: Expression
+    angle: Expression | None
+    values: tuple[Assignment, ...]
+    criteria: tuple[str, ...]
+    reference: EnumConstant | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EmilyMotion(Node):
+    """MOVE_EMI: a path that an option package holds."""
+
+    device: Expression
+    action: Expression
+    number: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ConstantVelocity(Node):
+    """CONST_VEL: ``edge`` is START or END of the range, ``place`` in mm [SPL-05, SPL-07]."""
+
+    edge: str
+    place: Expression
+    on_start: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeBlock(Node):
+    """TIME_BLOCK: ``edge`` is START, PART or END; START has no value [SPL-10]."""
+
+    edge: str
+    value: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StopWhen(Node):
+    """STOP WHEN PATH, a conditional stop at a place in mm [SPL-06, SPL-07]."""
+
+    place: Expression
+    on_start: bool
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SplineBlock(Node):
+    """SPLINE or PTP_SPLINE: motions planned and executed as one [SPL-01]."""
+
+    keyword: str
+    values: tuple[Assignment, ...]
+    items: tuple[Motion | Trigger | ConstantVelocity | TimeBlock | StopWhen, ...]
+    is_approximated: bool
+
+
+# ------------------------------------------------------------------------ interrupts and triggers
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Brake(Node):
+    """BRAKE; ``mode`` is F, FF or ``None`` [INT-09]."""
+
+    mode: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Resume(Node):
+    """RESUME [INT-10]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InterruptDeclaration(Node):
+    """INTERRUPT DECL; its number is its priority [INT-01, INT-02]."""
+
+    is_global: bool
+    number: Expression
+    condition: Expression
+    action: CallStatement | Brake
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InterruptSwitch(Node):
+    """INTERRUPT ON, OFF, ENABLE or DISABLE; without a number, all of them [INT-07]."""
+
+    action: str
+    number: Expression | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trigger(Node):
+    """TRIGGER. ``place_kind`` is DISTANCE or PATH (mm), ``delay`` in ms [TRG-01 to TRG-06]."""
+
+    place_kind: str
+    place: Expression
+    on_start: bool
+    delay: Expression
+    action: Assignment | CallStatement
+    priority: Expression | None
+
+
+Statement = (
+    Definition
+    | Assignment
+    | CallStatement
+    | If
+    | For
+    | While
+    | Repeat
+    | Loop
+    | Switch
+    | Exit
+    | Goto
+    | Label
+    | Return
+    | Halt
+    | Continue
+    | OnErrorProceed
+    | Confirm
+    | WaitFor
+    | WaitSeconds
+    | SignalOn
+    | SignalOff
+    | Motion
+    | EmilyMotion
+    | SplineBlock
+    | Brake
+    | Resume
+    | InterruptDeclaration
+    | InterruptSwitch
+    | Trigger
+)
+#: What a data list holds.
+Item = Definition | Assignment
+
+
+# ---------------------------------------------------------------------------------------- modules
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parameter(Node):
+    """A formal parameter; ``mode`` is IN, OUT, or ``None``, which means OUT [SCO-06, SCO-07]."""
+
+    name: Name
+    indices: tuple[Expression | None, ...] | None
+    mode: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Routine(Node):
+    """DEF, or DEFFCT where there is a ``result``. Declarations stand in the body, as written."""
+
+    is_global: bool
+    result: TypeName | None
+    name: Name
+    parameters: tuple[Parameter, ...]
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Program(Node):
+    """A SRC or SUB file; the first routine carries the name of the file [SCO-01]."""
+
+    routines: tuple[Routine, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DataList(Node):
+    """A DAT file."""
+
+    name: Name
+    is_public: bool
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Header(Node):
+    """A line of the controller's file system: &ACCESS, &REL …"""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Module(Node):
+    """One file."""
+
+    headers: tuple[Header, ...]
+    content: Program | DataList

@@ -1,0 +1,207 @@
+"""What the rules of names, types, literals and expressions become (as `statement_rules`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from grammar.syntax import ast
+from grammar.syntax.ast import Span
+from grammar.syntax.node_plans import Draft, Part, Rule, Value, separated, value_of, values_of
+
+__all__ = ["EXPRESSION_RULES", "literal", "type_name"]
+
+# Types whose names are keywords: they are kept in upper case.
+_KEYWORD_TYPES = frozenset("INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
+# More digits tell a checker nothing: the number is too large.
+_MOST_DIGITS = 1_000
+
+
+# ----------------------------------------------------------------------------- names and literals
+
+
+def _type_of(span: Span, text: str) -> ast.Name:
+    upper = text.upper()
+    return ast.Name(span, upper if upper in _KEYWORD_TYPES else text)
+
+
+def _integer_of(span: Span, text: str) -> ast.IntegerLiteral:
+    if len(text) > _MOST_DIGITS:
+        text = text.lstrip("0") or "0"
+        if len(text) > _MOST_DIGITS:
+            return ast.IntegerLiteral(span, 10**_MOST_DIGITS)
+    return ast.IntegerLiteral(span, int(text))
+
+
+def _bits_of(span: Span, text: str) -> ast.BitLiteral:
+    digits = text[2:-1].replace(" ", "")
+    return ast.BitLiteral(span, text, int(digits, 2 if text[1] in "bB" else 16))
+
+
+def _string_of(span: Span, text: str) -> ast.StringLiteral:
+    return ast.StringLiteral(span, text[1:-1])
+
+
+def _constant_of(span: Span, text: str) -> ast.EnumConstant:
+    return ast.EnumConstant(span, ast.Name((span[0] + 1, span[1]), text[1:]))
+
+
+def _bool_of(span: Span, text: str) -> ast.BoolLiteral:
+    return ast.BoolLiteral(span, text.upper() == "TRUE")
+
+
+_LITERALS: Mapping[str, Callable[[Span, str], ast.Node]] = {
+    "INTEGER": _integer_of,
+    "REAL_NUMBER": ast.RealLiteral,
+    "TRUE": _bool_of,
+    "FALSE": _bool_of,
+    "BIT_STRING": _bits_of,
+    "STRING": _string_of,
+    "ENUM_CONSTANT": _constant_of,
+}
+
+
+def _name(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Name, parts, parts[0].first)
+
+
+def _position_type(_draft: Draft, parts: Sequence[Part]) -> Value:
+    return parts[0].value
+
+
+def _type(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(_type_of, parts, parts[0].first)
+
+
+def type_name(draft: Draft, parts: Sequence[Part]) -> Value:
+    """What an external function gives, where it is one."""
+    chosen = [part for part in parts if part.symbol in ("type", "index")]
+    if not chosen:
+        return None
+    return draft.over(ast.TypeName, chosen, chosen[0].value, value_of(chosen, "index"))
+
+
+def literal(draft: Draft, parts: Sequence[Part]) -> Value:
+    """A literal as its node; whatever else stands there is what it came to."""
+    (only,) = parts
+    make = _LITERALS.get(only.symbol)
+    return only.value if make is None else draft.over(make, parts, only.value)
+
+
+# ------------------------------------------------------------------------------------ expressions
+
+_OPERATORS = {
+    "EQUALS": "==",
+    "NOT_EQUAL": "<>",
+    "LESS": "<",
+    "GREATER": ">",
+    "AT_MOST": "<=",
+    "AT_LEAST": ">=",
+    "PLUS": "+",
+    "MINUS": "-",
+    "TIMES": "*",
+    "DIVIDE": "/",
+    "COLON": ":",
+}
+
+
+def _operator(part: Part) -> Value:
+    return part.value if part.symbol == "relation" else _OPERATORS.get(part.symbol, part.symbol)
+
+
+def _relation(_draft: Draft, parts: Sequence[Part]) -> Value:
+    return _operator(parts[0])
+
+
+def _infix(draft: Draft, parts: Sequence[Part]) -> Value:
+    """Operators of equal rank join from left to right."""
+    value = parts[0].value
+    for operator, right in zip(parts[1::2], parts[2::2], strict=True):
+        value = draft.node(
+            ast.Binary, parts[0].first, right.stop, _operator(operator), value, right.value
+        )
+    return value
+
+
+def _prefix(draft: Draft, parts: Sequence[Part]) -> Value:
+    if len(parts) == 1:
+        return parts[0].value
+    return draft.over(ast.Unary, parts, _operator(parts[0]), parts[1].value)
+
+
+def _primary(draft: Draft, parts: Sequence[Part]) -> Value:
+    if len(parts) == 1:
+        return parts[0].value
+    return draft.over(ast.Parenthesised, parts, parts[1].value)
+
+
+def _variable(draft: Draft, parts: Sequence[Part]) -> Value:
+    first = parts[0].first
+    value = draft.node(ast.Variable, first, parts[0].stop, parts[0].value)
+    for part in parts[1:]:
+        if part.symbol == "index":
+            value = draft.node(ast.Subscript, first, part.stop, value, part.value)
+        elif part.symbol == "name":
+            value = draft.node(ast.Member, first, part.stop, value, part.value)
+    return value
+
+
+def _index(_draft: Draft, parts: Sequence[Part]) -> Value:
+    return separated(parts[1:-1])
+
+
+def _call(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Call, parts, parts[0].value, value_of(parts, "arguments"))
+
+
+def _arguments(_draft: Draft, parts: Sequence[Part]) -> Value:
+    return separated(parts) if parts else ()
+
+
+def _argument(draft: Draft, parts: Sequence[Part]) -> Value:
+    if len(parts) == 1:
+        return parts[0].value
+    return draft.over(ast.ChannelName, parts, parts[1].value)
+
+
+def _aggregate(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Aggregate, parts, value_of(parts, "name"), values_of(parts, "component"))
+
+
+def _component(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(
+        ast.Component, parts, parts[0].value, value_of(parts, "index"), parts[-1].value
+    )
+
+
+#: By the name of the rule.
+EXPRESSION_RULES: Mapping[str, Rule] = {
+    "type": _type,
+    "predefinedType": _type,
+    "positionType": _position_type,
+    "call": _call,
+    "arguments": _arguments,
+    "argument": _argument,
+    "reference": literal,
+    "emilyName": literal,
+    "target": _infix,
+    "frame": _primary,
+    "expression": _infix,
+    "relation": _relation,
+    "disjunction": _infix,
+    "exclusion": _infix,
+    "conjunction": _infix,
+    "sum": _infix,
+    "product": _infix,
+    "factor": _prefix,
+    "composition": _infix,
+    "primary": _primary,
+    "variable": _variable,
+    "name": _name,
+    "keyword": _name,
+    "index": _index,
+    "literal": literal,
+    "number": literal,
+    "constant": _prefix,
+    "aggregate": _aggregate,
+    "component": _component,
+}

@@ -1,0 +1,284 @@
+"""What each rule of the grammar that lies within a line becomes: drafts of nodes of the tree.
+
+One function a rule, or one for several that are alike. Each gets what the rule consists of, in the
+order of the text, and says which node that is (`grammar.syntax.node_plans`). Those of expressions
+stand in `grammar.syntax.expression_rules`; rules that span lines are built in
+`grammar.syntax.build`. A rule that is new to the grammar needs an entry in one of the three.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from grammar.syntax import ast
+from grammar.syntax.ast import Span
+from grammar.syntax.expression_rules import EXPRESSION_RULES, literal, type_name
+from grammar.syntax.node_plans import Draft, Part, Rule, Value, after, has, value_of, values_of
+
+__all__ = ["CHAINS", "RULES"]
+
+
+# ----------------------------------------------------------------------------------- declarations
+
+
+def _enumeration(draft: Draft, parts: Sequence[Part]) -> Value:
+    constants = values_of(parts, "enumerator")
+    return draft.over(
+        ast.Enumeration, parts, has(parts, "GLOBAL"), value_of(parts, "name"), constants
+    )
+
+
+def _structure(draft: Draft, parts: Sequence[Part]) -> Value:
+    groups = values_of(parts, "memberGroup")
+    return draft.over(ast.Structure, parts, has(parts, "GLOBAL"), value_of(parts, "name"), groups)
+
+
+def _member_group(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.MemberGroup, parts, parts[0].value, values_of(parts, "declarator"))
+
+
+def _signal(draft: Draft, parts: Sequence[Part]) -> Value:
+    places = values_of(parts, "variable")
+    if not places:
+        places = (literal(draft, parts[-1:]),)
+    first, last = (*places, None)[:2]
+    flags = has(parts, "DECL"), has(parts, "GLOBAL")
+    return draft.over(ast.Signal, parts, *flags, value_of(parts, "name"), first, last)
+
+
+def _external(draft: Draft, parts: Sequence[Part]) -> Value:
+    parameters = value_of(parts, "externalParameters") or ()
+    result, name = type_name(draft, parts), value_of(parts, "name")
+    return draft.over(ast.External, parts, parts[0].symbol, result, name, parameters)
+
+
+def _external_parameter(draft: Draft, parts: Sequence[Part]) -> Value:
+    selected = (value_of(parts, symbol) for symbol in ("name", "index", "parameterMode"))
+    return draft.over(ast.ExternalParameter, parts, parts[0].value, *selected)
+
+
+def _parameter(draft: Draft, parts: Sequence[Part]) -> Value:
+    selected = (value_of(parts, symbol) for symbol in ("index", "parameterMode"))
+    return draft.over(ast.Parameter, parts, parts[0].value, *selected)
+
+
+def _channel(draft: Draft, parts: Sequence[Part]) -> Value:
+    name, interface = values_of(parts, "name")
+    return draft.over(ast.ChannelDefinition, parts, name, interface, parts[-1].value)
+
+
+def _importation(draft: Draft, parts: Sequence[Part]) -> Value:
+    selected = (value_of(parts, symbol) for symbol in ("type", "declarator"))
+    path = values_of(parts, "name")
+    return draft.over(
+        ast.Importation, parts, has(parts, "DECL"), *selected, path, value_of(parts, "variable")
+    )
+
+
+def _declarator(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Declarator, parts, parts[0].value, value_of(parts, "index"), None)
+
+
+def _initialised_declarator(draft: Draft, parts: Sequence[Part]) -> Value:
+    if len(parts) == 1:
+        return parts[0].value
+    return draft.over(_with_value, parts, parts[0].value, parts[2].value)
+
+
+def _with_value(span: Span, plain: ast.Declarator, value: ast.Expression) -> ast.Declarator:
+    return ast.Declarator(span, plain.name, plain.indices, value)
+
+
+# ------------------------------------------------------------------------------------- statements
+
+
+def _statement(draft: Draft, parts: Sequence[Part]) -> Value:
+    """What can be done: a call is an expression too, and becomes a statement here."""
+    (only,) = parts
+    if only.symbol == "call":
+        return draft.over(ast.CallStatement, parts, only.value)
+    return only.value
+
+
+def _assignment(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Assignment, parts, parts[0].value, parts[2].value)
+
+
+def _lone(kind: type[ast.Node]) -> Rule:
+    """A statement of one keyword."""
+
+    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
+        return draft.over(kind, parts)
+
+    return rule
+
+
+def _with_last(kind: type[ast.Node]) -> Rule:
+    """A statement of a keyword and what follows it."""
+
+    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
+        return draft.over(kind, parts, parts[-1].value)
+
+    return rule
+
+
+def _label(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Label, parts, parts[0].value)
+
+
+def _return(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Return, parts, value_of(parts, "expression"))
+
+
+def _wait(draft: Draft, parts: Sequence[Part]) -> Value:
+    kind = ast.WaitFor if parts[1].symbol == "FOR" else ast.WaitSeconds
+    return draft.over(kind, parts, parts[2].value)
+
+
+def _cyclic_signal(draft: Draft, parts: Sequence[Part]) -> Value:
+    keyword = parts[0].symbol
+    if parts[1].symbol == "OFF":
+        return draft.over(ast.SignalOff, parts, keyword, parts[2].value)
+    options = (after(parts, symbol) for symbol in ("DELAY", "MINIMUM", "MAXIMUM"))
+    return draft.over(ast.SignalOn, parts, keyword, parts[2].value, *options)
+
+
+def _brake(draft: Draft, parts: Sequence[Part]) -> Value:
+    return draft.over(ast.Brake, parts, parts[1].symbol if len(parts) > 1 else None)
+
+
+def _interrupt(draft: Draft, parts: Sequence[Part]) -> Value:
+    expressions = values_of(parts, "expression")
+    if has(parts, "DECL"):
+        number, condition = expressions
+        action = value_of(parts, "interruptAction")
+        is_global = has(parts, "GLOBAL")
+        return draft.over(ast.InterruptDeclaration, parts, is_global, number, condition, action)
+    return draft.over(ast.InterruptSwitch, parts, parts[1].symbol, value_of(parts, "expression"))
+
+
+def _trigger(draft: Draft, parts: Sequence[Part]) -> Value:
+    place = value_of(parts, "place")
+    assert isinstance(place, tuple)
+    delay, action = after(parts, "DELAY"), value_of(parts, "triggerAction")
+    return draft.over(ast.Trigger, parts, *place, delay, action, after(parts, "PRIO"))
+
+
+def _place(_draft: Draft, parts: Sequence[Part]) -> Value:
+    return parts[0].symbol, parts[2].value, has(parts, "ONSTART")
+
+
+# ---------------------------------------------------------------------------------------- motions
+
+
+def _motion(draft: Draft, parts: Sequence[Part]) -> Value:
+    targets = values_of(parts, "target")
+    criteria = value_of(parts, "approximation") or (("C_SPL",) if has(parts, "C_SPL") else ())
+    return draft.over(
+        ast.Motion,
+        parts,
+        parts[0].symbol,
+        targets[0] if len(targets) > 1 else None,
+        targets[-1],
+        value_of(parts, "expression"),
+        value_of(parts, "with") or (),
+        criteria,
+        value_of(parts, "reference"),
+    )
+
+
+def _emily_motion(draft: Draft, parts: Sequence[Part]) -> Value:
+    device, action = values_of(parts, "emilyName")
+    return draft.over(ast.EmilyMotion, parts, device, action, value_of(parts, "expression"))
+
+
+def _spline_item(draft: Draft, parts: Sequence[Part]) -> Value:
+    keyword, *rest = parts
+    if not rest:
+        return keyword.value
+    on_start = has(rest, "ONSTART")
+    if keyword.symbol == "STOP":
+        place, condition = values_of(rest, "expression")
+        return draft.over(ast.StopWhen, parts, place, on_start, condition)
+    value = value_of(rest, "expression")
+    if keyword.symbol == "TIME_BLOCK":
+        return draft.over(ast.TimeBlock, parts, rest[0].symbol, value)
+    return draft.over(ast.ConstantVelocity, parts, rest[0].symbol, value, on_start)
+
+
+# --------------------------------------------------------------------------------- which for which
+
+
+def _only(_draft: Draft, parts: Sequence[Part]) -> Value:
+    """A rule that is a choice between others."""
+    (only,) = parts
+    return only.value
+
+
+def _all(symbol: str) -> Rule:
+    """A rule that is a list."""
+
+    def rule(_draft: Draft, parts: Sequence[Part]) -> Value:
+        return values_of(parts, symbol)
+
+    return rule
+
+
+def _symbol(_draft: Draft, parts: Sequence[Part]) -> Value:
+    """A rule that is a choice between keywords."""
+    return parts[0].symbol
+
+
+#: Rules that mean what their only child means.
+CHAINS = frozenset(
+    "expression disjunction exclusion conjunction sum product factor composition primary target "
+    "frame literal constant argument caseValue initialValue definition".split()
+)
+
+RULES: Mapping[str, Rule] = {
+    **EXPRESSION_RULES,
+    "parameters": _all("parameter"),
+    "parameter": _parameter,
+    "parameterMode": _symbol,
+    "definition": _only,
+    "enumeration": _enumeration,
+    "enumerator": _only,
+    "structure": _structure,
+    "memberGroup": _member_group,
+    "signal": _signal,
+    "external": _external,
+    "externalParameters": _all("externalParameter"),
+    "externalParameter": _external_parameter,
+    "channel": _channel,
+    "importation": _importation,
+    "declarator": _declarator,
+    "initialisedDeclarator": _initialised_declarator,
+    "initialValue": _only,
+    "simpleStatement": _statement,
+    "assignment": _assignment,
+    "caseValue": _only,
+    "exit": _lone(ast.Exit),
+    "goto": _with_last(ast.Goto),
+    "label": _label,
+    "halt": _lone(ast.Halt),
+    "continue": _lone(ast.Continue),
+    "onErrorProceed": _lone(ast.OnErrorProceed),
+    "confirm": _with_last(ast.Confirm),
+    "wait": _wait,
+    "cyclicSignal": _cyclic_signal,
+    "return": _return,
+    "motion": _motion,
+    "approximation": _all("criterion"),
+    "criterion": _symbol,
+    "splineMotion": _motion,
+    "emilyMotion": _emily_motion,
+    "with": _all("assignment"),
+    "splineItem": _spline_item,
+    "interrupt": _interrupt,
+    "interruptAction": _statement,
+    "brake": _brake,
+    "resume": _lone(ast.Resume),
+    "trigger": _trigger,
+    "place": _place,
+    "triggerAction": _statement,
+}

@@ -1,0 +1,55 @@
+"""Walks over the syntax tree: what lies below a node, and whether two trees say the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields
+
+from grammar.syntax.ast import Node
+
+__all__ = ["children", "same", "walk"]
+
+
+_NAMES: dict[type, tuple[str, ...]] = {}
+
+
+def _names(node: Node) -> tuple[str, ...]:
+    """What a node holds besides its span."""
+    kind = type(node)
+    if kind not in _NAMES:
+        _NAMES[kind] = tuple(field.name for field in fields(node) if field.name != "span")
+    return _NAMES[kind]
+
+
+def children(node: Node) -> Iterator[Node]:
+    """The nodes directly below a node, in the order of the text where that has a meaning."""
+    for name in _names(node):
+        value = getattr(node, name)
+        if isinstance(value, Node):
+            yield value
+        elif isinstance(value, tuple):
+            yield from (item for item in value if isinstance(item, Node))
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """A node and all below it, each before what is below it; does not recurse."""
+    todo = [node]
+    while todo:
+        here = todo.pop()
+        yield here
+        todo.extend(reversed(list(children(here))))
+
+
+def same(left: Node, right: Node) -> bool:
+    """Whether two trees say the same, letter case of names included, spans left aside."""
+    todo: list[tuple[object, object]] = [(left, right)]
+    while todo:
+        one, other = todo.pop()
+        if isinstance(one, Node) and type(one) is type(other):
+            names = _names(one)
+            todo += [(getattr(one, name), getattr(other, name)) for name in names]
+        elif isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
+            todo += zip(one, other, strict=True)
+        elif isinstance(one, Node | tuple) or one != other:
+            return False
+    return True

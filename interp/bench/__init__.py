@@ -1,0 +1,1 @@
+"""Executors, arm and real programs measured and compared."""

@@ -1,0 +1,236 @@
+"""Main programs of controllers' backups, run whole: which get to their end, what stops the others.
+
+A main program is the first routine of a file below R1, outside the folders of the controller and of
+its packages, that takes no arguments, moves the arm, and is called by no other program but the one
+that only chooses between programs, CELL. It is run with the machine data, tools, bases and points
+of its own backup, with its submit program where there is one, with somebody at the panel who goes
+on after a HALT, acknowledges messages and gives each dialogue its first answer, and with a cell
+that obliges: the inputs that a WAIT FOR waits for come after a second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+from typing import Final, Literal
+
+from grammar.syntax import ast
+from grammar.syntax.references import calls_in
+from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
+from interp.controller.input_script import Script
+from interp.controller.profile import Profile
+from interp.controller.trace import TraceEvent
+from interp.executors import Prepared
+from interp.program.load import CheckedProgram, Routine, load_all
+from interp.session import Setup, run_program
+from interp.values.faults import Fault, LinkError
+
+__all__ = [
+    "OPERATOR",
+    "PATIENCE",
+    "MainProgram",
+    "Ran",
+    "Result",
+    "main_programs",
+    "run_main",
+    "survey_profile",
+]
+
+#: What the person at the panel and the cell do, as lines of a script.
+OPERATOR: Final = """\
+on HALT after 1 press START
+on message after 1 press CONFIRM
+on dialogue after 1 answer 1
+fulfil waits after 1
+"""
+#: Folders of a backup that hold what the controller and its packages bring along.
+_NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
+#: Requests of the submit program in a cycle: it goes round many times a second all the same.
+_SUBMIT_REQUESTS: Final = 20
+_CHOOSES: Final = "CELL"
+_MOVES: Final = (ast.Motion, ast.SplineBlock)
+
+#: So long in µs may the arm stand before a program counts as one that waits.
+PATIENCE: Final = 20_000_000
+
+#: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
+#: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
+#: ``refused`` where it could not begin.
+Result = Literal[
+    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused", "crash"
+]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MainProgram:
+    """A main program, and the first routine of its submit program if its backup has one.
+
+    ``has_machine``: whether its backup has the machine data of an arm.
+    """
+
+    prepared: Prepared
+    path: str
+    routine: str
+    submit: str | None
+    has_machine: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Ran:
+    """What came of a main program: virtual seconds, motions made, and where and why it ended.
+
+    ``at`` is where it was when its time was over. ``furthest_mm`` is how far a measured tool was
+    from its set-point at most, where the robot measures. ``inputs``: how many changes of inputs it
+    took to fulfil its waits.
+    """
+
+    result: Result
+    seconds: float
+    motions: int
+    at: str = ""
+    reason: str = ""
+    machine: str = ""
+    furthest_mm: float | None = None
+    inputs: int = 0
+
+
+def main_programs(sources: Iterable[Source]) -> tuple[list[MainProgram], list[tuple[str, str]]]:
+    """The main programs of files of one origin, and which files cannot be read and why.
+
+    Files that are not laid out like a backup have none of R1: all their folders count.
+    """
+    programs, unread = load_all(sources)
+    called: dict[int, set[str]] = {}
+    moving: dict[int, set[str]] = {}
+    for program in programs:
+        key = id(program.project)
+        if key not in called:
+            called[key], moving[key] = _calls(program)
+    found = []
+    for program in programs:
+        key, path = id(program.project), program.main.module.path
+        first = program.routines_of(program.main)[0]
+        is_wanted = (
+            program.main.module.suffix == ".src"
+            and _is_of_users(path, is_controller=program.project.is_controller)
+            and program.can_begin(first)
+            and first.node.name.key in moving[key]
+            and first.node.name.key not in called[key]
+        )
+        if is_wanted:
+            found.append(
+                MainProgram(
+                    Prepared(program),
+                    path,
+                    first.name,
+                    _submit_of(program),
+                    _has_machine(program),
+                )
+            )
+    return found, list(unread)
+
+
+def _is_of_users(path: str, *, is_controller: bool) -> bool:
+    folders = [part.upper() for part in PurePosixPath(path).parts[:-1]]
+    if is_controller and "R1" not in folders:
+        return False
+    return _NOT_OF_USERS.isdisjoint(folders)
+
+
+def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
+    """The names of routines that others call, but for CELL, and of those that move the arm."""
+    calls: dict[str, set[str]] = {}
+    moving: set[str] = set()
+    for routine in program.routines.values():
+        key = routine.node.name.key
+        calls.setdefault(key, set()).update(calls_in(routine.node.body))
+        if any(isinstance(node, _MOVES) for one in routine.node.body for node in walk(one)):
+            moving.add(key)
+    grows = True
+    while grows:
+        more = {name for name, others in calls.items() if others & moving} - moving
+        moving |= more
+        grows = bool(more)
+    called = {other for name, others in calls.items() for other in others - {name}}
+    chosen = calls.get(_CHOOSES, set())
+    others = {one for name, found in calls.items() if name != _CHOOSES for one in found - {name}}
+    return (called - chosen) | (chosen & others), moving
+
+
+def _submit_of(program: CheckedProgram) -> str | None:
+    """The submit program of a backup: SPS, as controllers call it."""
+    for unit in program.units.values():
+        routines = program.routines_of(unit)
+        if unit.module.suffix == ".sub" and routines and _is_sps(routines[0]):
+            return routines[0].name
+    return None
+
+
+def _is_sps(routine: Routine) -> bool:
+    return routine.node.name.key == "SPS"
+
+
+def _has_machine(program: CheckedProgram) -> bool:
+    return any(
+        unit.module.name == "$MACHINE" and "$LENGTH_A" in unit.source.text
+        for unit in program.units.values()
+    )
+
+
+def survey_profile() -> Profile:
+    """The default profile with a slower submit program: less of it, more of what moves."""
+    return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
+
+
+def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
+    """Run a main program; ``script`` adds to what the person at the panel and the cell do.
+
+    Raises `interp.controller.input_script.ScriptError` for a script that names what does not exist.
+    """
+    seen = _Seen()
+    text = script + "\n" + OPERATOR
+    script_read = Script.read(text, f"{main.routine}.io")
+    setup = replace(setup, submit=main.submit, script=script_read, patience=PATIENCE)
+    try:
+        run = run_program(main.prepared, setup, take=seen.take)
+    except LinkError as error:
+        return Ran("refused", 0.0, 0, reason=str(error))
+    outcome = run.outcome
+    path = run.path
+    furthest = None
+    if path is not None and path.tips_measured is not None:
+        furthest = float(((path.tips_measured - path.tips) ** 2).sum(axis=1).max() ** 0.5)
+    place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
+    result: Result
+    if outcome.ending == "time":
+        result = "goes on" if outcome.time >= setup.until else "waits"
+    elif outcome.ending == "fault" and not isinstance(outcome.error, Fault):
+        result = "unlinked"
+    else:
+        result = outcome.ending
+    reason = "" if outcome.error is None else str(outcome.error)
+    number = getattr(outcome.error, "number", None)
+    if number is not None:
+        reason += f" (message {number})"
+    return Ran(
+        result,
+        outcome.time / 1e6,
+        seen.motions,
+        place,
+        reason,
+        run.machine.name,
+        furthest,
+        run.controller.fulfilling.count,
+    )
+
+
+@dataclass(slots=True)
+class _Seen:
+    """What a trace tells of motions, which is all that is kept of it."""
+
+    motions: int = 0
+
+    def take(self, event: TraceEvent) -> None:
+        self.motions += event.kind == "motion_end"

@@ -1,0 +1,244 @@
+"""Programs as people wrote them, tried routine by routine on several executors.
+
+Each routine is looked at by itself: whether it checks without an error, whether all that it names
+is there, whether all of it is compiled, how it ends in a stub world, and whether all executors say
+the same on the way. Motions take no time there, and inputs are drawn from a seed. What waits for
+the world to change in a way that it never does is stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from grammar.syntax.source import Source
+from interp.bench.executor_comparison import Observed, Prober, difference, observe
+from interp.bench.routine_callers import with_callers
+from interp.bench.stub_world import StubWorld
+from interp.bytecode.compiler import Compiled, compile_program
+from interp.bytecode.verifier.verify import VerificationError, Verified, verify
+from interp.bytecode.vm.executor import Machine
+from interp.port.events import Sink
+from interp.port.executor import Executor
+from interp.port.requests import Crash, End, Fail, Value
+from interp.program.load import CheckedProgram, Limits, Routine, load_all
+from interp.tree import TreeExecutor, system_values
+from interp.values.faults import BudgetExhausted, Fault, LinkError
+
+__all__ = ["Effort", "Ending", "Stage", "Trial", "Unread", "trials"]
+
+#: How far a routine has come: it cannot be called, has errors, names what is not there, has what is
+#: not compiled, is no sound bytecode, or nothing is wrong with it. What is unlinked or refused runs
+#: all the same, until that is reached.
+Stage = Literal["uncalled", "errors", "unlinked", "refused", "unverified", "runs"]
+#: How a run ended: by itself, by a fault, at what is not there, out of statements, out of requests,
+#: or by a defect of ours.
+Ending = Literal["", "end", "fault", "unlinked", "budget", "stopped", "crash"]
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How long a routine may run: so many statements, so many requests."""
+
+    statements: int = 3_000
+    requests: int = 500
+    seed: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Unread:
+    """A file that cannot be read, and why."""
+
+    path: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What came of a routine; ``reason`` tells why it came no further, ``why`` how its run ended.
+
+    ``endings`` are those of its runs by executor, the reference first; ``differences`` what other
+    executors than the first said differently, by executor.
+    """
+
+    path: str
+    line: int
+    routine: str
+    stage: Stage
+    reason: str = ""
+    endings: Mapping[str, Ending] | None = None
+    differences: Mapping[str, str] | None = None
+    why: str = ""
+
+
+def trials(
+    sources: Iterable[Source],
+    executors: Sequence[str],
+    effort: Effort | None = None,
+    on_found: Callable[[int], None] = lambda _count: None,
+) -> Iterator[Trial | Unread]:
+    """Try every routine of some files; ``on_found`` is told how many there are."""
+    by_path = {source.path: source for source in sources}
+    programs, unread = load_all(by_path.values())
+    called: dict[tuple[str, str], str] = {}
+    for program in programs:
+        path = program.main.module.path
+        made = with_callers(program)
+        by_path[path] = made.source
+        called |= {(path, routine): name for name, routine in made.called.items()}
+    if called:
+        programs, unread = load_all(by_path.values())
+    on_found(len(unread) + sum(len(_own(program)) for program in programs))
+    for path, reason in unread:
+        yield Unread(path, reason)
+    projects: dict[int, list[CheckedProgram]] = {}
+    for program in programs:
+        projects.setdefault(id(program.project), []).append(program)
+    for members in projects.values():
+        yield from _Project(members, called, executors, effort or Effort()).trials()
+
+
+def _own(program: CheckedProgram) -> list[Routine]:
+    """The routines of the first file but those that were added."""
+    return [one for one in program.routines_of(program.main) if not _is_added(one)]
+
+
+def _is_added(routine: Routine) -> bool:
+    return routine.name.startswith("KRL_CALLS_")
+
+
+class _Project:
+    """The routines of one project, which is compiled once."""
+
+    def __init__(
+        self,
+        programs: Sequence[CheckedProgram],
+        called: Mapping[tuple[str, str], str],
+        executors: Sequence[str],
+        effort: Effort,
+    ) -> None:
+        self._programs = programs
+        self._called = called
+        self._executors = executors
+        self._effort = effort
+        self._limits = Limits(statements=effort.statements)
+        self._compiled: Compiled | None = None
+        self._verified: Verified | None = None
+        self._values: Mapping[str, Value] = {}
+        self._reason = ""
+
+    def trials(self) -> Iterator[Trial]:
+        """Each routine in its turn."""
+        every = [one for program in self._programs for one in program.routines_of(program.main)]
+        starts = [routine for routine in every if self._programs[0].can_begin(routine)]
+        try:
+            self._values = system_values(self._programs[0])
+            self._compiled = compile_program(self._programs[0], starts)
+            self._verified = verify(self._compiled.program)
+        except (LinkError, VerificationError, Fault) as error:
+            self._reason = str(error)
+        for program in self._programs:
+            for routine in _own(program):
+                yield self._trial(program, routine)
+
+    def _trial(self, program: CheckedProgram, routine: Routine) -> Trial:
+        unit = routine.unit
+        path, line = unit.module.path, unit.line(routine.node)
+        stage, reason = self._stage(routine)
+        if stage in ("errors", "unverified") or self._verified is None:
+            return Trial(path, line, routine.name, stage, reason)
+        start = self._start(program, routine)
+        if start is None:
+            return Trial(path, line, routine.name, "uncalled", "the type of a parameter is unknown")
+        seen = {name: self._observed(name, program, start, None) for name in self._executors}
+        first = seen[self._executors[0]]
+        differences = self._differences(seen)
+        for name, text in self._probed(program, start).items():
+            differences.setdefault(name, text)
+        endings = {name: _ending(one) for name, one in seen.items()}
+        why = _why(first)
+        return Trial(path, line, routine.name, stage, reason, endings, differences, why)
+
+    def _stage(self, routine: Routine) -> tuple[Stage, str]:
+        unit = routine.unit
+        first, last = (unit.source.place(place)[0] for place in routine.node.span)
+        for one in unit.checked.findings.diagnostics:
+            if one.severity == "error" and first <= one.region.line <= last:
+                return "errors", f"{one.code}: {one.message}"
+        if self._compiled is None:
+            return "unlinked", self._reason
+        path = unit.module.path
+        for refusal in self._compiled.refusals:
+            if refusal.path == path and first <= refusal.line <= last:
+                return "unlinked" if refusal.is_missing else "refused", refusal.reason
+        return ("unverified", self._reason) if self._verified is None else ("runs", "")
+
+    def _start(self, program: CheckedProgram, routine: Routine) -> Routine | None:
+        """The routine to begin with: itself, or the one that was added to call it."""
+        if program.can_begin(routine):
+            return routine
+        name = self._called.get((routine.unit.module.path, routine.name))
+        return None if name is None else program.start(name)
+
+    # ----------------------------------------------------------------------- running
+
+    def _probed(self, program: CheckedProgram, start: Routine) -> dict[str, str]:
+        """The differences of runs in which conditions are evaluated and actions entered."""
+        seed = self._effort.seed
+        return self._differences(
+            {name: self._observed(name, program, start, Prober(seed)) for name in self._executors}
+        )
+
+    def _observed(
+        self, executor: str, program: CheckedProgram, start: Routine, prober: Prober | None
+    ) -> Observed:
+        world = StubWorld(self._effort.seed, self._values)
+        most = self._effort.requests
+        return observe(lambda sink: self._made(executor, program, start, sink), world, prober, most)
+
+    def _made(self, executor: str, program: CheckedProgram, start: Routine, sink: Sink) -> Executor:
+        if executor == "tree":
+            return TreeExecutor(program, start.name, self._limits, sink)
+        assert self._verified is not None, "only what is verified runs"
+        assert self._compiled is not None, "only what is compiled is verified"
+        number = self._compiled.starts[start.table.routine]
+        if executor == "vm":
+            return Machine(self._verified, number, self._limits, sink)
+        from interp.native.machine import Machine as NativeMachine
+
+        return NativeMachine(self._verified, number, self._limits, sink)
+
+    def _differences(self, seen: Mapping[str, Observed]) -> dict[str, str]:
+        first, *others = self._executors
+        found = {name: difference(seen[first], seen[name]) for name in others}
+        return {name: str(one) for name, one in found.items() if one is not None}
+
+
+_LONGEST: Final = 200
+
+
+def _ending(observed: Observed) -> Ending:
+    if observed.is_cut:
+        return "stopped"
+    match observed.last:
+        case End():
+            return "end"
+        case Crash():
+            return "crash"
+        case Fail(fault=BudgetExhausted()):
+            return "budget"
+        case Fail(fault=Fault()):
+            return "fault"
+    return "unlinked"
+
+
+def _why(observed: Observed) -> str:
+    if observed.is_cut:
+        return "it asks the world on and on"
+    match observed.last:
+        case Fail(fault=error):
+            return str(error)[:_LONGEST]
+        case Crash(reason=reason):
+            return reason[:_LONGEST]
+    return ""

@@ -1,0 +1,94 @@
+"""Instructions and their operands, as the text form has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from grammar.semantics.types import BOOL
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.assembly.symbols import Symbols, constant_word, looked_up, part_offset
+from interp.bytecode.assembly.syntax import Key, Line, key
+from interp.bytecode.instruction_set import shape
+from interp.bytecode.program import Instruction, Mode, Parameter, Slot
+from interp.values.faults import FAULTS
+
+__all__ = ["Operands"]
+
+_FAULTS = {slug: kind.code for slug, kind in FAULTS.items()}
+
+
+class Operands:
+    """Reads the instructions of one code object.
+
+    ``targets`` are its labels, with the places of the instructions behind them; ``frame`` is where
+    its parameters and locals are.
+    """
+
+    def __init__(
+        self, symbols: Symbols, targets: Mapping[str, int], frame: Mapping[Key, Slot]
+    ) -> None:
+        self._symbols = symbols
+        self._targets = targets
+        self._frame = frame
+
+    def instruction(self, line: Line) -> Instruction:
+        """The instruction of a line."""
+        name = line.take("word", "an instruction")
+        if name not in Op.__members__:
+            raise line.error(f"there is no instruction {name}")
+        operands: list[int] = []
+        for kind in shape(name).operands:
+            if name == "PUSH_ENUM" and kind == "count":
+                operands.append(self._symbols.constant(line, operands[0]))
+            else:
+                operands.append(self._operand(line, kind))
+        line.done()
+        return Instruction(Op[name], tuple(operands))
+
+    def _operand(self, line: Line, kind: str) -> int:
+        """An operand by its name; any can be written as a number."""
+        if line.found("#"):
+            return line.integer()
+        match kind:
+            case "real":
+                return line.real()
+            case "target":
+                return looked_up(line, line.take("word", "a label"), self._targets, "label")
+            case "type":
+                return self._symbols.type_number(line)
+            case "code":
+                return self._symbols.code_number(line)
+            case "text" | "ask" | "builtin":
+                return self._symbols.labelled(line, kind)
+            case "fault":
+                slug = line.take("word", "a fault")
+                return looked_up(line, slug, _FAULTS, "fault")
+        return line.integer() if line.has("int") else self._named_place(line, kind)
+
+    def _named_place(self, line: Line, kind: str) -> int:
+        match kind:
+            case "bool":
+                return constant_word(line, BOOL)
+            case "char":
+                return _letter(line)
+            case "local":
+                return self._local(line)
+            case "data":
+                return self._symbols.data_place(line)
+        return line.integer()
+
+    def _local(self, line: Line) -> int:
+        label = line.label()
+        slot = self._frame.get(key(label))
+        if slot is None:
+            raise line.error(f"there is no parameter or local {label[0]}")
+        if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+            return slot.offset
+        return slot.offset + part_offset(line, self._symbols.types[slot.variable.type])
+
+
+def _letter(line: Line) -> int:
+    letter = line.string()
+    if len(letter) != 1:
+        raise line.error("one letter is needed")
+    return ord(letter)

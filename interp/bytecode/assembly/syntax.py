@@ -1,0 +1,266 @@
+"""The words of the text form: tokens, names, numbers; the same for reading and for writing.
+
+A line is a row of tokens; a semicolon opens a comment. Texts and odd names are written as JSON has
+them. A REAL is written in as few digits as give it again, or as ``real:7fc00000`` where it is no
+number.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from interp.bytecode.cell_layout import bits_of, real_of
+from interp.port.requests import Path
+from interp.values.faults import Fault
+from interp.values.values import single
+
+__all__ = [
+    "AssemblyError",
+    "Key",
+    "Label",
+    "Line",
+    "key",
+    "label_text",
+    "labels",
+    "name_text",
+    "path_text",
+    "printable",
+    "real_text",
+    "real_word",
+    "split",
+    "string_text",
+]
+
+
+#: A name, and the how manieth it is of those that are called so.
+Label = tuple[str, int]
+
+
+#: A label as it is compared: letter case does not tell labels apart.
+Key = tuple[str, int]
+
+
+class AssemblyError(Exception):
+    """A text is no program; the message names the line."""
+
+    def __init__(self, line: int, message: str) -> None:
+        super().__init__(f"line {line}: {printable(message)}")
+        self.line = line
+
+
+# ------------------------------------------------------------------------------------ reading
+
+_TOKEN = re.compile(
+    r"""
+    (?P<string>"(?:[^"\\\n]|\\.)*")
+  | (?P<arrow>->)
+  | (?P<real>[+-]?(?:\d+\.\d*(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)|real:[0-9a-fA-F]{8})
+  | (?P<int>[+-]?\d+)
+  | (?P<word>[A-Za-z_$%][\w$%]*)
+  | (?P<mark>[][(){}.,:=?#&@!+])
+  | (?P<end>;.*|\s+)
+  | (?P<bad>.)
+    """,
+    re.VERBOSE | re.ASCII,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A token: its kind (string, real, int, word, mark, arrow) and how it was written."""
+
+    kind: str
+    text: str
+
+
+class Line:
+    """The tokens of a line, taken one after the other."""
+
+    def __init__(self, number: int, tokens: Sequence[Token]) -> None:
+        self.number = number
+        self._tokens = tokens
+        self._next = 0
+
+    def error(self, message: str) -> AssemblyError:
+        """An error on this line, to be raised."""
+        return AssemblyError(self.number, message)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether nothing is left."""
+        return self._next == len(self._tokens)
+
+    def restart(self) -> None:
+        """Goes back to the first token."""
+        self._next = 0
+
+    def peek(self) -> Token | None:
+        """The next token, which stays."""
+        return None if self.is_done else self._tokens[self._next]
+
+    def take(self, kind: str, what: str) -> str:
+        """The next token, which must be of that kind; ``what`` is what it should have been."""
+        token = self.peek()
+        if token is None:
+            raise self.error(f"{what} is missing")
+        if token.kind != kind:
+            raise self.error(f"{what} is needed, not {token.text}")
+        self._next += 1
+        return token.text
+
+    def found(self, text: str) -> bool:
+        """Takes the next token if it is this mark or word."""
+        token = self.peek()
+        if token is None or token.text != text or token.kind == "string":
+            return False
+        self._next += 1
+        return True
+
+    def expect(self, text: str) -> None:
+        """Takes this mark or word, which must come next."""
+        if not self.found(text):
+            token = self.peek()
+            raise self.error(f"{text} is needed" + (f", not {token.text}" if token else ""))
+
+    def has(self, kind: str) -> bool:
+        """Whether the next token is of that kind."""
+        token = self.peek()
+        return token is not None and token.kind == kind
+
+    def string(self) -> str:
+        """A text."""
+        written = self.take("string", "a text")
+        try:
+            text: str = json.loads(written)
+            text.encode("utf-8")
+        except ValueError:
+            raise self.error(f"not a text: {written}") from None
+        return text
+
+    def integer(self, low: int = -(2**31), high: int = 2**31 - 1) -> int:
+        """A number of 32 bits."""
+        written = self.take("int", "a number")
+        number = int(written) if len(written) <= 12 else high + 1
+        if not low <= number <= high:
+            raise self.error(f"{written} is not between {low:,} and {high:,}")
+        return number
+
+    def real(self) -> int:
+        """The bits of a REAL."""
+        bits = real_word(self.take("real", "a REAL"))
+        if bits is None:
+            raise self.error("the REAL is too large")
+        return bits
+
+    def name(self) -> str:
+        """A name, written plainly or as a text."""
+        return self.string() if self.has("string") else self.take("word", "a name")
+
+    def label(self) -> Label:
+        """A name with its number."""
+        name = self.name()
+        return (name, self.integer(1) if self.found("@") else 1)
+
+    def done(self) -> None:
+        """Makes sure that nothing is left."""
+        token = self.peek()
+        if token is not None:
+            raise self.error(f"{token.text} is too much")
+
+
+def split(text: str) -> list[Line]:
+    """The lines of a text that hold tokens."""
+    lines = []
+    for number, written in enumerate(text.splitlines(), start=1):
+        tokens = []
+        for match in _TOKEN.finditer(written):
+            kind = match.lastgroup or "bad"
+            if kind == "bad":
+                raise AssemblyError(number, f"{match.group()!r} means nothing here")
+            if kind != "end":
+                tokens.append(Token(kind, match.group()))
+        if tokens:
+            lines.append(Line(number, tokens))
+    return lines
+
+
+def real_word(text: str) -> int | None:
+    """The bits of a REAL as written; ``None`` where it is too large."""
+    if text.startswith("real:"):
+        bits = int(text[5:], 16)
+        return bits - 2**32 if bits >= 2**31 else bits
+    try:
+        return bits_of(single(float(text)))
+    except Fault:
+        return None
+
+
+# ------------------------------------------------------------------------------------ writing
+
+_PLAIN = re.compile(r"[A-Za-z_$%][\w$%]*", re.ASCII)
+
+
+def printable(text: str) -> str:
+    """A text on one line: names come from images and may hold anything."""
+    return "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
+
+
+def string_text(text: str) -> str:
+    """A text as it is written."""
+    return json.dumps(text)
+
+
+def real_text(bits: int) -> str:
+    """A REAL by its bits as it is written."""
+    number = real_of(bits)
+    if not math.isfinite(number):
+        return f"real:{bits & 0xFFFFFFFF:08x}"
+    for digits in range(6, 10):
+        text = repr(float(f"{number:.{digits}g}"))
+        if real_word(text) == bits:
+            return text
+    return f"real:{bits & 0xFFFFFFFF:08x}"
+
+
+def name_text(name: str) -> str:
+    """A name as it is written."""
+    return name if _PLAIN.fullmatch(name) else string_text(name)
+
+
+def path_text(path: Path) -> str:
+    """What follows a name: ``.X[1,2]``."""
+    text = ""
+    for step in path:
+        if isinstance(step, str):
+            text += f".{name_text(step)}"
+        elif text.endswith("]"):
+            text = f"{text[:-1]},{step}]"
+        else:
+            text += f"[{step}]"
+    return text
+
+
+def labels(names: Iterable[str]) -> list[Label]:
+    """A label for each name, by which they can be told apart whatever their letter case."""
+    seen: Counter[str] = Counter()
+    found = []
+    for name in names:
+        seen[name.upper()] += 1
+        found.append((name, seen[name.upper()]))
+    return found
+
+
+def key(label: Label) -> Key:
+    """The label with letter case left aside."""
+    return label[0].upper(), label[1]
+
+
+def label_text(label: Label) -> str:
+    """A label as it is written: ``NAME``, and from the second of a name on ``NAME@2``."""
+    name, number = label
+    return name_text(name) + (f"@{number}" if number > 1 else "")

@@ -1,0 +1,345 @@
+"""How values lie in cells: sizes, places of parts, and the way between values and cells.
+
+A cell holds one scalar, or nothing. Structures and arrays are flattened: members in order, elements
+row by row. What a cell holds is *raw*: INT an ``int``, REAL a ``float``, BOOL a ``bool``, CHAR its
+code, an enumeration the place of its constant; which of them it is follows from the type. A word of
+an image holds the same, a REAL by its bits.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from bisect import bisect_right
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    INT_MAX,
+    INT_MIN,
+    REAL,
+    Array,
+    Enumeration,
+    Member,
+    Scalar,
+    Structure,
+    Type,
+    is_axes,
+    is_cartesian,
+)
+from interp.bytecode.instruction_set import MAX_CELLS
+from interp.port.requests import Path
+from interp.values.faults import LinkError
+from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, converted
+
+__all__ = [
+    "Plain",
+    "Raw",
+    "array_at",
+    "array_sizes",
+    "bits_of",
+    "cells_of",
+    "elements",
+    "is_word_of",
+    "kind_at",
+    "offset_of",
+    "path_to",
+    "raw_of",
+    "raw_of_word",
+    "real_of",
+    "row_of",
+    "shared_cells",
+    "shown",
+    "size",
+    "value_at",
+    "value_of",
+    "word_of",
+]
+
+#: What a cell holds when it has a value.
+Raw = int | float | bool
+#: The types that one cell holds.
+Plain = Scalar | Enumeration
+
+#: Of so many types it is remembered how they lie in cells.
+_REMEMBERED = 1 << 14
+
+_SINGLE = struct.Struct("<f")
+_WORD = struct.Struct("<i")
+
+
+def bits_of(number: float) -> int:
+    """The bits of a single as a signed word."""
+    found: int = _WORD.unpack(_SINGLE.pack(number))[0]
+    return found
+
+
+def real_of(bits: int) -> float:
+    """The single with these bits; it may be infinite or no number."""
+    found: float = _SINGLE.unpack(_WORD.pack(bits))[0]
+    return found
+
+
+# ------------------------------------------------------------------------------------ sizes
+
+
+def array_sizes(type_: Array) -> tuple[int, ...]:
+    """The sizes of an array, all of them known; raises `LinkError` where they are not."""
+    sizes = tuple(size for size in type_.sizes if size is not None)
+    if len(sizes) != len(type_.sizes) or not 1 <= len(sizes) <= 3 or min(sizes) < 1:
+        raise LinkError(f"{type_} has no size")
+    return sizes
+
+
+def elements(type_: Array) -> int:
+    """How many elements an array has."""
+    return math.prod(array_sizes(type_))
+
+
+@lru_cache(_REMEMBERED)
+def size(type_: Type) -> int:
+    """How many cells a type has; raises `LinkError` for what has none or too many."""
+    match type_:
+        case Scalar() | Enumeration():
+            return 1
+        case Structure() if type_.members:
+            found = sum(size(member.type) for member in type_.members)
+        case Array() if not isinstance(type_.element, Array):
+            found = elements(type_) * size(type_.element)
+        case _:
+            raise LinkError(f"no variable can be of {type_}")
+    if found > MAX_CELLS:
+        raise LinkError(f"{type_} has {found:,} cells, more than {MAX_CELLS:,}")
+    return found
+
+
+# ------------------------------------------------------------------------------------ parts
+
+
+@lru_cache(_REMEMBERED)
+def _places(type_: Structure) -> tuple[int, ...]:
+    """The offset of each member."""
+    places = [0]
+    for member in type_.members:
+        places.append(places[-1] + size(member.type))
+    return tuple(places[:-1])
+
+
+@lru_cache(_REMEMBERED)
+def row_of(type_: Array) -> Type:
+    """What is left of an array when its first dimension has an index."""
+    return Array(type_.element, type_.sizes[1:]) if len(type_.sizes) > 1 else type_.element
+
+
+def _step(type_: Structure | Array, offset: int) -> tuple[str | int, Type, int]:
+    """The direct part that has a cell: its name or index, its type, and the offset within it."""
+    if isinstance(type_, Array):
+        row = row_of(type_)
+        index, left = divmod(offset, size(row))
+        return index + 1, row, left
+    place = bisect_right(_places(type_), offset) - 1
+    member = type_.members[place]
+    return member.name.upper(), member.type, offset - _places(type_)[place]
+
+
+def kind_at(type_: Type, offset: int) -> Plain:
+    """The type of a cell; ``offset`` is less than the size."""
+    while isinstance(type_, Structure | Array):
+        _, type_, offset = _step(type_, offset)
+    assert isinstance(type_, Plain), "what has a size is made of scalars"
+    return type_
+
+
+def path_to(type_: Type, offset: int, wanted: Type | None = None) -> Path | None:
+    """The names and indices that lead to a part; ``None`` where there is no such part.
+
+    ``wanted`` is the type of the part, by default that of the cell. A row of an array is a part.
+    """
+    if not 0 <= offset < size(type_):
+        return None
+    path: list[str | int] = []
+    while type_ != wanted or offset:
+        if not isinstance(type_, Structure | Array):
+            return tuple(path) if wanted is None else None
+        step, type_, offset = _step(type_, offset)
+        path.append(step)
+    return tuple(path)
+
+
+def array_at(type_: Type, offset: int, element: Type, dimensions: int) -> Array | None:
+    """The array of so many dimensions, or the rest of one, that begins there."""
+    while isinstance(type_, Structure | Array):
+        if isinstance(type_, Array) and (type_.element, len(type_.sizes), offset) == (
+            *(element, dimensions, 0),
+        ):
+            return type_
+        _, type_, offset = _step(type_, offset)
+    return None
+
+
+def offset_of(type_: Type, path: Sequence[str | int]) -> tuple[int, Type] | None:
+    """Where a part is, and its type: the other way round from `path_to`."""
+    offset = 0
+    for step in path:
+        match type_, step:
+            case Structure(), str():
+                names = [member.name.upper() for member in type_.members]
+                if step.upper() not in names:
+                    return None
+                place = names.index(step.upper())
+                offset += _places(type_)[place]
+                type_ = type_.members[place].type
+            case Array(), int() if 1 <= step <= array_sizes(type_)[0]:
+                type_ = row_of(type_)
+                offset += (step - 1) * size(type_)
+            case _:
+                return None
+    return offset, type_
+
+
+@lru_cache(_REMEMBERED)
+def shared_cells(to: Type, of: Type) -> int | None:
+    """How many cells two positions of one family have in common, which are the first of both.
+
+    ``None`` where they are no such positions.
+    """
+    families = {_family(to), _family(of)}
+    if len(families) != 1 or None in families:
+        return None
+    count = min(size(to), size(of))
+    alike = all(kind_at(to, place) == kind_at(of, place) for place in range(count))
+    return count if alike else None
+
+
+def _family(type_: Type) -> bool | None:
+    if is_cartesian(type_):
+        return True
+    return False if is_axes(type_) else None
+
+
+# ------------------------------------------------------------------------------------ values
+
+
+@lru_cache(_REMEMBERED)
+def shown(type_: Type) -> Type:
+    """The type as values have it: ``@2`` behind a name tells types apart in programs only."""
+    match type_:
+        case Array():
+            return Array(shown(type_.element), type_.sizes)
+        case Enumeration() if "@" in type_.name:
+            return Enumeration(type_.name.partition("@")[0], type_.constants)
+        case Structure():
+            members = tuple(Member(one.name, shown(one.type)) for one in type_.members)
+            if "@" in type_.name or members != type_.members:
+                return Structure(type_.name.partition("@")[0], members)
+    return type_
+
+
+def value_of(raw: Raw, type_: Plain) -> Value:
+    """What a cell of a type holds, as a value."""
+    if isinstance(type_, Enumeration):
+        kind = shown(type_)
+        assert isinstance(kind, Enumeration), "shown as it is"
+        return EnumValue(kind, int(raw))
+    return chr(int(raw)) if type_ == CHAR else raw
+
+
+def raw_of(value: Value, type_: Plain) -> Raw:
+    """A value of exactly this type, as a cell holds it."""
+    if isinstance(value, EnumValue):
+        return value.index
+    if isinstance(value, str):
+        return ord(value)
+    assert isinstance(value, Raw), f"{value!r} is no value of {type_}"
+    return value
+
+
+def value_at(cells: Sequence[Raw | None], address: int, type_: Type) -> Value | None:
+    """The value that lies in cells; ``None`` only for a scalar without a value."""
+    match type_:
+        case Structure():
+            members = [
+                value_at(cells, address + offset, member.type)
+                for member, offset in zip(type_.members, _places(type_), strict=True)
+            ]
+            return StructureValue(shown(type_), members)  # type: ignore[arg-type]  # a structure
+        case Array(element=element):
+            found = _elements_at(cells, address, type_, element)
+            return ArrayValue(shown(type_), found)  # type: ignore[arg-type]  # an array
+    raw = cells[address]
+    assert isinstance(type_, Plain), "what has a size is made of scalars"
+    return None if raw is None else value_of(raw, type_)
+
+
+def _elements_at(
+    cells: Sequence[Raw | None], address: int, type_: Array, element: Type
+) -> list[Any]:
+    """The elements of an array; those of numbers and letters quickly, as texts are frequent."""
+    count = size(type_)
+    if element == CHAR:
+        letters: Any = cells[address : address + count]
+        return [None if raw is None else chr(raw) for raw in letters]
+    if isinstance(element, Scalar):
+        return list(cells[address : address + count])
+    places = range(address, address + count, size(element))
+    return [value_at(cells, place, element) for place in places]
+
+
+def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
+    """A value as cells of a type, converted as an assignment does it.
+
+    Raises `interp.values.faults.Fault` where that cannot be.
+    """
+    if value is None:
+        return [None] * size(type_)
+    if isinstance(value, str) and isinstance(type_, Array) and type_.element == CHAR:
+        length = size(type_)
+        if len(type_.sizes) == 1:  # else it cannot be
+            given: list[Raw | None] = [ord(letter) for letter in value[:length]]
+            return given + [None] * (length - len(given))
+    return _flattened(converted(value, shown(type_)), type_)
+
+
+def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:
+    match value:
+        case None:
+            return [None] * size(type_)
+        case StructureValue():
+            pairs = zip(value.members, value.type.members, strict=True)
+            return [raw for part, member in pairs for raw in _flattened(part, member.type)]
+        case ArrayValue():
+            return [raw for part in value for raw in _flattened(part, value.type.element)]
+    assert isinstance(type_, Plain), "what is no structure and no array is a scalar"
+    return [raw_of(value, type_)]
+
+
+# ------------------------------------------------------------------------------------- words
+
+
+def word_of(raw: Raw) -> int:
+    """What a cell holds, as a word of an image."""
+    return bits_of(raw) if isinstance(raw, float) else int(raw)
+
+
+def raw_of_word(word: int, type_: Plain) -> Raw:
+    """The other way round from `word_of`; the word is one of that type."""
+    if type_ == REAL:
+        return real_of(word)
+    return bool(word) if type_ == BOOL else word
+
+
+def is_word_of(word: int, type_: Plain) -> bool:
+    """Whether a word stands for a value of that type."""
+    if isinstance(type_, Enumeration):
+        return 0 <= word < len(type_.constants)
+    if type_ == REAL:
+        return math.isfinite(real_of(word))
+    low, high = _RANGES[type_]
+    return low <= word <= high
+
+
+_RANGES = {INT: (INT_MIN, INT_MAX), BOOL: (0, 1), CHAR: (0, 255)}

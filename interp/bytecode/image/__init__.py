@@ -1,0 +1,1 @@
+"""Bytecode as bytes: layout, reader, writer."""

@@ -1,0 +1,1 @@
+"""Images checked before they run: stack effects, types, well-formedness."""

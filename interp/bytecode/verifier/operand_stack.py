@@ -1,0 +1,73 @@
+"""What lies on the stack of operands at each instruction, worked out without running it.
+
+Each instruction takes values of certain kinds from the stack and leaves others. Where ways meet the
+stack must hold the same. From that follow the largest stack, and that nothing is ever taken from an
+empty one or taken for what it is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from interp.bytecode.program import Code, Program
+from interp.bytecode.verifier.stack_effects import StackEffects, at_target
+from interp.bytecode.verifier.stack_types import Refused, Stack
+from interp.bytecode.verifier.successors import ENDS, targets
+from interp.bytecode.verifier.wellformed import VerificationError
+
+__all__ = ["Flow"]
+
+
+class Flow:
+    """The stacks of one code object of a well-formed program. ``Flow(…).stacks()`` finds them."""
+
+    def __init__(self, program: Program, code: Code) -> None:
+        self._code = code
+        self._effects = StackEffects(program, code)
+
+    def stacks(self) -> list[Stack | None]:
+        """The stack before each instruction, ``None`` where none leads to it.
+
+        Raises `VerificationError`.
+        """
+        instructions = self._code.instructions
+        found: list[Stack | None] = [None] * len(instructions)
+        found[0] = ()
+        todo = [0]
+        while todo:
+            place = todo.pop()
+            before = found[place]
+            assert before is not None, "only what is reached is looked at"
+            for after, stack in self._after(place, before):
+                if after >= len(instructions):
+                    raise self._error(place, "the code object ends without RETURN")
+                if found[after] is None:
+                    found[after] = stack
+                    todo.append(after)
+                elif found[after] != stack:
+                    raise self._error(
+                        place, f"the stack differs from that of another way to {after}"
+                    )
+        return found
+
+    def largest(self, stacks: Sequence[Stack | None]) -> int:
+        """The most cells that the stack ever has."""
+        return max(
+            (sum(held.cells for held in stack) for stack in stacks if stack is not None), default=0
+        )
+
+    def _after(self, place: int, before: Stack) -> Iterator[tuple[int, Stack]]:
+        """Where an instruction can go on, and the stack there."""
+        instruction = self._code.instructions[place]
+        try:
+            stack = self._effects.after(instruction, before)
+        except Refused as refused:
+            raise self._error(place, str(refused)) from None
+        for target in targets(instruction):
+            yield target, at_target(instruction.op, stack)
+        if instruction.op not in ENDS:
+            yield place + 1, stack
+
+    def _error(self, place: int, reason: str) -> VerificationError:
+        op = self._code.instructions[place].op
+        return VerificationError(f"{self._code.name}, instruction {place} ({op.name}): {reason}")

@@ -1,0 +1,29 @@
+"""Where instructions lead: the edges of the control flow of a code object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.instruction_set import shape
+from interp.bytecode.program import Instruction
+
+__all__ = ["ENDS", "successors", "targets"]
+
+#: What nothing follows.
+ENDS = frozenset({Op.JUMP, Op.RETURN, Op.RETURN_VALUE, Op.FAIL, Op.UNLINKED})
+
+
+def targets(instruction: Instruction) -> Iterator[int]:
+    """The instructions that an instruction may go on at, besides the next one."""
+    kinds = shape(instruction.op.name).operands
+    for kind, operand in zip(kinds, instruction.operands, strict=True):
+        if kind == "target":
+            yield operand
+
+
+def successors(place: int, instruction: Instruction) -> Iterator[int]:
+    """The instructions that may come after the one at this place."""
+    yield from targets(instruction)
+    if instruction.op not in ENDS:
+        yield place + 1

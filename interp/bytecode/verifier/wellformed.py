@@ -1,0 +1,323 @@
+"""Whether a program is well formed: every number names something, every constant is of its kind.
+
+That is all that `interp.bytecode.verifier.verify` asks of types, texts, data, entries, the heads of
+code objects and the operands of instructions, each by itself; what instructions do to the stack is
+the affair of `interp.bytecode.verifier.operand_stack`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from grammar.semantics.types import (
+    BOOL,
+    INT_MAX,
+    INT_MIN,
+    SCALARS,
+    Array,
+    Enumeration,
+    Structure,
+    Type,
+)
+from interp.bytecode.assembly.syntax import printable
+from interp.bytecode.cell_layout import Plain, is_word_of, kind_at, path_to, real_of, size
+from interp.bytecode.instruction_set import MAX_CELLS, OPERAND_KINDS, shape
+from interp.bytecode.program import (
+    BASIC_TYPES,
+    Argument,
+    Changed,
+    Choice,
+    Code,
+    CodeKind,
+    Constant,
+    Handle,
+    Input,
+    Items,
+    Mode,
+    Parameter,
+    Program,
+    Record,
+)
+from interp.bytecode.vm.request_marshalling import misfit, unlike
+from interp.values.faults import FAULTS, LinkError
+from interp.values.values import single
+
+__all__ = ["VerificationError", "check_form"]
+
+_MOST_DIMENSIONS = 3
+#: Types, and parts of requests, lie at most so deep in one another.
+_DEEPEST = 64
+
+
+class VerificationError(Exception):
+    """A program does not keep the rules; the message says where and why, on one line."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(message))
+
+
+def check_form(program: Program) -> None:
+    """Check all of a program but what its instructions do; raises `VerificationError`."""
+    _Tables(program).check()
+
+
+class _Tables:
+    """Checks one program."""
+
+    def __init__(self, program: Program) -> None:
+        self._program = program
+
+    def check(self) -> None:
+        """Raises `VerificationError`."""
+        self._types()
+        for text in self._program.texts:
+            if any(ord(letter) > 255 for letter in text):
+                raise VerificationError("a text has letters that no CHAR holds")
+        self._data()
+        if not self._program.codes:
+            raise VerificationError("there is no code object")
+        for code in self._program.codes:
+            self._head(code)
+        for ask in self._program.asks:
+            self._entry(ask.request, ask.parts, ask.result, ask.request == "Invoke")
+            reason = misfit(self._program, ask.request, ask.parts)
+            if reason is not None:
+                raise VerificationError(f"request {ask.request}: {reason}")
+            self._result(ask.request, ask.result)
+        for builtin in self._program.builtins:
+            self._entry(builtin.name, builtin.parts, builtin.result, True)
+            reason = unlike(self._program, builtin)
+            if reason is not None:
+                raise VerificationError(f"function {builtin.name}: {reason}")
+        for code in self._program.codes:
+            self._operands(code)
+
+    def _types(self) -> None:
+        types = self._program.types
+        if types[: len(BASIC_TYPES)] != BASIC_TYPES:
+            raise VerificationError("a program begins with the four scalar types")
+        depths: dict[Type, int] = dict.fromkeys(BASIC_TYPES, 0)
+        names = set(SCALARS)
+        for type_ in types[len(BASIC_TYPES) :]:
+            name = type_.name.upper() if isinstance(type_, Structure | Enumeration) else None
+            if name in names or type_ in depths:
+                raise VerificationError(f"{type_} is there twice")
+            if name is not None:
+                names.add(name)
+            parts = list(_parts(type_))
+            if any(part not in depths for part in parts):
+                raise VerificationError(f"{type_} is made of types that do not come before it")
+            depths[type_] = 1 + max((depths[part] for part in parts), default=0)
+            if depths[type_] > _DEEPEST:
+                raise VerificationError(f"{type_} lies too deep")
+            try:
+                size(type_)
+            except LinkError as error:
+                raise VerificationError(str(error)) from None
+
+    def _data(self) -> None:
+        program = self._program
+        for variable in program.data:
+            self._type(variable.type, f"{variable.module}.{variable.name}")
+        if sum(size(program.types[variable.type]) for variable in program.data) > MAX_CELLS:
+            raise VerificationError(f"the data lists have more than {MAX_CELLS:,} cells")
+        last = -1
+        for address, word in program.initial:
+            number = program.data_at(address)
+            if number is None or address <= last:
+                raise VerificationError("initial values are in the order of their cells")
+            last = address
+            variable = program.data[number]
+            kind = kind_at(program.types[variable.type], address - program.addresses[number])
+            if not is_word_of(word, kind):
+                raise VerificationError(f"an initial value of {variable.name} is no {kind}")
+
+    def _type(self, number: int | None, where: str) -> Type:
+        if number is None or not 0 <= number < len(self._program.types):
+            raise VerificationError(f"{where}: there is no such type")
+        return self._program.types[number]
+
+    # --------------------------------------------------------------------------- requests
+
+    def _entry(
+        self, name: str, parts: Sequence[Argument], result: int | None, may_change: bool
+    ) -> None:
+        for part in _all_parts(parts, 0):
+            match part:
+                case Input():
+                    self._input(part, name)
+                case Changed() if part.given.mode is Mode.IN or not may_change:
+                    raise VerificationError(f"{name} cannot change that")
+                case Choice():
+                    self._choice(part, name)
+                case Constant():
+                    self._constant(part, name)
+                case Record() if not 0 <= part.line <= INT_MAX:
+                    raise VerificationError(f"{name}: there is no such line")
+                case Handle() if not 0 <= part.code < len(self._program.codes):
+                    raise VerificationError(f"{name}: there is no such code object")
+        if result is not None:
+            self._type(result, name)
+
+    def _input(self, part: Input, name: str) -> None:
+        self._handed_over(part, name)
+        if part.mode is Mode.IN and not isinstance(self._program.types[part.type], Plain):
+            raise VerificationError(f"{name}: a structure is handed over by reference")
+
+    def _choice(self, part: Choice, name: str) -> None:
+        type_ = self._type(part.type, name)
+        if not isinstance(type_, Enumeration) or not 0 <= part.place < len(type_.constants):
+            raise VerificationError(f"{name}: there is no such constant")
+
+    def _constant(self, part: Constant, name: str) -> None:
+        value = part.value
+        if isinstance(value, float):
+            if not math.isfinite(value) or single(value) != value:
+                raise VerificationError(f"{name}: {value} is no REAL")
+        elif isinstance(value, int) and not INT_MIN <= value <= INT_MAX:
+            raise VerificationError(f"{name}: {value} is no INT")
+
+    def _result(self, request: str, result: int | None) -> None:
+        if (result is not None) != (request == "Read") and request != "Invoke":
+            raise VerificationError(f"{request}: a value is read, and only that")
+
+    # -------------------------------------------------------------------------------- code
+
+    def _handed_over(self, given: Input | Parameter, where: str) -> None:
+        type_ = self._type(given.type, where)
+        if given.mode is Mode.VIEW:
+            if isinstance(type_, Array) or not 1 <= given.dimensions <= _MOST_DIMENSIONS:
+                raise VerificationError(f"{where}: a view has 1 to {_MOST_DIMENSIONS} dimensions")
+        elif given.dimensions:
+            raise VerificationError(f"{where}: only a view has dimensions")
+
+    def _head(self, code: Code) -> None:
+        program = self._program
+        for parameter in code.parameters:
+            self._handed_over(parameter, f"{code.name}, {parameter.name}")
+        for local in code.locals:
+            self._type(local.type, f"{code.name}, {local.name}")
+        if code.result is not None and not isinstance(self._type(code.result, code.name), Plain):
+            raise VerificationError(f"{code.name}: a result has one cell")
+        if program.addresses[-1] + program.frame_size(code) > MAX_CELLS:
+            raise VerificationError(
+                f"{code.name}: data lists and a frame have more than {MAX_CELLS:,} cells"
+            )
+        if not code.instructions:
+            raise VerificationError(f"{code.name}: there are no instructions")
+        if not 0 <= code.line <= INT_MAX:
+            raise VerificationError(f"{code.name}: there is no such line")
+        self._ownership(code)
+
+    def _ownership(self, code: Code) -> None:
+        if code.kind is CodeKind.ROUTINE:
+            if code.owner is not None or code.captures:
+                raise VerificationError(f"{code.name}: a routine belongs to nothing")
+            return
+        codes = self._program.codes
+        if code.owner is None or not 0 <= code.owner < len(codes):
+            raise VerificationError(f"{code.name}: there is no owner")
+        owner = codes[code.owner]
+        if owner.kind is not CodeKind.ROUTINE:
+            raise VerificationError(f"{code.name}: the owner is no routine")
+        if code.kind is CodeKind.CONDITION and (
+            code.result is None or self._program.types[code.result] != BOOL
+        ):
+            raise VerificationError(f"{code.name}: a condition gives a BOOL")
+        if code.kind is CodeKind.ACTION and code.result is not None:
+            raise VerificationError(f"{code.name}: an action gives nothing")
+        if len(code.captures) != len(code.parameters):
+            raise VerificationError(f"{code.name}: each parameter is a variable of the owner")
+        for parameter, place in zip(code.parameters, code.captures, strict=True):
+            if not self._can_capture(owner, parameter, place):
+                raise VerificationError(f"{code.name}: the owner has no {parameter.name} there")
+
+    def _can_capture(self, owner: Code, wanted: Parameter, place: int) -> bool:
+        for slot in self._program.slots(owner):
+            if not slot.offset <= place < slot.offset + slot.cells:
+                continue
+            found = slot.variable
+            if isinstance(found, Parameter) and found.mode is not Mode.IN:
+                return place == slot.offset and (found.mode, found.type, found.dimensions) == (
+                    *(wanted.mode, wanted.type, wanted.dimensions),
+                )
+            types = self._program.types
+            path = path_to(types[found.type], place - slot.offset, types[wanted.type])
+            return wanted.mode is Mode.REF and path is not None
+        return False
+
+    def _operands(self, code: Code) -> None:
+        ranges = self._ranges(code)
+        for place, instruction in enumerate(code.instructions):
+            kinds = shape(instruction.op.name).operands
+            if len(kinds) != len(instruction.operands):
+                raise VerificationError(f"{code.name}, instruction {place}: operands are missing")
+            for kind, operand in zip(kinds, instruction.operands, strict=True):
+                low, high = ranges[kind]
+                if not low <= operand <= high or (
+                    kind == "real" and not math.isfinite(real_of(operand))
+                ):
+                    raise VerificationError(
+                        f"{code.name}, instruction {place} ({instruction.op.name}): "
+                        f"{operand} is no {kind}"
+                    )
+
+    def _ranges(self, code: Code) -> dict[str, tuple[int, int]]:
+        """The least and the largest operand of each kind."""
+        program = self._program
+        lengths = {
+            "target": len(code.instructions),
+            "local": program.frame_size(code),
+            "data": program.addresses[-1],
+            "type": len(program.types),
+            "text": len(program.texts),
+            "code": len(program.codes),
+            "ask": len(program.asks),
+            "builtin": len(program.builtins),
+            "fault": len(FAULTS),
+            "bool": 2,
+            "char": 256,
+        }
+        lowest = {"count": 0, "line": 1}
+        return {
+            kind: (0, lengths[kind] - 1)
+            if kind in lengths
+            else (lowest.get(kind, INT_MIN), INT_MAX)
+            for kind in OPERAND_KINDS
+        }
+
+
+def _parts(type_: Type) -> Iterator[Type]:
+    """The types that a type is made of; names are told apart in upper case."""
+    match type_:
+        case Structure():
+            _distinct(type_, [member.name for member in type_.members])
+            yield from (member.type for member in type_.members)
+        case Enumeration():
+            _distinct(type_, type_.constants)
+        case Array():
+            yield type_.element
+            if not 1 <= len(type_.sizes) <= _MOST_DIMENSIONS:
+                raise VerificationError("an array has 1 to 3 dimensions")
+        case _:
+            raise VerificationError(f"no variable can be of {type_}")
+
+
+def _distinct(type_: Type, names: Sequence[str]) -> None:
+    if not names or len({name.upper() for name in names}) != len(names):
+        raise VerificationError(f"{type_} has no parts, or two of the same name")
+
+
+def _all_parts(parts: Sequence[Argument], depth: int) -> Iterator[Argument]:
+    for part in parts:
+        yield part
+        inner: Sequence[Argument] = ()
+        if isinstance(part, Items | Record):
+            inner = part.parts
+        elif isinstance(part, Changed):
+            inner = (part.given, *([part.path] if part.path else []))
+        if inner:
+            if depth == _DEEPEST:
+                raise VerificationError("parts of a request lie too deep")
+            yield from _all_parts(inner, depth + 1)

@@ -1,0 +1,169 @@
+"""Numbers, comparisons, poses: what each of these instructions does.
+
+What `interp.values.operators` has as a primitive is done by its function, but for the most frequent
+ones: these have operations of their own, which give the same.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import cells_of, size, value_at
+from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.state import Operation
+from interp.values.faults import fault
+from interp.values.frames import composed
+from interp.values.operators import PRIMITIVES, Primitive
+from interp.values.values import StructureValue, single
+
+__all__ = ["Computing"]
+
+
+class Computing:
+    """Makes the operations that compute."""
+
+    def __init__(self, kit: Kit) -> None:
+        self._types = kit.program.types
+        self._cells = kit.state.cells
+        self._stack = kit.state.stack
+
+    def rules(self) -> Mapping[Op, Rule]:
+        """The makers of operations by opcode."""
+        rules: dict[Op, Rule] = {
+            Op[name.upper()]: partial(self._primitive, primitive)
+            for name, primitive in PRIMITIVES.items()
+        }
+        for name, compare in _COMPARISONS.items():
+            rules[Op[f"UNLESS_{name}"]] = partial(self._unless, compare)
+        for sign, compute in (("ADD", operator.add), ("SUB", operator.sub), ("MUL", operator.mul)):
+            rules[Op[f"{sign}_INT"]] = partial(self._whole, compute)
+            rules[Op[f"{sign}_REAL"]] = partial(self._single, compute)
+        return {
+            **rules,
+            Op.ADD_INT: self._add_int,
+            Op.ADD_CONSTANT: self._add_constant,
+            Op.CHAR_TO_INT: lambda here: here.after,  # a cell holds the code
+            Op.INT_TO_CHAR: self._int_to_char,
+            Op.COMPOSE: self._compose,
+        }
+
+    def _primitive(self, primitive: Primitive, here: Here) -> Operation:
+        compute, stack, after = primitive.function, self._stack, here.after
+        if len(primitive.operands) == 1:
+
+            def of_one() -> Operation:
+                stack[-1] = compute(stack[-1])
+                return after
+
+            return of_one
+
+        def of_two() -> Operation:
+            right = stack.pop()
+            stack[-1] = compute(stack[-1], right)
+            return after
+
+        return of_two
+
+    def _unless(self, compare: Callable[[Any, Any], bool], here: Here, target: int) -> Operation:
+        pop, after, body = self._stack.pop, here.after, here.body
+
+        def operation() -> Operation:
+            right = pop()
+            return after if compare(pop(), right) else body[target]
+
+        return operation
+
+    def _whole(self, compute: Callable[[int, int], int], here: Here) -> Operation:
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            right = stack.pop()
+            result = compute(stack[-1], right)
+            if not -0x80000000 <= result <= 0x7FFFFFFF:
+                raise fault("overflow")
+            stack[-1] = result
+            return after
+
+        return operation
+
+    def _single(self, compute: Callable[[float, float], float], here: Here) -> Operation:
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            right = stack.pop()
+            stack[-1] = single(compute(stack[-1], right))
+            return after
+
+        return operation
+
+    def _add_int(self, here: Here) -> Operation:
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            right = stack.pop()
+            result = stack[-1] + right
+            if not -0x80000000 <= result <= 0x7FFFFFFF:
+                raise fault("overflow")
+            stack[-1] = result
+            return after
+
+        return operation
+
+    def _add_constant(self, here: Here, constant: int) -> Operation:
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            result = stack[-1] + constant
+            if not -0x80000000 <= result <= 0x7FFFFFFF:
+                raise fault("overflow")
+            stack[-1] = result
+            return after
+
+        return operation
+
+    def _int_to_char(self, here: Here) -> Operation:
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            if not 0 <= stack[-1] <= 255:
+                raise fault("inadmissible")
+            return after
+
+        return operation
+
+    def _compose(self, here: Here, left: int, right: int) -> Operation:
+        cells, pop, after = self._cells, self._stack.pop, here.after
+        left_type, right_type = self._types[left], self._types[right]
+        width = size(right_type)
+
+        def operation() -> Operation:
+            other = value_at(cells, pop(), right_type)
+            one = value_at(cells, pop(), left_type)
+            assert isinstance(one, StructureValue), "verified"
+            assert isinstance(other, StructureValue), "verified"
+            target = pop()
+            cells[target : target + width] = cells_of(composed(one, other), right_type)
+            return after
+
+        return operation
+
+
+_INT_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "EQ": operator.eq,
+    "NE": operator.ne,
+    "LT": operator.lt,
+    "GT": operator.gt,
+    "LE": operator.le,
+    "GE": operator.ge,
+}
+#: By the names of the instructions that go on elsewhere unless they hold.
+_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
+    f"{name}_{kind}": compare
+    for name, compare in _INT_COMPARISONS.items()
+    for kind in ("INT", "REAL")
+    if f"UNLESS_{name}_{kind}" in Op.__members__
+}

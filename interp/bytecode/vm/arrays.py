@@ -1,0 +1,313 @@
+"""Arrays: what the instructions for elements, rows, views and whole arrays do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from grammar.semantics.types import Array
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import array_sizes, size
+from interp.bytecode.program import Parameter
+from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.data_movement import load
+from interp.bytecode.vm.state import Operation
+from interp.values.faults import fault
+
+__all__ = ["Arrays"]
+
+
+class Arrays:
+    """Makes the operations that work on arrays."""
+
+    def __init__(self, kit: Kit) -> None:
+        self._program = kit.program
+        self._types = kit.program.types
+        self._state = kit.state
+        self._cells = kit.state.cells
+        self._stack = kit.state.stack
+
+    def rules(self) -> Mapping[Op, Rule]:
+        """The makers of operations by opcode."""
+        return {
+            Op.INDEX: self._index,
+            Op.INDEX_LOCAL: self._index_local,
+            Op.INDEX_DATA: self._index_data,
+            Op.INDEX_VIEW: self._index_view,
+            Op.ELEMENT_LOCAL: self._element_local,
+            Op.ELEMENT_DATA: self._element_data,
+            Op.PUSH_NO_VIEW: self._push_no_view,
+            Op.VIEW: self._view,
+            Op.LOAD_VIEW: self._load_view,
+            Op.PASS_VIEW: self._pass_view,
+            Op.ROW: self._row,
+            Op.ROW_VIEW: self._row_view,
+            Op.FILL_ARRAY: self._fill_array,
+            Op.COPY_VIEW: self._copy_view,
+            Op.SET_TEXT: self._set_text,
+        }
+
+    def _index(self, here: Here, number: int) -> Operation:
+        sizes, width = self._array(number)
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            place = _flat(stack, sizes) * width
+            stack[-1] += place
+            return after
+
+        return operation
+
+    def _index_local(self, here: Here, place: int, number: int) -> Operation:
+        sizes, width = self._array(number)
+        state, stack, after = self._state, self._stack, here.after
+        if len(sizes) > 1:
+
+            def general() -> Operation:
+                stack.append(_flat(stack, sizes) * width + state.fp + place)
+                return after
+
+            return general
+        length = sizes[0]
+
+        def operation() -> Operation:
+            index = stack[-1]
+            if not 1 <= index <= length:
+                raise fault("index")
+            stack[-1] = state.fp + place + (index - 1) * width
+            return after
+
+        return operation
+
+    def _index_data(self, here: Here, place: int, number: int) -> Operation:
+        sizes, width = self._array(number)
+        stack, after = self._stack, here.after
+        if len(sizes) > 1:
+
+            def general() -> Operation:
+                stack.append(_flat(stack, sizes) * width + place)
+                return after
+
+            return general
+        length, before = sizes[0], place - width
+
+        def operation() -> Operation:
+            index = stack[-1]
+            if not 1 <= index <= length:
+                raise fault("index")
+            stack[-1] = before + index * width
+            return after
+
+        return operation
+
+    def _element_local(self, here: Here, place: int, number: int) -> Operation:
+        sizes, _ = self._array(number)
+        if len(sizes) > 1:
+            return self._index_local(self._before(here, load(self._state, here)), place, number)
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        length, before = sizes[0], place - 1
+
+        def operation() -> Operation:
+            index = stack[-1]
+            if not 1 <= index <= length:
+                raise fault("index")
+            raw = cells[state.fp + before + index]
+            if raw is None:
+                raise fault("uninitialised")
+            stack[-1] = raw
+            return after
+
+        return operation
+
+    def _element_data(self, here: Here, place: int, number: int) -> Operation:
+        sizes, _ = self._array(number)
+        if len(sizes) > 1:
+            return self._index_data(self._before(here, load(self._state, here)), place, number)
+        cells, stack, after = self._cells, self._stack, here.after
+        length, before = sizes[0], place - 1
+
+        def operation() -> Operation:
+            index = stack[-1]
+            if not 1 <= index <= length:
+                raise fault("index")
+            raw = cells[before + index]
+            if raw is None:
+                raise fault("uninitialised")
+            stack[-1] = raw
+            return after
+
+        return operation
+
+    def _before(self, here: Here, after: Operation) -> Here:
+        """The place before an operation that the same instruction consists of."""
+        return Here(here.code, here.place, here.body, after)
+
+    def _index_view(self, here: Here, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        dimensions, width = self._view_at(here, place)
+
+        def operation() -> Operation:
+            base, *sizes = _view(cells, state.fp + place, dimensions)
+            stack.append(base + _flat(stack, sizes) * width)
+            return after
+
+        return operation
+
+    def _push_no_view(self, here: Here, _type: int, dimensions: int) -> Operation:
+        stack, after = self._stack, here.after
+        nothing = [None, *[0] * dimensions]
+
+        def operation() -> Operation:
+            stack.extend(nothing)
+            return after
+
+        return operation
+
+    def _view(self, here: Here, number: int) -> Operation:
+        sizes, _ = self._array(number)
+        stack, after = self._stack, here.after
+
+        def operation() -> Operation:
+            stack.extend(sizes)
+            return after
+
+        return operation
+
+    def _load_view(self, here: Here, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        dimensions, _ = self._view_at(here, place)
+
+        def operation() -> Operation:
+            stack.extend(_view(cells, state.fp + place, dimensions))
+            return after
+
+        return operation
+
+    def _pass_view(self, here: Here, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        dimensions, _ = self._view_at(here, place)
+
+        def operation() -> Operation:
+            first = state.fp + place
+            view = cells[first : first + 1 + dimensions]
+            if view[1] is None:  # what was left out has sizes
+                raise fault("uninitialised")
+            stack.extend(view)
+            return after
+
+        return operation
+
+    def _row(self, here: Here, number: int, count: int) -> Operation:
+        sizes, width = self._array(number)
+        stack, after = self._stack, here.after
+        given, rest = sizes[:count], sizes[count:]
+        for one in rest:
+            width *= one
+
+        def operation() -> Operation:
+            place = _flat(stack, given) * width
+            stack[-1] += place
+            stack.extend(rest)
+            return after
+
+        return operation
+
+    def _row_view(self, here: Here, place: int, count: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        dimensions, width = self._view_at(here, place)
+
+        def operation() -> Operation:
+            base, *sizes = _view(cells, state.fp + place, dimensions)
+            row = width
+            for one in sizes[count:]:
+                row *= one
+            stack.append(base + _flat(stack, sizes[:count]) * row)
+            stack.extend(sizes[count:])
+            return after
+
+        return operation
+
+    def _fill_array(self, here: Here, number: int, dimensions: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        width = size(self._types[number])
+
+        def operation() -> Operation:
+            source, *given = stack[-1 - dimensions :]
+            target, *sizes = stack[-2 - 2 * dimensions : -1 - dimensions]
+            del stack[-2 - 2 * dimensions :]
+            if dimensions > 1 and given != sizes:
+                raise fault("inadmissible")
+            length, rest = sizes[0] * width, (sizes[0] - given[0]) * width
+            for one in sizes[1:]:
+                length *= one
+            state.last = target
+            found = cells[source : source + (length if dimensions > 1 else length - max(rest, 0))]
+            cells[target : target + length] = found + [None] * (length - len(found))
+            return after
+
+        return operation
+
+    def _copy_view(self, here: Here, place: int, number: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+        type_ = self._types[number]
+        assert isinstance(type_, Array), "verified"
+        width, room = size(type_.element), size(type_)
+        dimensions = len(type_.sizes)
+
+        def operation() -> Operation:
+            source, *sizes = stack[-1 - dimensions :]
+            length = width
+            for one in sizes:
+                length *= one
+            if length > room:
+                raise fault("stack")
+            target = stack[-1 - dimensions] = state.fp + place
+            cells[target : target + length] = cells[source : source + length]
+            return after
+
+        return operation
+
+    def _set_text(self, here: Here, number: int) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+        codes: list[Any] = [ord(letter) for letter in self._program.texts[number]]
+
+        def operation() -> Operation:
+            length = pop()
+            state.last = target = pop()
+            cells[target : target + length] = codes[:length] + [None] * (length - len(codes))
+            return after
+
+        return operation
+
+    def _array(self, number: int) -> tuple[tuple[int, ...], int]:
+        """The sizes of an array type and the cells of an element."""
+        type_ = self._types[number]
+        assert isinstance(type_, Array), "verified"
+        return array_sizes(type_), size(type_.element)
+
+    def _view_at(self, here: Here, place: int) -> tuple[int, int]:
+        """The dimensions of a parameter that is a view, and the cells of an element."""
+        for slot in self._program.slots(self._program.codes[here.code]):
+            if slot.offset == place and isinstance(slot.variable, Parameter):
+                return slot.variable.dimensions, size(self._types[slot.variable.type])
+        raise AssertionError("verified")
+
+
+def _view(cells: list[Any], first: int, dimensions: int) -> list[Any]:
+    """The base and the sizes that a parameter is; faults ``uninitialised`` without them."""
+    view = cells[first : first + 1 + dimensions]
+    if view[0] is None:
+        raise fault("uninitialised")
+    return view
+
+
+def _flat(stack: list[Any], sizes: Sequence[Any]) -> int:
+    """Take the indices of so many dimensions; gives the place of the element. Faults ``index``."""
+    count = len(sizes)
+    place = 0
+    for index, one in zip(stack[-count:], sizes, strict=True):
+        if not 1 <= index <= one:
+            raise fault("index")
+        place = place * one + index - 1
+    del stack[-count:]
+    return place

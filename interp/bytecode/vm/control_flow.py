@@ -1,0 +1,209 @@
+"""Statements, jumps, calls, loops: what each of these instructions does."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import Plain, size
+from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
+from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.state import Operation
+from interp.values.faults import FAULTS, LinkError, fault
+
+__all__ = ["Control"]
+
+
+class Control:
+    """Makes the operations that decide what comes next."""
+
+    def __init__(self, kit: Kit) -> None:
+        self._kit = kit
+        self._program = kit.program
+        self._types = kit.program.types
+        self._state = kit.state
+        self._cells = kit.state.cells
+        self._stack = kit.state.stack
+
+    def rules(self) -> Mapping[Op, Rule]:
+        """The makers of operations by opcode."""
+        hooks = self._kit.hooks
+        return {
+            Op.LINE: lambda here, _line, _to: hooks.line(here.place, here.after),
+            Op.PROCEED: lambda here: hooks.proceed(here.after),
+            Op.ASK: lambda here, number: hooks.ask(number, here.after),
+            Op.BUILTIN: lambda here, number: hooks.builtin(number, here.after),
+            Op.JUMP: _jump,
+            Op.JUMP_IF: self._jump_if,
+            Op.JUMP_UNLESS: self._jump_unless,
+            Op.CASE: self._case,
+            Op.CALL: self._call,
+            Op.RETURN: self._return,
+            Op.RETURN_VALUE: self._return,
+            Op.FAIL: _fail,
+            Op.UNLINKED: self._unlinked,
+            Op.AT: lambda here, _line, _to: hooks.other_line(here.place, here.after),
+            Op.FOR_LOCAL: self._for_local,
+            Op.FOR_DATA: self._for_data,
+        }
+
+    def _jump_if(self, here: Here, target: int) -> Operation:
+        pop, after, body = self._stack.pop, here.after, here.body
+        return lambda: body[target] if pop() else after
+
+    def _jump_unless(self, here: Here, target: int) -> Operation:
+        pop, after, body = self._stack.pop, here.after, here.body
+        return lambda: after if pop() else body[target]
+
+    def _case(self, here: Here, constant: int, target: int) -> Operation:
+        stack, after, body = self._stack, here.after, here.body
+
+        def operation() -> Operation:
+            if stack[-1] != constant:
+                return after
+            stack.pop()
+            return body[target]
+
+        return operation
+
+    def _call(self, here: Here, number: int) -> Operation:
+        state, stack, cells, after = self._state, self._stack, self._cells, here.after
+        calls, entries = state.calls, self._kit.entries
+        callee = self._program.codes[number]
+        own, frame = self._kit.frames[here.code], self._kit.frames[number]
+        count = sum(map(stack_cells, callee.parameters))
+        blank: list[Any] = [None] * (frame - sum(map(self._program.width, callee.parameters)))
+        receive = self._receiver(callee.parameters)
+        hooks = self._kit.hooks
+        is_owner = number in self._kit.owners
+        is_told = hooks.calls_are_told
+
+        def operation() -> Operation:
+            first = state.fp + own
+            if len(calls) >= state.most_calls or first + frame > state.most_cells:
+                raise fault("stack")
+            if is_told:
+                hooks.tell_call(number)
+            if count:
+                arguments = stack[-count:]
+                del stack[-count:]
+                cells[first : first + frame] = (
+                    receive(arguments) if receive else arguments
+                ) + blank
+            else:
+                cells[first : first + frame] = blank
+            calls.append((after, state.code, state.fp, state.base, state.statement, state.serial))
+            state.code = number
+            state.fp = first
+            state.base = len(stack)
+            state.statement = -1
+            if is_owner:
+                state.serials += 1
+                state.serial = state.serials
+            else:
+                state.serial = 0
+            return entries[number]
+
+        return operation
+
+    def _receiver(self, parameters: Sequence[Parameter]) -> Callable[[list[Any]], list[Any]] | None:
+        """What makes cells of arguments; ``None`` where they are those cells already."""
+        cells = self._cells
+        widths = [
+            (stack_cells(parameter), size(self._types[parameter.type]))
+            if parameter.mode is Mode.IN and not isinstance(self._types[parameter.type], Plain)
+            else (stack_cells(parameter), 0)
+            for parameter in parameters
+        ]
+        if not any(copied for _, copied in widths):
+            return None
+
+        def receive(arguments: list[Any]) -> list[Any]:
+            received: list[Any] = []
+            place = 0
+            for count, copied in widths:
+                given = arguments[place : place + count]
+                received += cells[given[0] : given[0] + copied] if copied else given
+                place += count
+            return received
+
+        return receive
+
+    def _return(self, here: Here) -> Operation:
+        state, calls, hooks = self._state, self._state.calls, self._kit.hooks
+        kind = self._program.codes[here.code].kind
+        if kind is CodeKind.ACTION:
+            return hooks.leave_action
+        is_told = hooks.returns_are_told and kind is CodeKind.ROUTINE
+
+        def operation() -> Operation | None:
+            if is_told:
+                hooks.tell_leave()
+            if not calls:
+                return hooks.finish()
+            after, state.code, state.fp, state.base, state.statement, state.serial = calls.pop()
+            return after
+
+        return operation
+
+    def _unlinked(self, _here: Here, number: int) -> Operation:
+        text = self._program.texts[number]
+
+        def operation() -> Operation:
+            raise LinkError(text)
+
+        return operation
+
+    def _for_local(self, here: Here, counter: int, limit: int, step: int, target: int) -> Operation:
+        state, cells, after, body = self._state, self._cells, here.after, here.body
+        goes_on = operator.le if step > 0 else operator.ge
+
+        def operation() -> Operation:
+            fp = state.fp
+            value, last = cells[fp + counter], cells[fp + limit]
+            if value is None or last is None:
+                raise fault("uninitialised")
+            value += step
+            if not -0x80000000 <= value <= 0x7FFFFFFF:
+                raise fault("overflow")
+            cells[fp + counter] = value
+            return body[target] if goes_on(value, last) else after
+
+        return operation
+
+    def _for_data(self, here: Here, counter: int, limit: int, step: int, target: int) -> Operation:
+        state, cells, after, body = self._state, self._cells, here.after, here.body
+        goes_on = operator.le if step > 0 else operator.ge
+
+        def operation() -> Operation:
+            value, last = cells[counter], cells[state.fp + limit]
+            if value is None or last is None:
+                raise fault("uninitialised")
+            value += step
+            if not -0x80000000 <= value <= 0x7FFFFFFF:
+                raise fault("overflow")
+            cells[counter] = value
+            return body[target] if goes_on(value, last) else after
+
+        return operation
+
+
+_SLUGS = {kind.code: slug for slug, kind in FAULTS.items()}
+
+
+def _jump(here: Here, target: int) -> Operation:
+    body = here.body
+    if target > here.place:  # made ready already
+        return body[target]
+    return lambda: body[target]
+
+
+def _fail(_here: Here, code: int) -> Operation:
+    slug = _SLUGS[code]
+
+    def operation() -> Operation:
+        raise fault(slug)
+
+    return operation

@@ -1,0 +1,367 @@
+"""The machine as an executor: the port of `interp.port.executor` on a verified program.
+
+It goes from operation to operation (`interp.bytecode.vm.threaded_code`) until one of them has put a
+request into the state and gives nothing to go on with.
+
+A fault that ON_ERROR_PROCEED takes is noted in ``$ERR.NUMBER`` by a request to write: the number of
+its message, or 1 where it has none. Then the routine goes on behind the statement, as it does
+behind the one that RESUME comes back to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import Raw
+from interp.bytecode.instruction_set import MAX_CELLS
+from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
+from interp.bytecode.verifier.verify import Verified
+from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services
+from interp.bytecode.vm.state import Completion, Operation, State
+from interp.bytecode.vm.statement_budget import Guard
+from interp.bytecode.vm.threaded_code import Threads
+from interp.port.events import Sink
+from interp.port.executor import Reader
+from interp.port.inspection import Seen
+from interp.port.requests import Code, Crash, End, Fail, Request, Value, Write
+from interp.program.load import Limits
+from interp.values.builtins import Randomness
+from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
+
+__all__ = ["Machine"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Open:
+    """What the machine does next: run an operation, or wait for the reply to a request.
+
+    ``is_asked`` tells that the request was handed over since the program was interrupted last.
+    """
+
+    operation: Operation | None = None
+    request: Request | None = None
+    completion: Completion | None = None
+    is_asked: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Entered:
+    """What was interrupted by `Machine.enter`, and how many calls were open then.
+
+    ``final`` is the end of the program where it has ended: the arm may still be on its way.
+    """
+
+    calls: int
+    open: _Open
+    guard: Guard
+    final: Request | None
+
+
+class Machine:
+    """Runs a verified program from a routine without parameters on.
+
+    It is told by its name, or by the number of its code object. ``beside`` is a machine of the same
+    program whose data lists it shares: their cells come first in one list, then the frames of each
+    machine in a range of their own. Raises `LinkError` where the program cannot begin with it.
+    """
+
+    def __init__(
+        self,
+        verified: Verified,
+        routine: str | int,
+        limits: Limits | None = None,
+        sink: Sink | None = None,
+        random: Callable[[], float] | None = None,
+        *,
+        beside: Machine | None = None,
+    ) -> None:
+        program = verified.program
+        self._verified = verified
+        self._limits = limits = limits or Limits()
+        self._random = random or Randomness()
+        self._program = program
+        self._together: list[Machine] = [] if beside is None else beside._together
+        self._state = self._made_state(limits)
+        self._together.append(self)
+        self._services = Services(program, self._state, limits, sink, self._random)
+        self._services.leave_action, self._services.finish = self._leave_action, self._finish
+        self._threads = self._made_ready(program)
+        self._entered: list[_Entered] = []
+        self._final: Request | None = None
+        number = _routine(program, routine.upper() if isinstance(routine, str) else routine)
+        self._begin(number)
+        self._open = _Open(self._threads.entries[number])
+
+    # ----------------------------------------------------------------------- what it is made of
+
+    def _made_state(self, limits: Limits) -> State:
+        """The cells; ``self._together`` are the machines that have the data lists already."""
+        program = self._program
+        count, data = len(self._together), program.addresses[-1]
+        if count == 0:
+            return State(list(program.cells), limits.depth, data, MAX_CELLS)
+        cells = self._together[0]._state.cells
+        first = count * MAX_CELLS
+        cells += [None] * (first - len(cells))
+        return State(cells, limits.depth, first, first + MAX_CELLS - data)
+
+    def _made_ready(self, program: Program) -> Threads:
+        return Threads(program, self._state, self._services)
+
+    def _begin(self, number: int) -> None:
+        """Make the first frame."""
+        state = self._state
+        state.code, first, frame = number, state.fp, self._threads.frames[number]
+        state.cells[first : first + frame] = [None] * frame
+        state.serials = state.serial = 1
+
+    # ----------------------------------------------------------------------- the port
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is; 0 in the routine it began with."""
+        return self._services.depth
+
+    def data(self) -> list[Raw | None]:
+        """What the cells of the data lists hold now."""
+        return self._state.cells[: self._program.addresses[-1]]
+
+    def advance(self, reply: Value | Fault | None = None) -> Request:
+        """Compute until the world is needed; see `interp.port.executor.Executor`."""
+        if self._final is not None:
+            return self._final
+        now, state = self._open, self._state
+        if now.request is not None and not now.is_asked:
+            self._open = _Open(None, now.request, now.completion, is_asked=True)
+            return now.request
+        state.request = state.completion = None
+        try:
+            self._run(now.operation if now.completion is None else _given(now.completion, reply))
+        except Exception as error:  # a defect of ours, which is told as one
+            state.completion = None
+            state.request = Crash(self._services.at(), f"{type(error).__name__}: {error}")
+        request = state.request
+        assert request is not None, "a machine stops for a request"
+        if state.completion is not None:
+            self._open = _Open(None, request, state.completion, is_asked=True)
+        elif isinstance(request, Fail | Crash):
+            self._final = request
+        return request
+
+    def enter(self, code: Code) -> None:
+        """Push an action, which runs before the program goes on.
+
+        It finds no variables where the routine that handed it over has ended.
+        """
+        state, counter, before = self._state, self._services.counter, self._open
+        if before.request is not None:  # it will be asked again
+            before = _Open(None, before.request, before.completion)
+        number, serial = self._parts_of(code, CodeKind.ACTION)
+        self._push_frame(number, serial, self._threads.entries[number])
+        self._entered.append(_Entered(len(state.calls), before, counter.guard, self._final))
+        self._final = None
+        self._services.entered += 1
+        state.most_calls += 1
+        counter.guard = Guard.OFF
+        self._open = _Open(self._threads.entries[number])
+
+    def evaluate(self, code: Code, read: Reader) -> Value:
+        """The value of a condition; raises `interp.values.faults.Fault`."""
+        state = self._state
+        number, serial = self._parts_of(code, CodeKind.CONDITION)
+        height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
+        operation: Operation | None = self._threads.entries[number]
+        self._push_frame(number, serial, lambda: None)
+        self._services.counter.guard = Guard.OFF  # it holds for a statement, and this is none
+        state.reader = read
+        state.most_calls += 1
+        self._services.entered += 1
+        try:
+            while operation is not None:
+                operation = operation()
+            return bool(state.stack[-1])
+        except Fault:
+            if self._services.counter.guard is Guard.NOW:  # it would be noted, which is to write
+                raise LinkError(NOT_IN_CONDITIONS) from None
+            raise
+        finally:
+            state.reader = None
+            self._services.counter.guard = guard
+            state.most_calls -= 1
+            self._services.entered -= 1
+            del state.stack[height:]
+            while len(state.calls) > calls:
+                self._pop_frame()
+
+    def companion(self, routine: str, sink: Sink | None = None) -> Machine:
+        """Another machine over the same data lists; see `interp.port.executor.Executor`."""
+        return type(self)(
+            self._verified, routine, self._limits, sink, self._random, beside=self._together[0]
+        )
+
+    def unwind(self, depth: int) -> None:
+        """Leave all routines deeper than ``depth``, and what was entered there [INT-10]."""
+        while self.depth > depth or self._is_in_action():
+            self._leave_frame()
+        self._services.counter.guard = Guard.OFF
+        self._open = _Open(self._behind_statement())
+
+    def look(self, text: str) -> Seen | None:
+        """A variable where the program is; see `interp.port.inspection`."""
+        return self._services.look(text)
+
+    def select(self, line: int) -> None:
+        """Go on at a line of the routine that runs; see `interp.port.inspection`."""
+        state = self._state
+        instructions = self._program.codes[state.code].instructions
+        for place, one in enumerate(instructions):
+            if one.op is Op.LINE and one.operands[0] == line:
+                del state.stack[state.base :]
+                self._services.counter.guard = Guard.OFF
+                self._open = _Open(self._threads.body(state.code)[place])
+                return
+        raise ValueError(f"no statement begins in line {line}")
+
+    # ----------------------------------------------------------------------- running
+
+    def _run(self, operation: Operation | None) -> None:
+        """Go from operation to operation until one stops for a request."""
+        try:
+            while operation is not None:
+                operation = operation()
+        except RuntimeFailure as error:
+            self._failed(error)
+
+    def _failed(self, error: RuntimeFailure) -> None:
+        """The program ends, or the fault is noted where ON_ERROR_PROCEED holds."""
+        state, services = self._state, self._services
+        if (
+            services.counter.guard is not Guard.NOW
+            or not isinstance(error, Fault)
+            or (error.slug == "no_result" and state.statement >= 0)  # behind the last statement
+        ):
+            state.request, state.completion = Fail(services.at(), error), None
+            return
+        services.counter.guard = Guard.OFF
+        while state.statement < 0:  # a routine in which no statement has begun
+            self._leave_frame()
+        state.request = Write(services.at(), ("$ERR", "NUMBER"), error.number or 1)
+        state.completion = lambda _reply: self._behind_statement()
+        services.counter.asked()
+
+    def _behind_statement(self) -> Operation:
+        """The operation behind the statement that began last in the frame that runs."""
+        state = self._state
+        del state.stack[state.base :]
+        _, target = self._program.codes[state.code].instructions[state.statement].operands
+        return self._threads.body(state.code)[target]
+
+    # ----------------------------------------------------------------------- frames
+
+    def _is_in_action(self) -> bool:
+        return bool(self._entered) and self._entered[-1].calls == len(self._state.calls)
+
+    def _pop_frame(self) -> None:
+        state = self._state
+        call = state.calls.pop()
+        _, state.code, state.fp, state.base, state.statement, state.serial = call
+
+    def _leave_frame(self) -> None:
+        """Leave a frame that is not to go on, and forget what it had interrupted."""
+        if self._is_in_action():
+            self._forget_entered()
+        self._pop_frame()
+
+    def _forget_entered(self) -> _Entered:
+        self._services.entered -= 1
+        self._state.most_calls -= 1
+        return self._entered.pop()
+
+    def _leave_action(self) -> None:
+        """An action has ended: what it had interrupted goes on, or is asked again."""
+        self._state.request = End(self._services.at())
+        self._pop_frame()
+        entered = self._forget_entered()
+        self._services.counter.guard = entered.guard
+        self._open, self._final = entered.open, entered.final
+
+    def _finish(self) -> None:
+        """The routine that the program began with has ended."""
+        self._state.request = self._final = End(self._services.at())
+
+    def _parts_of(self, code: Code, kind: CodeKind) -> tuple[int, int]:
+        """The number of the code object, and the serial of the frame it was handed out in."""
+        serial, number = divmod(code.number, len(self._program.codes))
+        if self._program.codes[number].kind is not kind:
+            raise ValueError(f"{code} is no {kind.value}")
+        return number, serial
+
+    def _push_frame(self, number: int, serial: int, after: Operation) -> None:
+        """Make a frame for an action or a condition; faults `stack`."""
+        state, frames = self._state, self._threads.frames
+        first = state.fp + frames[state.code]
+        if first + frames[number] > state.most_cells:
+            raise fault("stack")
+        found = self._captures(number, serial)
+        found += [None] * (frames[number] - len(found))
+        state.cells[first : first + frames[number]] = found
+        state.calls.append((after, state.code, state.fp, state.base, state.statement, state.serial))
+        state.code, state.fp, state.base = number, first, len(state.stack)
+        state.statement, state.serial = -1, 0
+
+    def _captures(self, number: int, serial: int) -> list[Any]:
+        """The parameters of an action or condition; none where the owner's frame has gone."""
+        code = self._program.codes[number]
+        owner = self._frame_of(serial) if code.captures else None
+        if owner is None:
+            return []
+        found: list[Any] = []
+        for parameter, place in zip(code.parameters, code.captures, strict=True):
+            found += self._captured(number, parameter, owner, place)
+        return found
+
+    def _captured(self, number: int, parameter: Parameter, owner: int, place: int) -> list[Any]:
+        """The reference or view that a parameter is, from the variable of the owner's frame."""
+        code = self._program.codes[number]
+        assert code.owner is not None, "only what has an owner captures"
+        for slot in self._program.slots(self._program.codes[code.owner]):
+            found = slot.variable
+            is_there = slot.offset == place and isinstance(found, Parameter)
+            if is_there and isinstance(found, Parameter) and found.mode is not Mode.IN:
+                return self._state.cells[owner + place : owner + place + stack_cells(parameter)]
+        return [owner + place]
+
+    def _frame_of(self, serial: int) -> int | None:
+        """The first cell of a frame, ``None`` where its routine has ended."""
+        state = self._state
+        if state.serial == serial:
+            return state.fp
+        for call in reversed(state.calls):
+            if call[5] == serial:
+                return call[2]
+        return None
+
+
+def _given(completion: Completion, reply: Value | Fault | None) -> Operation:
+    """The operation that takes a reply."""
+
+    def operation() -> Operation | None:
+        if isinstance(reply, Fault):
+            raise reply
+        return completion(reply)
+
+    return operation
+
+
+def _routine(program: Program, routine: str | int) -> int:
+    """The number of the first routine of a name; raises `LinkError` where it cannot begin."""
+    for number, code in enumerate(program.codes):
+        if routine not in (number, code.name.upper()) or code.kind is not CodeKind.ROUTINE:
+            continue
+        if code.parameters:
+            raise LinkError(f"{code.name} has parameters, so a program cannot begin with it")
+        return number
+    raise LinkError(f"there is no routine {routine}")

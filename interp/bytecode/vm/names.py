@@ -1,0 +1,175 @@
+"""What variables and their parts are called: for the trace, and for VARSTATE."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePosixPath
+from typing import Any
+
+from grammar.semantics.types import Array, Type
+from interp.bytecode.cell_layout import array_at, offset_of, path_to, shown, value_at
+from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
+from interp.bytecode.vm.state import State
+from interp.port.inspection import Seen
+from interp.port.requests import Path
+from interp.values.values import Value
+
+__all__ = ["Names"]
+
+
+_WRITTEN = re.compile(
+    r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
+    re.IGNORECASE | re.ASCII,
+)
+_STEP = re.compile(r"\w+", re.ASCII)
+
+
+class Names:
+    """Finds out what is called how, and what it has as its value.
+
+    What was assigned is told by its address, so nothing here is certain to be found: a program that
+    tells something else than it has assigned is told nothing.
+    """
+
+    def __init__(self, program: Program, state: State) -> None:
+        self._program = program
+        self._state = state
+        self._slots: dict[int, tuple[Slot, ...]] = {}
+        self._by_name: dict[str, list[int]] = {}
+        for number, variable in enumerate(program.data):
+            self._by_name.setdefault(variable.name.upper(), []).append(number)
+
+    def slots(self, code: int) -> tuple[Slot, ...]:
+        """The parameters and locals of a code object."""
+        if code not in self._slots:
+            self._slots[code] = self._program.slots(self._program.codes[code])
+        return self._slots[code]
+
+    def assigned(
+        self, address: int, type_: Type, dimensions: int = 0
+    ) -> tuple[Path, Value | None] | None:
+        """The path and the value of something in the frame or the data lists.
+
+        With ``dimensions`` it is an array, or the rest of one, of elements of this type.
+        """
+        program, state = self._program, self._state
+        number = program.data_at(address)
+        if number is not None:
+            variable = program.data[number]
+            start, whole = program.addresses[number], program.types[variable.type]
+            return self._part(variable.name, whole, start, address, type_, dimensions)
+        for slot in self.slots(state.code):
+            start = state.fp + slot.offset
+            if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+                continue
+            if start <= address < start + slot.cells:
+                whole = program.types[slot.variable.type]
+                return self._part(slot.variable.name, whole, start, address, type_, dimensions)
+        return None
+
+    def through(
+        self, offset: int, type_: Type, dimensions: int
+    ) -> tuple[Path, Value | None] | None:
+        """The same for what a parameter of the frame leads to, and was written last."""
+        state = self._state
+        for slot in self.slots(state.code):
+            if slot.offset == offset:
+                whole, start = self.referred(slot)
+                if start is None:
+                    return None
+                return self._part(slot.variable.name, whole, start, state.last, type_, dimensions)
+        return None
+
+    def referred(self, slot: Slot) -> tuple[Type, int | None]:
+        """The type of what a parameter is or leads to, and its address, if it leads anywhere."""
+        state, program = self._state, self._program
+        first = state.fp + slot.offset
+        variable = slot.variable
+        type_ = program.types[variable.type]
+        if isinstance(variable, Local) or variable.mode is Mode.IN:
+            return type_, first
+        start = state.cells[first]
+        if variable.mode is Mode.VIEW:
+            sizes: list[Any] = state.cells[first + 1 : first + slot.cells]
+            type_ = Array(type_, tuple(sizes) if start is not None else (None,) * len(sizes))
+        return type_, None if start is None else int(start)
+
+    def find(self, text: str) -> tuple[Type, Value | None] | None:
+        """A variable, or a part of one, by what a program calls it here; ``None`` where it is not.
+
+        An array may have empty brackets. The data of the own module come before those of others.
+        """
+        match = _WRITTEN.fullmatch(text)
+        if match is None:
+            return None
+        root, *steps = [
+            int(step) if step.isdigit() else step for step in _STEP.findall(match[1].upper())
+        ]
+        place = self._variable(str(root))
+        if place is None:
+            return None
+        if place[1] is None:
+            return None if steps else (place[0], None)
+        part = offset_of(place[0], steps)
+        if part is None:
+            return None
+        return shown(part[1]), value_at(self._state.cells, place[1] + part[0], part[1])
+
+    def look(self, text: str) -> Seen | None:
+        """The same with what a debugger wants to know besides; see `interp.port.inspection`."""
+        found = self.find(text)
+        if found is None:
+            return None
+        root = str(_STEP.findall(text.upper())[0])
+        number = None if self._slot(root) else self._number(root)
+        if number is None:
+            return Seen(*found, "")
+        data = self._program.data[number]
+        return Seen(*found, f"{data.module.upper()}.{data.name.upper()}")
+
+    def _variable(self, name: str) -> tuple[Type, int | None] | None:
+        slot = self._slot(name)
+        if slot is not None:
+            return None if self._has_gone(slot) else self.referred(slot)
+        number = self._number(name)
+        if number is None:
+            return None
+        variable = self._program.data[number]
+        return self._program.types[variable.type], self._program.addresses[number]
+
+    def _has_gone(self, slot: Slot) -> bool:
+        """Whether an action is to reach a variable by it whose routine has ended.
+
+        A view that was left out leads nowhere either, but it has sizes.
+        """
+        is_direct = isinstance(slot.variable, Local) or slot.variable.mode is Mode.IN
+        return (
+            not is_direct
+            and self._state.cells[self._state.fp + slot.offset + slot.cells - 1] is None
+        )
+
+    def _slot(self, name: str) -> Slot | None:
+        """The parameter or local of a name."""
+        slots = self.slots(self._state.code)
+        return next((one for one in slots if one.variable.name.upper() == name), None)
+
+    def _number(self, name: str) -> int | None:
+        """The variable of the data lists that a name means here."""
+        module = PurePosixPath(self._program.codes[self._state.code].file).stem.upper()
+        numbers = self._by_name.get(name, ())
+        own = [n for n in numbers if self._program.data[n].module.upper() == module]
+        seen = own or [n for n in numbers if self._program.data[n].is_global]
+        return seen[0] if seen else None
+
+    def _part(
+        self, name: str, whole: Type, start: int, address: int, type_: Type, dimensions: int
+    ) -> tuple[Path, Value | None] | None:
+        if dimensions:
+            array = array_at(whole, address - start, type_, dimensions)
+            if array is None:
+                return None
+            type_ = array
+        path = path_to(whole, address - start, type_)
+        if path is None:
+            return None
+        return (name.upper(), *path), value_at(self._state.cells, address, type_)

@@ -1,0 +1,345 @@
+"""What instructions need of the machine around them: counting, asking, telling."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from grammar.semantics.types import REAL
+from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import shown
+from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
+from interp.bytecode.vm.names import Names
+from interp.bytecode.vm.request_marshalling import Makers
+from interp.bytecode.vm.state import Operation, State
+from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
+from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
+from interp.port import requests
+from interp.port.events import Sink, wanting
+from interp.port.inspection import Seen
+from interp.port.requests import At, MoveEmily, Request, Slice, Value, Write
+from interp.port.requests import Code as HandedOver
+from interp.program.load import Limits
+from interp.values.builtins import FUNCTIONS, Surroundings, call
+from interp.values.faults import BudgetExhausted, LinkError
+from interp.values.values import converted, text_of
+
+__all__ = ["NOT_IN_CONDITIONS", "Services"]
+
+#: Why a condition faults that does more than compute and read.
+NOT_IN_CONDITIONS = "a condition can only compute and read"
+
+_NOWHERE = At("", 0, 0)
+
+
+class Services:
+    """Makes the operations that reach beyond the cells, and knows where the program is.
+
+    ``entered`` tells how many of the open calls were none but interruptions. The machine puts in
+    what ends an action and what ends the program.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        state: State,
+        limits: Limits,
+        sink: Sink | None,
+        random: Callable[[], float],
+    ) -> None:
+        self._program = program
+        self._state = state
+        self._lines, self._assignments = wanting(sink, "line"), wanting(sink, "assign")
+        self._calls, self._returns = wanting(sink, "call"), wanting(sink, "return")
+        self._branches = wanting(sink, "branch")
+        self._names = Names(program, state)
+        self._makers = Makers(program, self._handed_over)
+        self._surroundings = Surroundings(random, self._names.find)
+        self.counter = Counter(state, limits)
+        self.calls_are_told = self._calls is not None
+        self.returns_are_told = self._returns is not None
+        self.entered = 0
+        self.leave_action: Operation = lambda: None
+        self.finish: Operation = lambda: None
+
+    # ----------------------------------------------------------------------- places
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is."""
+        return len(self._state.calls) - self.entered
+
+    def code(self) -> Code:
+        """The code object that runs."""
+        return self._program.codes[self._state.code]
+
+    def at(self) -> At:
+        """Where the program is: the line of the statement that began last."""
+        code, statement = self.code(), self._state.statement
+        line = code.line if statement < 0 else code.instructions[statement].operands[0]
+        return At(code.file, line, self.depth)
+
+    def _handed_over(self, number: int) -> HandedOver:
+        """An action or condition of the code object that runs, in its frame."""
+        captures = self._program.codes[number].captures
+        serial = self._state.serial if captures else 0
+        return HandedOver(number + serial * len(self._program.codes))
+
+    def look(self, text: str) -> Seen | None:
+        """A variable where the program is; see `interp.port.inspection`."""
+        return self._names.look(text)
+
+    # ----------------------------------------------------------------------- statements
+
+    def line(self, place: int, after: Operation) -> Operation:
+        """What `LINE` does at a place of its code object."""
+        state, pause = self._state, self._pause
+        begin = after if self._lines is None else self._told_line(self._lines, after)
+
+        def operation() -> Operation | None:
+            state.statement = place
+            state.left -= 1
+            return begin if state.left else pause(begin)
+
+        return operation
+
+    def _pause(self, begin: Operation) -> Operation | None:
+        """Do what has to be done before a statement begins."""
+        counter, state = self.counter, self._state
+
+        def completion(_reply: object) -> Operation:
+            counter.begin()
+            return begin
+
+        match counter.pause():
+            case Pause.EXHAUSTED:
+                raise BudgetExhausted("the program does not end")
+            case Pause.SLICE if state.reader is None:
+                counter.asked()
+                state.request, state.completion = Slice(self.at()), completion
+                return None
+        return completion(None)
+
+    def other_line(self, place: int, after: Operation) -> Operation:
+        """What `AT` does."""
+        state = self._state
+
+        def operation() -> Operation:
+            state.statement = place
+            return after
+
+        return operation
+
+    def proceed(self, after: Operation) -> Operation:
+        """What `PROCEED` does."""
+
+        def operation() -> Operation:
+            self.counter.guard = Guard.NEXT
+            return after
+
+        return operation
+
+    # ----------------------------------------------------------------------- asking
+
+    def ask(self, number: int, after: Operation) -> Operation:
+        """What `ASK` does. While a condition is evaluated the reader answers."""
+        ask, state = self._program.asks[number], self._state
+        is_invoked = ask.request == "Invoke"
+        arguments = arguments_of(ask.parts) if is_invoked else ()
+        entry = Entry(self._program, state, ask.parts, arguments, ask.result)
+        make = self._makers.parts(ask.parts)
+        make_paths = self._makers.paths(arguments)
+        kind: Any = getattr(requests, ask.request)
+
+        def operation() -> Operation | None:
+            block = entry.take()
+            values, at = entry.values(block), self.at()
+            request: Any = kind(at, *make(values, at))
+            if is_invoked:
+                request = replace(request, paths=make_paths(values, at))
+
+            def completion(reply: Any) -> Operation | None:
+                if is_invoked:
+                    result, new = reply
+                    store = self._stores(entry, block, values, request.arguments, new)
+                    return self._stored(store, entry, block, result, after)
+                entry.put(block, reply)
+                return after
+
+            if state.reader is not None:
+                if ask.request == "StopAdvance":
+                    return after
+                if ask.request != "Read":
+                    raise LinkError(NOT_IN_CONDITIONS)
+                return completion(state.reader(request.path))
+            state.request, state.completion = _finished(request), completion
+            self.counter.asked()
+            return None
+
+        return operation
+
+    def builtin(self, number: int, after: Operation) -> Operation:
+        """What `BUILTIN` does."""
+        builtin, state = self._program.builtins[number], self._state
+        function = FUNCTIONS.get(builtin.name.upper())
+        if function is not None and all(self._is_real(part) for part in builtin.parts):
+            return _computed(function.function, len(builtin.parts), state.stack, after)
+        entry = Entry(self._program, state, builtin.parts, builtin.parts, builtin.result)
+        make, name = self._makers.parts(builtin.parts), builtin.name
+
+        def operation() -> Operation | None:
+            block = entry.take()
+            values = entry.values(block)
+            arguments = make(values, _NOWHERE)
+            reply = call(name, arguments, self._surroundings)
+            store = self._stores(entry, block, values, arguments, reply.arguments)
+            return self._stored(store, entry, block, reply.result, after)
+
+        return operation
+
+    def _is_real(self, part: Argument) -> bool:
+        return (
+            isinstance(part, Input)
+            and part.mode is Mode.IN
+            and self._program.types[part.type] == REAL
+        )
+
+    def _stores(
+        self,
+        entry: Entry,
+        block: Block,
+        values: Sequence[Value | None],
+        before: Sequence[Value | None],
+        after: Sequence[Value | None],
+    ) -> Iterator[Request]:
+        """Store the arguments that have another value than before; those of the world are asked."""
+        for change in entry.changes:
+            value = after[change.argument]
+            if value is None or value is before[change.argument]:
+                continue
+            path = change.changed.path
+            if path is None:
+                entry.store(block, change, value)
+                self._tell_changed(change)
+            else:
+                made = self._makers.path(path, change.first)(values, _NOWHERE)
+                kept = converted(value, shown(entry.type_of(block, change)))
+                yield Write(self.at(), made, kept)
+
+    def _stored(
+        self,
+        stores: Iterator[Request],
+        entry: Entry,
+        block: Block,
+        result: Value | None,
+        after: Operation,
+    ) -> Operation | None:
+        """Go through what is to be stored, and put the result away behind it."""
+        request = next(stores, None)
+        if request is None:
+            entry.put(block, result)
+            return after
+        if self._state.reader is not None:
+            raise LinkError(NOT_IN_CONDITIONS)
+        self._state.request = request
+        self._state.completion = lambda _reply: self._stored(stores, entry, block, result, after)
+        self.counter.asked()
+        return None
+
+    # ----------------------------------------------------------------------- telling
+
+    def _told_line(self, sink: Sink, after: Operation) -> Operation:
+        def operation() -> Operation:
+            sink.line(self.at())
+            return after
+
+        return operation
+
+    def tell(self, instruction: Instruction, after: Operation) -> Operation:
+        """What an instruction for the trace does; nothing where it does not want that kind."""
+        if instruction.op is Op.TELL_BRANCH:
+            branches = self._branches
+            return after if branches is None else self._told_branch(branches, instruction, after)
+        assignments = self._assignments
+        return after if assignments is None else self._told(assignments, instruction, after)
+
+    def _told_branch(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+        way = instruction.operands[0]
+
+        def operation() -> Operation:
+            sink.branch(self.at(), way)
+            return after
+
+        return operation
+
+    def _told(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+        state, names = self._state, self._names
+        op, operands, types = instruction.op, instruction.operands, self._program.types
+
+        def operation() -> Operation:
+            match op:
+                case Op.TELL_LOCAL:
+                    found = names.assigned(state.fp + operands[0], types[operands[1]])
+                case Op.TELL_DATA:
+                    found = names.assigned(operands[0], types[operands[1]])
+                case Op.TELL_REF:
+                    found = names.through(operands[0], types[operands[1]], operands[2])
+                case _:
+                    found = names.assigned(state.last, types[operands[0]], operands[1])
+            if found is not None:
+                sink.assign(self.at(), *found)
+            return after
+
+        return operation
+
+    def _tell_changed(self, change: Change) -> None:
+        """What was written last is an argument that a function has changed."""
+        if self._assignments is None:
+            return
+        given, through = change.changed.given, change.changed.through
+        type_ = self._program.types[given.type]
+        if through is None:
+            found = self._names.assigned(self._state.last, type_, given.dimensions)
+        else:
+            found = self._names.through(through, type_, given.dimensions)
+        if found is not None:
+            self._assignments.assign(self.at(), *found)
+
+    def tell_call(self, code: int) -> None:
+        """A routine is about to be called."""
+        if self._calls is not None:
+            self._calls.call(self.at(), self._program.codes[code].name)
+
+    def tell_leave(self) -> None:
+        """The routine that runs is about to end."""
+        if self._returns is not None:
+            self._returns.leave(self.at(), self.code().name)
+
+
+def _finished(request: Request) -> Request:
+    """The request as it is handed over: texts as texts."""
+    if isinstance(request, MoveEmily):
+        device, action = text_of(request.device), text_of(request.action)
+        return replace(request, device=device, action=action)
+    return request
+
+
+def _computed(
+    compute: Callable[..., float], count: int, stack: list[Any], after: Operation
+) -> Operation:
+    """A function of one or two REAL."""
+    if count == 1:
+
+        def of_one() -> Operation:
+            stack[-1] = compute(stack[-1])
+            return after
+
+        return of_one
+
+    def of_two() -> Operation:
+        right = stack.pop()
+        stack[-1] = compute(stack[-1], right)
+        return after
+
+    return of_two

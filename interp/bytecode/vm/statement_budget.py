@@ -1,0 +1,91 @@
+"""Counting statements: the budget, the slices, and how long ON_ERROR_PROCEED holds.
+
+It is the same for all executors:
+
+- a statement begins with its LINE. Once so many have begun as `interp.program.load.Limits` allow,
+the
+  next one fails with `interp.values.faults.BudgetExhausted`; where as many as a slice has have
+  begun since the last request, `interp.port.requests.Slice` is asked before the next one begins;
+- ON_ERROR_PROCEED holds for the statement that begins next, wherever that is, until another one
+  begins.
+
+A statement costs a subtraction: ``State.left`` tells when there is more to do.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from interp.bytecode.vm.state import State
+from interp.program.load import Limits
+
+__all__ = ["Counter", "Guard", "Pause"]
+
+
+class Guard(Enum):
+    """Whether ON_ERROR_PROCEED holds."""
+
+    OFF = 0
+    NEXT = 1
+    NOW = 2
+
+
+class Pause(Enum):
+    """What is to be done before a statement begins."""
+
+    NOTHING = 0
+    SLICE = 1
+    EXHAUSTED = 2
+
+
+class Counter:
+    """Counts the statements of one machine."""
+
+    def __init__(self, state: State, limits: Limits) -> None:
+        self._state = state
+        self._limits = limits
+        self._guard = Guard.OFF
+        self._begun = 0
+        self._since = 0
+        self._quota = 0
+        self._refill()
+
+    @property
+    def guard(self) -> Guard:
+        """Whether ON_ERROR_PROCEED holds."""
+        return self._guard
+
+    @guard.setter
+    def guard(self, guard: Guard) -> None:
+        self._settle(self._quota - self._state.left)
+        self._guard = guard
+        self._refill()
+
+    def asked(self) -> None:
+        """A request was made: a new slice begins."""
+        self._settle(self._quota - self._state.left)
+        self._since = 0
+        self._refill()
+
+    def pause(self) -> Pause:
+        """What comes before the statement that has used up ``State.left``."""
+        self._settle(self._quota - 1)
+        self._quota = self._state.left  # all of them are settled
+        self._guard = Guard.NOW if self._guard is Guard.NEXT else Guard.OFF
+        if self._begun >= self._limits.statements:
+            return Pause.EXHAUSTED
+        return Pause.SLICE if self._since >= self._limits.per_slice else Pause.NOTHING
+
+    def begin(self) -> None:
+        """The statement begins, after whatever came before it."""
+        self._begun += 1
+        self._since += 1
+        self._refill()
+
+    def _settle(self, begun: int) -> None:
+        self._begun += begun
+        self._since += begun
+
+    def _refill(self) -> None:
+        free = min(self._limits.per_slice - self._since, self._limits.statements - self._begun)
+        self._quota = self._state.left = 1 + (max(free, 0) if self._guard is Guard.OFF else 0)

@@ -1,0 +1,150 @@
+"""Values on their way between cells and the world: inputs and replies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from grammar.semantics.types import Array, Type
+from interp.bytecode.cell_layout import (
+    Plain,
+    Raw,
+    cells_of,
+    raw_of,
+    shown,
+    size,
+    value_at,
+    value_of,
+)
+from interp.bytecode.program import (
+    Argument,
+    Changed,
+    Input,
+    Items,
+    Mode,
+    Program,
+    inputs_of,
+    stack_cells,
+)
+from interp.bytecode.vm.state import State
+from interp.values.values import Value, converted, known
+
+__all__ = ["Block", "Change", "Entry", "arguments_of"]
+
+#: What lay on the stack for an entry, the reference for a large result last.
+Block = Sequence[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """An argument that may change: its place among the arguments, and which input it is.
+
+    ``first`` is the number of the first input of its path.
+    """
+
+    argument: int
+    number: int
+    first: int
+    changed: Changed
+
+
+class Entry:
+    """Takes the inputs of a request or a function from the stack, and puts results away.
+
+    ``arguments`` are those of its parts that the reply may change.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        state: State,
+        parts: Sequence[Argument],
+        arguments: Sequence[Argument],
+        result: int | None,
+    ) -> None:
+        self._state = state
+        self._types = program.types
+        self._inputs = list(inputs_of(tuple(parts)))
+        self._result = None if result is None else program.types[result]
+        self._has_target = result is not None and not isinstance(self._result, Plain)
+        self._places: list[int] = []
+        place = 0
+        for given in self._inputs:
+            self._places.append(place)
+            place += stack_cells(given)
+        self._cells = place + int(self._has_target)
+        self.changes = tuple(_changes(arguments))
+
+    def take(self) -> Block:
+        """Take what lies on the stack."""
+        if self._cells == 0:
+            return ()
+        stack = self._state.stack
+        block = stack[-self._cells :]
+        del stack[-self._cells :]
+        return block
+
+    def values(self, block: Block) -> list[Value | None]:
+        """The inputs as values; a structure without a value in any part is one all the same."""
+        return [
+            self._value(given, block, place)
+            for given, place in zip(self._inputs, self._places, strict=True)
+        ]
+
+    def put(self, block: Block, result: Value | None) -> None:
+        """Store the result. Raises `faults.Fault` where there is none or a wrong one."""
+        if self._result is None:
+            return
+        if self._has_target:
+            self._write(block[-1], self._result, result)
+            return
+        assert isinstance(self._result, Plain), "what has no target has one cell"
+        self._state.stack.append(
+            raw_of(converted(known(result), shown(self._result)), self._result)
+        )
+
+    def store(self, block: Block, change: Change, value: Value) -> None:
+        """Give a changed argument its new value; raises `interp.values.faults.Fault`."""
+        address: int = block[self._places[change.number]]
+        self._write(address, self.type_of(block, change), value)
+        self._state.last = address
+
+    def type_of(self, block: Block, change: Change) -> Type:
+        """The type of a changed argument."""
+        return self._referred(change.changed.given, block, self._places[change.number])
+
+    def _value(self, given: Input, block: Block, place: int) -> Value | None:
+        raw = block[place]
+        if raw is None:  # a text that was left out, see `interp.values.builtins.reads_text`
+            return ""
+        if given.mode is not Mode.IN:
+            return value_at(self._state.cells, raw, self._referred(given, block, place))
+        type_ = self._types[given.type]
+        assert isinstance(type_, Plain), "a structure is handed over by reference"
+        return value_of(raw, type_)
+
+    def _referred(self, given: Input, block: Block, place: int) -> Type:
+        type_ = self._types[given.type]
+        if given.mode is Mode.VIEW:
+            return Array(type_, tuple(block[place + 1 : place + 1 + given.dimensions]))
+        return type_
+
+    def _write(self, address: int, type_: Type, value: Value | None) -> None:
+        found: list[Raw | None] = cells_of(value, type_)
+        self._state.cells[address : address + size(type_)] = found
+
+
+def _changes(arguments: Sequence[Argument]) -> Iterator[Change]:
+    number = 0
+    for place, part in enumerate(arguments):
+        inputs = list(inputs_of((part,)))
+        if isinstance(part, Changed):
+            yield Change(place, number + len(inputs) - 1, number, part)
+        number += len(inputs)
+
+
+def arguments_of(parts: Sequence[Argument]) -> Sequence[Argument]:
+    """The arguments of a routine of the controller, which are the last field of its request."""
+    last = parts[-1]
+    return last.parts if isinstance(last, Items) else ()

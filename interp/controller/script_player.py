@@ -1,0 +1,193 @@
+"""Plays a script: each step is done at its time, or whenever what it waits for happens."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import partial
+from typing import Protocol
+
+from grammar.semantics.types import Array, Enumeration, Structure, Type
+from interp.controller.clock import Agenda, Clock
+from interp.controller.input_script import (
+    Answer,
+    Asked,
+    Assign,
+    At,
+    Becomes,
+    Cause,
+    Halted,
+    Literal,
+    Press,
+    Received,
+    Script,
+    ScriptError,
+    Send,
+    Shown,
+    Step,
+    Word,
+)
+from interp.controller.variables import Variables
+from interp.port.requests import Path, Value
+from interp.values.faults import Fault, LinkError
+from interp.values.values import constant, single
+
+__all__ = ["Player", "Stage"]
+
+
+class Stage(Protocol):
+    """What a script acts on."""
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Something outside gives a variable a value; raises `Fault`."""
+
+    def press(self, button: str, number: int | None) -> None:
+        """The operator presses a button."""
+
+    def choose(self, button: int) -> None:
+        """The operator answers the oldest dialogue."""
+
+    def receive(self, channel: str, text: str) -> None:
+        """A peer sends a text."""
+
+
+class Player:
+    """Plays one script on a stage.
+
+    Raises `ScriptError` for what names no variable, no such index or no such value; all steps are
+    tried for that before anything is played.
+    """
+
+    def __init__(
+        self, script: Script, variables: Variables, clock: Clock, agenda: Agenda, stage: Stage
+    ) -> None:
+        self._variables = variables
+        self._clock = clock
+        self._agenda = agenda
+        self._stage = stage
+        self._steps: dict[Cause, list[Step]] = defaultdict(list)
+        self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
+        self._held: dict[Becomes, bool] = {}
+        self._ahead: list[Step] = []
+        for step in script.steps:
+            self._check(step)
+            if isinstance(step.cause, At):
+                self._coming(step.cause.time + step.delay, step)
+            else:
+                self._steps[step.cause].append(step)
+        for cause in self._steps:
+            if isinstance(cause, Becomes):
+                wanted = self._typed(cause.path, cause.value)
+                self._watched[str(cause.path[0])].append((cause, wanted))
+                self._held[cause] = self._variables.read(cause.path) == wanted
+
+    # ------------------------------------------------------------------------- what happens
+
+    def changed(self, name: str) -> None:
+        """A variable, or an element of it, was given a value."""
+        for cause, wanted in self._watched.get(name, ()):
+            holds = self._variables.read(cause.path) == wanted
+            before, self._held[cause] = self._held[cause], holds
+            if holds and not before:
+                self._happened(cause)
+
+    def halted(self) -> None:
+        """The program halts."""
+        self._happened(Halted())
+
+    def shown(self, number: int) -> None:
+        """A message is shown."""
+        self._happened(Shown(number))
+        self._happened(Shown(None))
+
+    def asked(self) -> None:
+        """A dialogue is shown."""
+        self._happened(Asked())
+
+    def received(self, channel: str, text: str) -> None:
+        """The peer of a channel is sent a text."""
+        self._happened(Received(channel, text))
+        self._happened(Received(channel, None))
+
+    def _happened(self, cause: Cause) -> None:
+        for step in self._steps.get(cause, ()):
+            self._coming(self._clock.now + step.delay, step)
+
+    def _coming(self, time: int, step: Step) -> None:
+        self._ahead.append(step)
+        self._agenda.add(time, partial(self._do, step))
+
+    def awaits(self, button: str) -> bool:
+        """Whether a step that presses a button is still to come, or may come.
+
+        Once the program has halted, another HALT cannot be what causes it.
+        """
+        may_come = [
+            step
+            for cause, steps in self._steps.items()
+            if not isinstance(cause, Halted)
+            for step in steps
+        ]
+        return any(
+            isinstance(action, Press) and action.button == button
+            for step in (*self._ahead, *may_come)
+            for action in step.actions
+        )
+
+    # ------------------------------------------------------------------------- what is done
+
+    def _do(self, step: Step) -> None:
+        self._ahead.remove(step)
+        for action in step.actions:
+            match action:
+                case Assign(path, value):
+                    try:
+                        self._stage.assign(path, self._typed(path, value))
+                    except Fault as fault:
+                        raise ScriptError(f"{step.at}: {fault}") from None
+                case Press(button, number):
+                    self._stage.press(button, number)
+                case Answer(button):
+                    self._stage.choose(button)
+                case Send(channel, text):
+                    self._stage.receive(channel, text)
+
+    def _check(self, step: Step) -> None:
+        pairs = [(one.path, one.value) for one in step.actions if isinstance(one, Assign)]
+        if isinstance(step.cause, Becomes):
+            pairs.append((step.cause.path, step.cause.value))
+        for path, value in pairs:
+            name = str(path[0])
+            if self._variables.entry(name) is None:
+                raise ScriptError(f"{step.at}: there is no system variable {name}")
+            try:
+                self._variables.read(path)
+                self._typed(path, value)
+            except (Fault, LinkError) as error:
+                raise ScriptError(f"{step.at}: {error}") from None
+
+    def _typed(self, path: Path, value: Literal) -> Value:
+        """The value that a literal is for a variable."""
+        if isinstance(value, Word):
+            type_ = self._type(path)
+            if not isinstance(type_, Enumeration):
+                raise LinkError(f"#{value.name} is given to what is no enumeration")
+            return constant(type_, value.name)
+        if isinstance(value, float) or (
+            isinstance(value, int)
+            and not isinstance(value, bool)
+            and isinstance(self._variables.read(path), float)
+        ):
+            return single(float(value))
+        before = self._variables.read(path)
+        if isinstance(before, bool) != isinstance(value, bool):
+            raise LinkError(f"{value!r} is no value for {path[0]}")
+        return value
+
+    def _type(self, path: Path) -> Type:
+        type_ = self._variables.type_of(str(path[0]))
+        for step in path[1:]:
+            if isinstance(type_, Array):
+                type_ = type_.element
+            elif isinstance(type_, Structure) and isinstance(step, str):
+                type_ = type_.member(step) or type_
+        return type_

@@ -1,0 +1,1 @@
+"""What stands between executors and controller: requests, replies, events."""

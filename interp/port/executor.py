@@ -1,0 +1,70 @@
+"""The port between whoever executes a program and whoever owns the world it acts on.
+
+The executor *is* the advance run: it runs ahead of the arm, statement by statement, and hands over
+a request whenever it needs the world (`interp.port.requests`). The controller owns clock, motion
+queue, interrupts, triggers, submit, inputs and outputs and system variables, and decides when the
+executor may go on. Neither knows more of the other than this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from interp.port.events import Sink
+from interp.port.requests import Code, Path, Request, Value
+from interp.values.faults import Fault
+
+__all__ = ["Executor", "Reader"]
+
+#: Reads a system variable at once, for conditions; raises `interp.values.faults.Fault`.
+Reader = Callable[[Path], Value]
+
+
+class Executor(Protocol):
+    """Runs one program."""
+
+    def advance(self, reply: Value | Fault | None = None) -> Request:
+        """Compute until the world is needed.
+
+        ``reply`` answers the request before; a fault as reply is raised in the program at the
+        statement that asked, where ON_ERROR_PROCEED may take it [TYP-13]. After `End` at depth 0
+        and after `Fail` the executor has ended and returns the same request again.
+        """
+        ...
+
+    def enter(self, code: Code) -> None:
+        """Push a routine or action, which runs before the program goes on.
+
+        Allowed between two requests only, and behind the End of the program as well, as long as the
+        arm is on its way. Its end is told by `interp.port.requests.End`, after which the request
+        that was open before is asked again by the next ``advance(None)``.
+        """
+        ...
+
+    def evaluate(self, code: Code, read: Reader) -> Value:
+        """The value of a condition, without side effects and without a request.
+
+        Raises `interp.values.faults.Fault`.
+        """
+        ...
+
+    def unwind(self, depth: int) -> None:
+        """Leave all routines deeper than ``depth``; the program goes on behind the call there.
+
+        [INT-10]
+        """
+        ...
+
+    def companion(self, routine: str, sink: Sink | None = None) -> Executor:
+        """Another executor over the same data lists, as the submit interpreter is [SUB-01].
+
+        It begins with the routine of that name in any file, which has no parameters. Its codes are
+        its own. The two take turns: neither is called while the other computes. Raises `LinkError`.
+        """
+        ...
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is; 0 in the routine it began with."""
+        ...

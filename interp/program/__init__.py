@@ -1,0 +1,1 @@
+"""A checked program as executors see it: files loaded, variables, statements."""

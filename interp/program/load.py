@@ -1,0 +1,243 @@
+"""From files to a program that can run: read, linked, checked.
+
+`load` gives all that an interpreter or a compiler needs to know of a project: its files with their
+trees and what the checker knows of them, its routines by symbol, and what names lead to. An error
+anywhere in the project is a `LinkError`. A routine that no file has is none: it fails when it is
+called [SCO-10].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
+
+from grammar.check.context import placed
+from grammar.check.framework import Checked, check_module, check_project
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import Found, Module, Scope
+from grammar.semantics.symbols import ImportSymbol, Kind, RoutineTable, Symbol
+from grammar.semantics.types import Array, Structure, Type
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+from interp.values.faults import LinkError
+
+__all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
+
+#: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
+#: an interpreter may use Python's own stack for them.
+MOST_BLOCKS = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How much a program may do.
+
+    ``statements`` until it counts as endless, ``per_slice`` until time has to pass, ``depth`` of
+    calls until the stack overflows [SCO-12].
+    """
+
+    statements: int = 10_000_000
+    per_slice: int = 1_000
+    depth: int = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """A file of the program with all that is known of it."""
+
+    module: Module
+    source: Source
+    checked: Checked
+
+    def line(self, node: ast.Node) -> int:
+        """The line that a node begins in."""
+        return self.source.place(node.span[0])[0]
+
+    def found(self, name: ast.Name) -> Found | None:
+        """What a name in this file means, if that is known."""
+        return self.checked.resolution.found(name)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Routine:
+    """A routine that can be called; ``scope`` is what is known inside it."""
+
+    unit: Unit
+    node: ast.Routine
+    table: RoutineTable
+    scope: Scope
+
+    @property
+    def name(self) -> str:
+        """As declared."""
+        return self.node.name.text
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedProgram:
+    """A project, and the file that it begins with; without errors if it ``is_strict``."""
+
+    project: Project
+    main: Unit
+    units: Mapping[Module, Unit]
+    is_strict: bool = True
+
+    @cached_property
+    def routines(self) -> Mapping[Symbol, Routine]:
+        """All routines by the symbols that names lead to."""
+        return {
+            one.table.routine: one for unit in self.units.values() for one in self.routines_of(unit)
+        }
+
+    def routines_of(self, unit: Unit) -> tuple[Routine, ...]:
+        """The routines of a file in their order; none in a data list."""
+        syntax, table = unit.module.syntax, unit.module.table
+        assert syntax is not None, "only what can be read is loaded"
+        assert table is not None, "what can be read has its table"
+        if isinstance(syntax.content, ast.DataList):
+            return ()
+        pairs = zip(syntax.content.routines, table.routines, strict=True)
+        return tuple(
+            Routine(unit, node, inner, self.project.scope(unit.module, inner))
+            for node, inner in pairs
+        )
+
+    def start(self, name: str | None = None) -> Routine:
+        """The routine of a name in the first file, by default its first one.
+
+        One that the first file has not may be the first of another file. Raises `LinkError` where
+        there is none, or where it needs arguments.
+        """
+        others = (self.routines_of(one)[:1] for one in self.units.values() if one is not self.main)
+        found = [
+            one
+            for one in (*self.routines_of(self.main), *chain.from_iterable(others))
+            if name is None or one.node.name.key == name.upper()
+        ]
+        if not found:
+            raise LinkError(f"there is no routine {name or 'in ' + self.main.module.path}")
+        if not self.can_begin(found[0]):
+            has = "parameters" if found[0].node.parameters else "a structure or array as its result"
+            raise LinkError(f"{found[0].name} has {has}, so a program cannot begin with it")
+        return found[0]
+
+    def can_begin(self, routine: Routine) -> bool:
+        """Whether a program can begin with a routine, as there is nobody to give or take values."""
+        result = self.result_of(routine)
+        return not routine.node.parameters and not isinstance(result, Structure | Array)
+
+    def type_of(self, found: Found) -> Type:
+        """The type of a variable, or of what a function gives; `UNKNOWN` where it is not known."""
+        return self.project.types.of(found)
+
+    def result_of(self, routine: Routine) -> Type | None:
+        """The type of what a function gives; ``None`` for a procedure."""
+        if routine.node.result is None:
+            return None
+        return self.type_of(Found(routine.table.routine, self.project.scope(routine.unit.module)))
+
+    def declaration(self, found: Found) -> Found:
+        """What a name means in the end, where it may be the name of an IMPORT [ADV-05].
+
+        Raises `LinkError` where it leads nowhere.
+        """
+        seen: set[Symbol] = set()
+        while found.symbol.kind is Kind.IMPORT:
+            answer = self.project.imported(found)
+            symbol = found.symbol
+            assert isinstance(symbol, ImportSymbol), "of that kind"
+            is_whole = isinstance(symbol.source, ast.Variable) or _has_no_index(symbol.source)
+            if symbol in seen or not is_whole or not isinstance(answer, Found):
+                raise LinkError(f"the import of {symbol.name} leads nowhere")
+            seen.add(symbol)
+            found = answer
+        return found
+
+
+def _has_no_index(node: ast.Expression) -> bool:
+    """Whether it is a whole array, ``NAME[]``."""
+    return (
+        isinstance(node, ast.Subscript)
+        and isinstance(node.base, ast.Variable)
+        and all(index is None for index in node.indices)
+    )
+
+
+def load(
+    sources: Iterable[Source], main: str, system: System | None = None, *, strict: bool = True
+) -> CheckedProgram:
+    """Link and check files, of which ``main`` is the path of the one to begin with.
+
+    Only the project that it belongs to counts. Without ``strict`` errors that the checker finds are
+    no obstacle: what they are about fails when it is reached. Raises `LinkError` with the first
+    thing that is wrong.
+    """
+    by_path = {source.path: source for source in sources}
+    files = [File(path, _read(source)) for path, source in by_path.items()]
+    for project in link(files, system).projects:
+        if any(module.path == main for module in project.modules):
+            return _checked(project, by_path, main, strict=strict)
+    raise LinkError(f"{main} is not among the files")
+
+
+def load_all(
+    sources: Iterable[Source], system: System | None = None
+) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
+    """Link and check files of any number of projects; gives a program for each file with routines.
+
+    It is checked as without ``strict`` in `load`, each project once. A file that cannot be read is
+    left out of its project and told with the reason, after the programs.
+    """
+    by_path = {source.path: source for source in sources}
+    files, unread = [], []
+    for path, source in by_path.items():
+        try:
+            files.append(File(path, _read(source)))
+        except LinkError as error:
+            unread.append((path, str(error)))
+    programs: list[CheckedProgram] = []
+    for project in link(files, system).projects:
+        whole = _checked(project, by_path, project.modules[0].path, strict=False)
+        programs += [
+            replace(whole, main=unit) for unit in whole.units.values() if whole.routines_of(unit)
+        ]
+    return tuple(programs), tuple(unread)
+
+
+def _checked(
+    project: Project, sources: Mapping[str, Source], main: str, *, strict: bool
+) -> CheckedProgram:
+    units: dict[Module, Unit] = {}
+    for module in project.modules:
+        source = sources[module.path]
+        units[module] = Unit(module, source, check_module(project, module, source))
+    for one in check_project(unit.checked.findings for unit in units.values()):
+        if strict and one.severity == "error":
+            raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
+    first = next(unit for module, unit in units.items() if module.path == main)
+    return CheckedProgram(project, first, units, strict)
+
+
+def _read(source: Source) -> ast.Module:
+    found = read_module(source.text, source.path)
+    if not isinstance(found, ast.Module):
+        first = found[0]
+        reason = first.reason or f"{first.text or 'the end of the file'!r} is not expected here"
+        raise LinkError(f"{source.path}:{first.line}: {reason}")
+    if isinstance(found.content, ast.Program):
+        for routine in found.content.routines:
+            _check_blocks(source, routine)
+    return found
+
+
+def _check_blocks(source: Source, routine: ast.Routine) -> None:
+    depths: dict[object, int] = {None: 0}
+    for one in placed(routine.body):
+        depths[one] = depths[one.inside] + 1
+        if depths[one] > MOST_BLOCKS:
+            line = source.place(one.statement.span[0])[0]
+            raise LinkError(f"{source.path}:{line}: more than {MOST_BLOCKS} blocks are nested")

@@ -1,0 +1,58 @@
+"""What executors see in a piece of syntax before it is run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
+from interp.program.load import Unit
+
+__all__ = ["is_constant_output", "is_variable", "signal_name"]
+
+_CONSTANT = (
+    ast.IntegerLiteral,
+    ast.RealLiteral,
+    ast.BoolLiteral,
+    ast.BitLiteral,
+    ast.StringLiteral,
+    ast.EnumConstant,
+    ast.Unary,
+    ast.Parenthesised,
+    ast.Name,
+)
+
+
+def is_constant_output(action: ast.Assignment) -> bool:
+    """Whether an action assigns a literal to what has literal indices: it needs no program."""
+    parts = [action.value, *_indices(action.target)]
+    return all(isinstance(one, _CONSTANT) for part in parts for one in walk(part))
+
+
+def _indices(node: ast.Expression) -> Iterator[ast.Expression]:
+    """All indices in what is written to."""
+    while isinstance(node, ast.Subscript | ast.Member):
+        if isinstance(node, ast.Subscript):
+            yield from (one for one in node.indices if one is not None)
+        node = node.base
+
+
+def is_variable(unit: Unit, node: ast.Expression) -> bool:
+    """Whether it is something that can be changed, as what is passed :OUT has to be [SCO-06]."""
+    while isinstance(node, ast.Subscript | ast.Member):
+        node = node.base
+    if not isinstance(node, ast.Variable):
+        return False
+    found = unit.found(node.name)
+    return found is None or found.symbol.kind is not Kind.CONSTANT
+
+
+def signal_name(unit: Unit, node: ast.Expression) -> str | None:
+    """The signal, or else the system variable, in an expression, by its name here."""
+    names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
+    for name in names:
+        found = unit.found(name)
+        if found is not None and isinstance(found.symbol, SignalSymbol):
+            return name.key
+    return next((name.key for name in names if name.key.startswith("$")), None)

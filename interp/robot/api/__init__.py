@@ -1,0 +1,1 @@
+"""The Robotics API: commands with events, linked into transactions, without KRL."""

@@ -1,0 +1,422 @@
+"""The control core: loads transactions, follows the arm's path, and acts when an event happens.
+
+It has no clock of its own. Whoever has one asks `ControlCore.next_time`, goes on to any time with
+`ControlCore.run_until`, and is told what happened up to there. Whatever an event starts is done at
+the very microsecond of that event, on the path as it is planned by then.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from itertools import count
+from typing import Final
+
+from interp.port.requests import Path, Value
+from interp.robot.api.commands import (
+    CallCommand,
+    Command,
+    CommandError,
+    CoreEvent,
+    Effect,
+    Event,
+    Link,
+    MotionCommand,
+    OutputCommand,
+    State,
+    Transaction,
+    WaitCommand,
+    What,
+)
+from interp.robot.arm import Arm, ArmEvent
+from interp.values.faults import Fault
+
+__all__ = ["ControlCore", "Switch"]
+
+#: Switches an output at a time in µs; may raise `Fault`.
+Switch = Callable[[Path, Value, int], None]
+
+_WHAT: Final[dict[str, What]] = {
+    "motion_start": "started",
+    "blend_start": "blend_start",
+    "blend_apex": "apex",
+    "blend_end": "blend_end",
+    "motion_end": "ended",
+    "place": "reached",
+    "stopped": "stopped",
+}
+
+#: What may still happen to a motion that has ended, in the blend behind it.
+_BEHIND: Final = frozenset({"reached", "apex"})
+
+
+class ControlCore:
+    """Executes commands on one arm.
+
+    ``cycle`` is the interpolation cycle in µs: a transaction takes effect at its next multiple; 1
+    for an owner whose own times are exact. Events at one time come in the order of their causes:
+    what an event starts comes before the next event of the path. Times never go back; `ValueError`
+    where the owner's do.
+    """
+
+    def __init__(self, arm: Arm, switch: Switch, cycle: int) -> None:
+        if cycle < 1:
+            raise ValueError(f"an interpolation cycle of {cycle} µs")
+        self.arm = arm
+        self.now = 0
+        self._switch = switch
+        self._cycle = cycle
+        self._told: list[CoreEvent] = []
+        self._due: list[tuple[int, int, Effect | None, Command]] = []
+        self._order = count()
+        self._links: dict[Event, list[Link]] = defaultdict(list)
+        #: How many links may still start a command.
+        self._chances: dict[Command, int] = {}
+        #: Motions from the plan to their end, by number, in their order.
+        self._motions: dict[int, MotionCommand] = {}
+        #: Motions that ended, as long as places in the blend behind them may still come.
+        self._behind: dict[int, MotionCommand] = {}
+        #: Which motion was planned before another one, by number.
+        self._before: dict[int, int] = {}
+        self._newest = 0
+        self._last_number = 0
+        self._is_ending = False
+
+    # ---------------------------------------------------------------------------------- the owner
+
+    def load(self, now: int, transaction: Transaction) -> int | None:
+        """Load a transaction; returns the time at which it took effect, ``None`` if it is held.
+
+        Raises `CommandError` where it makes no sense, and the `Fault` of a motion that cannot be
+        planned. In both cases nothing of it was loaded and no command's state changed.
+        """
+        at = -(-now // self._cycle) * self._cycle
+        self._advance(at)
+        self._check(transaction)
+        first = list(transaction.unlinked())
+        motions = [command for command in first if isinstance(command, MotionCommand)]
+        self._plan_all(at, motions)
+        for command in transaction.commands:
+            command.state = State.LINKED
+            if isinstance(command, MotionCommand):
+                self._last_number = command.motion.number
+        for link in transaction.links:
+            self._attach(link)
+        for command in first:
+            self._start(command)
+        self._settle()
+        return at
+
+    def link(self, event: Event, effect: Effect, command: Command, delay: int = 0) -> None:
+        """A further link between commands that are loaded. Raises `CommandError`."""
+        link = Link(event, effect, command, delay)
+        self._check_link(link, frozenset())
+        if effect == "start" and command not in self._chances:
+            raise CommandError(f"{link}: it is not waiting for a start")
+        self._attach(link)
+
+    def next_time(self) -> int | None:
+        """When something happens next, as planned today; ``None`` if nothing will by itself."""
+        ahead = self.arm.next_event()
+        times = [self._due[0][0]] if self._due else []
+        if ahead is not None:
+            times.append(ahead.time)
+        return min(times, default=None)
+
+    def run_until(self, time: int) -> list[CoreEvent]:
+        """Go on to a time; returns what happened since the last call, in its order."""
+        self._advance(time)
+        told, self._told = self._told, []
+        return told
+
+    def run_out(self) -> list[CoreEvent]:
+        """Go on until nothing more happens by itself; returns what happened, as `run_until`."""
+        while (time := self.next_time()) is not None:
+            self._advance(time)
+        return self.run_until(self.now)
+
+    def complete(self, now: int, command: CallCommand) -> None:
+        """The owner has done what it was called for; nothing if that was cancelled meanwhile."""
+        self._advance(now)
+        if command.state is State.ACTIVE:
+            self._finish(command, State.ENDED, "ended")
+            self._settle()
+
+    def apply(self, now: int, effect: Effect, command: Command) -> None:
+        """Start, cancel or stop a loaded command, as an event linked to it would."""
+        self._advance(now)
+        self._act(effect, command)
+        self._settle()
+
+    def release(self, now: int) -> None:
+        """Hold nothing back: there will be no further motion before the arm stands.
+
+        This core never does; `interp.robot.api.batch` does.
+        """
+        self._advance(now)
+
+    def pending(self) -> int:
+        """How many motions are planned and not yet ended."""
+        return self.arm.pending()
+
+    def brake(self, now: int, *, is_hard: bool) -> None:
+        """The arm stops on its path; ``stopped`` tells when it stands."""
+        self._advance(now)
+        self.arm.brake(now, is_hard)
+
+    def proceed(self, now: int) -> None:
+        """The arm goes on after a brake, unless that is to end its motions."""
+        self._advance(now)
+        if not self._is_ending:
+            self.arm.proceed(now)
+
+    def discard(self, now: int) -> None:
+        """Forget what is not travelled yet: all motions are cancelled."""
+        self._advance(now)
+        self._is_ending = False
+        self.arm.discard(now)
+        motions, self._motions = list(self._motions.values()), {}
+        self._drop_behind(list(self._behind))
+        self._before.clear()
+        for command in motions:
+            self._finish(command, State.CANCELLED, "cancelled")
+        self._settle()
+
+    def override(self, now: int, percent: float) -> None:
+        """$OV_PRO changes."""
+        self._advance(now)
+        self.arm.override(now, percent)
+
+    # ---------------------------------------------------------------------------------- the checks
+
+    def _check(self, transaction: Transaction) -> None:
+        transaction.check()
+        mine = frozenset(transaction.commands)
+        number = self._last_number
+        for command in transaction.commands:
+            if command.state is not State.CREATED:
+                raise CommandError(f"{command}: it was loaded before")
+            if isinstance(command, MotionCommand):
+                if command.motion.number <= number:
+                    raise CommandError(f"{command}: its number is not above {number}")
+                number = command.motion.number
+        for link in transaction.links:
+            self._check_link(link, mine)
+
+    def _check_link(self, link: Link, mine: frozenset[Command]) -> None:
+        for command in (link.event.command, link.command):
+            if command not in mine and command.state is State.CREATED:
+                raise CommandError(f"{link}: {command} is not loaded")
+        cause = link.event.command
+        is_past = cause.state is State.ACTIVE and link.event.what == "started"
+        is_ahead = cause in self._behind.values() and link.event.what in _BEHIND
+        if is_past or (cause.state.is_over and not is_ahead):
+            raise CommandError(f"{link}: that can no longer happen")
+
+    # ---------------------------------------------------------------------------- what time brings
+
+    def _advance(self, time: int) -> None:
+        if time < self.now:
+            raise ValueError(f"time goes back from {self.now} to {time} µs")
+        while (due := self.next_time()) is not None and due <= time:
+            self.now = max(self.now, due)
+            if self._due and self._due[0][0] <= due:
+                self._act_when_due()
+            else:
+                self._pass(self.arm.take())
+        self.now = time
+
+    def _settle(self) -> None:
+        """Do what is due by now; the path goes on with time only."""
+        while self._due and self._due[0][0] <= self.now:
+            self._act_when_due()
+
+    def _act_when_due(self) -> None:
+        _, _, effect, command = heapq.heappop(self._due)
+        if effect is None:  # a wait is over
+            if command.state is State.ACTIVE:
+                self._finish(command, State.ENDED, "ended")
+            return
+        if effect == "start":
+            self._lose_chance(command, is_taken=True)
+        self._act(effect, command)
+
+    def _pass(self, event: ArmEvent) -> None:
+        """The path passes something."""
+        what = _WHAT[event.kind]
+        if event.kind == "stopped":
+            self._tell(None, what, arm=event)
+            if self._is_ending:
+                self.discard(self.now)
+            return
+        command = self._motions.get(event.motion) or self._behind.get(event.motion)
+        if event.kind == "motion_start" and command is not None:
+            command.state = State.ACTIVE
+        if event.kind != "motion_end" or command is None:
+            self._tell(command, what, key=event.key, arm=event)
+            return
+        del self._motions[event.motion]
+        self._behind[event.motion] = command
+        self._drop_behind([self._before.pop(event.motion, 0)])
+        self._finish(command, State.ENDED, "ended", arm=event)
+        if not self._motions and self.arm.next_event() is None:
+            self._drop_behind(list(self._behind))
+
+    # ------------------------------------------------------------------------------------ effects
+
+    def _act(self, effect: Effect, command: Command) -> None:
+        if effect == "start":
+            if command.state is State.LINKED and not self._is_planned(command):
+                self._begin(command)
+        elif command.state.is_over or command.state is State.CREATED:
+            return
+        elif self._is_planned(command):
+            self._end_path(is_hard=effect == "stop")
+        else:
+            self._finish(command, State.CANCELLED, "cancelled")
+
+    def _is_planned(self, command: Command) -> bool:
+        return isinstance(command, MotionCommand) and command.motion.number in self._motions
+
+    def _begin(self, command: Command) -> None:
+        """Start a command that an event starts; a motion is planned only now."""
+        self._chances.pop(command, None)
+        if isinstance(command, MotionCommand):
+            try:
+                self._plan_all(self.now, [command])
+            except Fault as fault:
+                self._finish(command, State.FAILED, "failed", fault=fault)
+                return
+        self._start(command)
+
+    def _plan_all(self, now: int, commands: Iterable[MotionCommand]) -> None:
+        """Plan motions, all of them or none. Raises the `Fault` of the first that cannot be."""
+        mark = self.arm.mark()
+        planned: dict[int, MotionCommand] = {}
+        notices: list[tuple[int, ...]] = []
+        try:
+            for command in commands:
+                notices.append(self.arm.plan(now, command.motion))
+                planned[command.motion.number] = command
+        except Fault:
+            if planned:
+                self.arm.rewind(mark)
+            raise
+        for (number, command), words in zip(planned.items(), notices, strict=True):
+            command.notices = words
+            self._before[number], self._newest = self._newest, number
+        self._motions |= planned
+
+    def _start(self, command: Command) -> None:
+        match command:
+            case MotionCommand():
+                return  # it is planned, and starts when the arm gets there
+            case OutputCommand(path=path, value=value):
+                command.state = State.ACTIVE
+                self._tell(command, "started")
+                try:
+                    self._switch(path, value, self.now)
+                except Fault as fault:
+                    self._finish(command, State.FAILED, "failed", fault=fault)
+                else:
+                    self._finish(command, State.ENDED, "ended")
+            case _:
+                command.state = State.ACTIVE
+                self._tell(command, "started")
+                if isinstance(command, WaitCommand):
+                    self._schedule(command.duration, None, command)
+
+    def _end_path(self, *, is_hard: bool) -> None:
+        """There is one path: to end one of its motions is to end all of them."""
+        self._is_ending = True
+        self.arm.brake(self.now, is_hard)
+        is_moving = any(one.state is State.ACTIVE for one in self._motions.values())
+        if not is_moving or self.arm.next_event() is None:
+            self.discard(self.now)
+
+    def _finish(
+        self,
+        command: Command,
+        state: State,
+        what: What,
+        *,
+        arm: ArmEvent | None = None,
+        fault: Fault | None = None,
+    ) -> None:
+        command.state = state
+        self._chances.pop(command, None)
+        self._tell(command, what, arm=arm, fault=fault)
+        is_behind = command in self._behind.values()
+        self._drop(command, _BEHIND if is_behind else frozenset())
+
+    # -------------------------------------------------------------------------------------- links
+
+    def _attach(self, link: Link) -> None:
+        self._links[link.event].append(link)
+        if link.effect == "start":
+            self._chances[link.command] = self._chances.get(link.command, 0) + 1
+
+    def _tell(
+        self,
+        command: Command | None,
+        what: What,
+        *,
+        key: int | None = None,
+        arm: ArmEvent | None = None,
+        fault: Fault | None = None,
+    ) -> None:
+        """Record an event and do what is linked to it, at once or after its delay."""
+        self._told.append(CoreEvent(self.now, command, what, key, arm, fault))
+        if command is None:
+            return
+        for link in self._links.pop(Event(command, what, key), ()):
+            # Even what is due at once goes through the queue, so that effects come in order.
+            self._schedule(link.delay, link.effect, link.command)
+
+    def _schedule(self, delay: int, effect: Effect | None, command: Command) -> None:
+        heapq.heappush(self._due, (self.now + delay, next(self._order), effect, command))
+
+    def _drop(self, command: Command, but: frozenset[str] = frozenset()) -> None:
+        """What the command could have caused, but for some events, cannot happen any more."""
+        mine = [event for event in self._links if event.command is command]
+        for event in [event for event in mine if event.what not in but]:
+            for link in self._links.pop(event):
+                if link.effect == "start":
+                    self._lose_chance(link.command, is_taken=False)
+
+    def _drop_behind(self, numbers: Iterable[int]) -> None:
+        for number in numbers:
+            command = self._behind.pop(number, None)
+            if command is not None:
+                self._drop(command)
+
+    def _lose_chance(self, command: Command, *, is_taken: bool) -> None:
+        left = self._chances.get(command)
+        if left is None:
+            return
+        self._chances[command] = left - 1
+        if is_taken or command.state is not State.LINKED:
+            return
+        if left == 1:
+            self._finish(command, State.CANCELLED, "cancelled")
+            return
+        while (stuck := self._stuck()) is not None:
+            self._finish(stuck, State.CANCELLED, "cancelled")
+
+    def _stuck(self) -> Command | None:
+        """The first of commands that wait for one another and for nothing else."""
+        waiting = [one for one in self._chances if one.state is State.LINKED]
+        coming = {command for _, _, effect, command in self._due if effect == "start"}
+        starts = [
+            (link.command, event.command)
+            for event, links in self._links.items()
+            for link in links
+            if link.effect == "start"
+        ]
+        while (
+            more := {one for one, cause in starts if cause in coming or cause not in waiting}
+            - coming
+        ):
+            coming |= more
+        return next((one for one in waiting if one not in coming), None)

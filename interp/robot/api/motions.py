@@ -1,0 +1,87 @@
+"""Motions written in Python: what a program in KRL writes as PTP, LIN and CIRC."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from interp.port.requests import At
+from interp.robot.api.commands import MotionCommand
+from interp.robot.arm import Motion, Place, Settings
+
+__all__ = ["Motions"]
+
+_MEMBERS: Final = frozenset(
+    (*"XYZABCST", *(f"{letter}{number}" for letter in "AE" for number in range(1, 7)))
+)
+
+
+@dataclass(slots=True)
+class Motions:
+    """Makes the commands of motions and numbers them in their order.
+
+    A target names what it gives, in mm and degrees: ``x``, ``y``, ``z``, ``a``, ``b``, ``c``, ``s``
+    and ``t`` of a point, or ``a1`` to ``a6`` of axes, and ``e1`` to ``e6``. What it leaves out
+    stays as it is. ``settings`` hold for all motions made from then on; ``criteria`` are C_PTP,
+    C_DIS and so on. Raises `ValueError` for a member that no target has.
+    """
+
+    settings: Settings = field(default_factory=Settings)
+    count: int = 0
+
+    def ptp(
+        self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
+    ) -> MotionCommand:
+        """A synchronous motion of the axes."""
+        return self._made("PTP", target, None, None, criteria, places)
+
+    def lin(
+        self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
+    ) -> MotionCommand:
+        """A straight line of the tool."""
+        return self._made("LIN", target, None, None, criteria, places)
+
+    def circ(
+        self,
+        auxiliary: dict[str, float],
+        *,
+        angle: float | None = None,
+        criteria: Sequence[str] = (),
+        places: Sequence[Place] = (),
+        **target: float,
+    ) -> MotionCommand:
+        """An arc of the tool through an auxiliary point; ``angle`` is CA in degrees."""
+        return self._made("CIRC", target, auxiliary, angle, criteria, places)
+
+    def _made(
+        self,
+        kind: str,
+        target: dict[str, float],
+        auxiliary: dict[str, float] | None,
+        angle: float | None,
+        criteria: Sequence[str],
+        places: Sequence[Place],
+    ) -> MotionCommand:
+        self.count += 1
+        return MotionCommand(
+            Motion(
+                self.count,
+                At("", self.count, 0),
+                kind,
+                self.settings,
+                target=_members(target),
+                auxiliary=None if auxiliary is None else _members(auxiliary),
+                angle=angle,
+                criteria=tuple(criteria),
+                places=tuple(places),
+            )
+        )
+
+
+def _members(given: dict[str, float]) -> dict[str, float]:
+    members = {name.upper(): float(value) for name, value in given.items()}
+    unknown = sorted(members.keys() - _MEMBERS)
+    if unknown:
+        raise ValueError(f"a target has no {', '.join(unknown)}")
+    return members

@@ -1,0 +1,1 @@
+"""Machine data, forward and inverse kinematics, Status and Turn."""

@@ -1,0 +1,358 @@
+"""Machine data: what a `$machine.dat` says about an arm [POS-11, MOT-05, MOT-06].
+
+The meaning of each datum is that of KUKA's operating handbook *KR C2, Machine Data* (2005), which
+later releases keep. Lengths are millimetres, angles degrees, times seconds.
+
+The chain from the robot's foot to its flange, each step told in the one before::
+
+    $TIRORO · Rz(A1) · x $LENGTH_A · Ry(A2) · x $LENGTH_B · Ry(A3)
+            · $TX3P3 · Rz(A4) · $DH_4 · Rz(A5) · $DH_5 · Rz(A6) · $TFLWP
+
+with every angle multiplied by its $AXIS_DIR. At zero of all axes the arm is stretched forward;
+$MAMES tells where the axes are mastered and has no part in the chain.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from interp.robot.kinematics.data_list import Key, Value, read_data_list
+from interp.robot.kinematics.frames import IDENTITY, Pose
+
+__all__ = [
+    "ROBOT_AXES",
+    "Axis",
+    "AxisKind",
+    "CartesianLimits",
+    "Dynamics",
+    "Link",
+    "Machine",
+    "MachineDataError",
+    "machine_of",
+    "read_machine",
+]
+
+ROBOT_AXES = 6
+_MOST_EXTERNAL = 6
+
+_UNKNOWN_JERK = 1e18  # what the files say where there is no limit
+_RUN_UP_TIME = 0.4
+"""Seconds to full speed where the data says nothing; an assumption, of the size of other arms'."""
+_FILTER_TIME = 0.1  # seconds over which acceleration builds up, likewise
+
+
+class MachineDataError(Exception):
+    """The data does not describe an arm; its text is one line for a person."""
+
+
+class AxisKind(Enum):
+    """How an axis moves; the values are those of $AXIS_TYPE."""
+
+    LINEAR = 1
+    ROTARY = 3
+    ENDLESS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics:
+    """The most that an axis may do: speed, acceleration, jerk, in deg or mm and seconds."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis. ``lower`` and ``upper`` are its software limit switches in degrees or mm.
+
+    ``direction`` is 1 or -1, the sense of rotation that the kinematic chain gives a positive angle.
+    ``dynamics`` is ``None`` where the data has no speed. ``approximation`` is the largest distance
+    at which a PTP motion may be approximated.
+    """
+
+    name: str
+    kind: AxisKind
+    direction: int
+    lower: float
+    upper: float
+    dynamics: Dynamics | None
+    approximation: float
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """Denavit-Hartenberg parameters between two wrist axes: mm and degrees."""
+
+    a: float
+    d: float
+    alpha: float
+
+
+@dataclass(frozen=True, slots=True)
+class CartesianLimits:
+    """Path, swivel and rotation: m and degrees per second, or per second squared [MOT-05]."""
+
+    path: float
+    swivel: float
+    rotation: float
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """An arm and its external axes, by the names that $machine.dat has for them.
+
+    ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
+    motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
+    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07].
+    """
+
+    name: str
+    version: str
+    axes: tuple[Axis, ...]
+    externals: tuple[Axis, ...]
+    robroot: Pose
+    tiroro: Pose
+    length_a: float
+    length_b: float
+    tx3p3: Pose
+    dh_4: Link
+    dh_5: Link
+    tflwp: Pose
+    coupling: Mapping[tuple[int, int], float]
+    singul_pos: tuple[int, int, int]
+    velocity: CartesianLimits
+    acceleration: CartesianLimits
+    t1_speed: float
+    t1_reduction: float
+
+    def standing(self, axes: Sequence[float]) -> tuple[float, ...]:
+        """All axes, where those that are given stand: others at 0, or the limit nearest to it.
+
+        Degrees, or mm for linear ones, robot axes first; what there is no axis for is left out.
+        """
+        every = (*self.axes, *self.externals)
+        rest = (min(max(0.0, axis.lower), axis.upper) for axis in every[len(axes) :])
+        return (*(float(value) for value in axes[: len(every)]), *rest)
+
+    @property
+    def elbow(self) -> float:
+        """The angle of A3 in degrees at which the arm is stretched, where bit 1 of S changes.
+
+        0 where A3 and A4 intersect; an offset between them shifts it [POS-04]. The two positions of
+        the elbow that reach a point lie on either side of it, which is what POS-12 asks for.
+        """
+        forward, _, up = self.tx3p3.position
+        return self.axes[2].direction * math.degrees(math.atan2(up, forward))
+
+
+def read_machine(text: str, path: str = "") -> Machine:
+    """The machine that the text of a $machine.dat describes.
+
+    Raises `MachineDataError`, and `interp.robot.kinematics.data_list.DataListError` for no data
+    list.
+    """
+    return machine_of(read_data_list(text, path), path)
+
+
+def machine_of(values: Mapping[Key, Value], path: str = "") -> Machine:
+    """The machine of the values of a $machine.dat; see `read_machine`."""
+    return _Reader(values, path).machine()
+
+
+class _Reader:
+    """Takes values by name, with a clear word for what is missing or of the wrong kind."""
+
+    def __init__(self, values: Mapping[Key, Value], path: str) -> None:
+        self._values = values
+        self._path = path
+
+    def machine(self) -> Machine:
+        if ("$LENGTH_A",) not in self._values:
+            raise self._error(
+                "no machine data of an arm, which has $LENGTH_A; it lies in R1/Mada, not in STEU"
+            )
+        self._expect("$MAIN_AXIS", "#NR", "an articulated arm (#NR)")
+        self._expect("$WRIST_AXIS", "#ZEH", "a central wrist (#ZEH)")
+        self._expect("$TRAFO_AXIS", ROBOT_AXES, "an arm of six axes")
+        self._expect("$DEF_A4FIX", False, "an axis 4 that turns")
+        self._expect("$DEF_A5LINK", False, "an axis 5 with a drive of its own")
+        if any(self._integer(f"$AXIS_SEQ[{i}]", default=i) != i for i in _numbers(ROBOT_AXES)):
+            raise self._error("$AXIS_SEQ exchanges axes, which is not supported")
+        axes = tuple(self._axis(i) for i in _numbers(ROBOT_AXES))
+        for axis in axes:
+            if axis.kind is AxisKind.LINEAR:
+                raise self._error(f"{axis.name} is linear; an arm of six rotary axes is needed")
+        count = min(max(self._integer("$EX_AX_NUM", default=0), 0), _MOST_EXTERNAL)
+        return Machine(
+            name=self._text("$TRAFONAME").removeprefix("#"),
+            version=self._text("$V_R1MADA"),
+            axes=axes,
+            externals=tuple(self._axis(ROBOT_AXES + i) for i in _numbers(count)),
+            robroot=self._frame("$ROBROOT", default=IDENTITY),
+            tiroro=self._frame("$TIRORO"),
+            length_a=self._number("$LENGTH_A"),
+            length_b=self._number("$LENGTH_B"),
+            tx3p3=self._frame("$TX3P3"),
+            dh_4=self._link("$DH_4", 90.0),
+            dh_5=self._link("$DH_5", -90.0),
+            tflwp=self._frame("$TFLWP"),
+            coupling=self._coupling(),
+            singul_pos=(self._singular(1), self._singular(2), self._singular(3)),
+            velocity=self._cartesian("$VEL_MA", CartesianLimits(3.0, 400.0, 400.0)),
+            acceleration=self._cartesian("$ACC_MA", CartesianLimits(10.0, 1000.0, 1000.0)),
+            t1_speed=self._number("$VEL_CP_T1", default=0.25),
+            t1_reduction=self._number("$RED_T1", default=7.0) / 100.0,
+        )
+
+    # ---------------------------------------------------------------------------------- parts
+
+    def _axis(self, number: int) -> Axis:
+        kind = self._kind(number)
+        lower = self._number(f"$SOFTN_END[{number}]", default=-math.inf)
+        upper = self._number(f"$SOFTP_END[{number}]", default=math.inf)
+        if kind is AxisKind.ENDLESS or lower >= upper:
+            lower, upper = -math.inf, math.inf
+        is_robot = number <= ROBOT_AXES
+        direction = self._integer(f"$AXIS_DIR[{number}]", default=None if is_robot else 1)
+        if abs(direction) != 1:
+            if is_robot:
+                raise self._error(f"$AXIS_DIR[{number}] is {direction}, not 1 or -1")
+            direction = 1
+        return Axis(
+            name=f"A{number}" if is_robot else f"E{number - ROBOT_AXES}",
+            kind=kind,
+            direction=direction,
+            lower=lower,
+            upper=upper,
+            dynamics=self._dynamics(number, kind),
+            approximation=self._number(f"$APO_DIS_PTP[{number}]", default=90.0),
+        )
+
+    def _kind(self, number: int) -> AxisKind:
+        kind = self._integer(f"$AXIS_TYPE[{number}]", default=AxisKind.ROTARY.value)
+        try:
+            return AxisKind(kind)
+        except ValueError:
+            raise self._error(f"$AXIS_TYPE[{number}] is {kind}, not 1, 3 or 5") from None
+
+    def _dynamics(self, number: int, kind: AxisKind) -> Dynamics | None:
+        """Speed from motor and gear [MOT-06]; run-up time or jerk, whichever the data has.
+
+        $RAT_MOT_AX is in revolutions of the motor a revolution of the axis, or a metre of travel.
+        Older data has the run-up time in $RAISE_TIME, over which a filter of $DEF_FLT_PTP then
+        rounds the ramp. Newer data has the jerk instead. With it, run-up in the shortest time takes
+        twice the root of velocity by jerk; the acceleration here is the mean of that.
+        """
+        motor = self._number(f"$VEL_AXIS_MA[{number}]", default=0.0)
+        ratio = self._fraction(f"$RAT_MOT_AX[{number}]")
+        if motor <= 0.0 or not ratio:
+            return None
+        travel = 1000.0 if kind is AxisKind.LINEAR else 360.0
+        velocity = motor / 60.0 * travel / abs(ratio)
+        jerk = self._number(f"$AXIS_JERK[{number}]", default=0.0)
+        run_up = self._number(f"$RAISE_TIME[{number}]", default=0.0) / 1000.0
+        if run_up > 0.0:
+            acceleration = velocity / run_up
+        elif 0.0 < jerk < _UNKNOWN_JERK:
+            return Dynamics(velocity, math.sqrt(velocity * jerk) / 2.0, jerk)
+        else:
+            acceleration = velocity / _RUN_UP_TIME
+        filtered = self._number("$DEF_FLT_PTP", default=0.0) / 1000.0
+        return Dynamics(velocity, acceleration, acceleration / (filtered or _FILTER_TIME))
+
+    def _coupling(self) -> Mapping[tuple[int, int], float]:
+        pairs = ((i, j) for i in _numbers(ROBOT_AXES) for j in _numbers(ROBOT_AXES) if i != j)
+        factors = {(i, j): self._fraction(f"$COUP_COMP[{i},{j}]") for i, j in pairs}
+        return {pair: factor for pair, factor in factors.items() if factor}
+
+    def _singular(self, number: int) -> int:
+        return self._integer(f"$SINGUL_POS[{number}]", default=0)
+
+    def _link(self, name: str, alpha: float) -> Link:
+        members = self._members(name, default={"DHART_ALPHA": alpha})
+        a, d, angle = (self._member(name, members, f"DHART_{part}") for part in ("A", "D", "ALPHA"))
+        return Link(a, d, angle)
+
+    def _cartesian(self, name: str, default: CartesianLimits) -> CartesianLimits:
+        members = self._members(name, default={})
+        path, swivel, rotation = (
+            self._member(name, members, part) for part in ("CP", "ORI1", "ORI2")
+        )
+        return CartesianLimits(
+            path or default.path, swivel or default.swivel, rotation or default.rotation
+        )
+
+    def _frame(self, name: str, default: Pose | None = None) -> Pose:
+        if default is not None and _key(name) not in self._values:
+            return default
+        members = self._members(name)
+        return Pose.of(*(self._member(name, members, part) for part in "XYZABC"))
+
+    def _fraction(self, name: str) -> float:
+        """An N by its D; 0 where there is none."""
+        members = self._members(name, default={"D": 1})
+        below = self._member(name, members, "D")
+        return self._member(name, members, "N") / below if below else 0.0
+
+    # ------------------------------------------------------------------------------ single values
+
+    def _number(self, name: str, default: float | None = None) -> float:
+        value = self._values.get(_key(name), default)
+        return self._finite(name, value, default)
+
+    def _integer(self, name: str, default: int | None = None) -> int:
+        value = self._values.get(_key(name), default)
+        return int(self._finite(name, value))
+
+    def _members(self, name: str, default: dict[str, Any] | None = None) -> dict[str, Any]:
+        value = self._values.get(_key(name), default)
+        if value is None:
+            raise self._error(f"{name} is missing")
+        if not isinstance(value, dict):
+            raise self._error(f"{name} is no aggregate")
+        return value
+
+    def _member(self, name: str, members: Mapping[str, Any], part: str) -> float:
+        return self._finite(f"{name}.{part}", members.get(part, 0.0))
+
+    def _finite(self, name: str, value: object, default: float | None = None) -> float:
+        if value is None:
+            raise self._error(f"{name} is missing")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._error(f"{name} is no number")
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number) and number != default:
+            raise self._error(f"{name} is too large a number")
+        return number
+
+    def _text(self, name: str) -> str:
+        value = self._values.get(_key(name), "")
+        return value.strip() if isinstance(value, str) else ""
+
+    def _expect(self, name: str, wanted: Value, what: str) -> None:
+        value = self._values.get((name,), wanted)
+        if value != wanted:
+            shown = str(value).upper() if isinstance(value, bool) else value
+            raise self._error(f"{name} is {shown}; only {what} is supported")
+
+    def _error(self, what: str) -> MachineDataError:
+        return MachineDataError(f"{self._path}: {what}" if self._path else what)
+
+
+def _numbers(count: int) -> range:
+    """1 to ``count``, as KRL counts."""
+    return range(1, count + 1)
+
+
+def _key(name: str) -> Key:
+    """The key of a name as a person writes it: ``$AXIS_DIR[3]``."""
+    head, _, rest = name.partition("[")
+    return (head, *(int(index) for index in rest.removesuffix("]").split(",") if index))

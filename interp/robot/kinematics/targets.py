@@ -1,0 +1,323 @@
+"""Which way an arm reaches a point: Status, Turn, and what happens without them.
+
+A pose can be reached in up to eight ways, and each axis that turns further than 360 degrees reaches
+it more than once. The Status names the way; among the ways within the software limits no two share
+it [POS-12]. The Turn then only says which sense such an axis has [POS-07]. Axes are in degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.machine_data import Axis
+from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.values.faults import Fault
+
+__all__ = [
+    "Singularity",
+    "Solution",
+    "TargetStatus",
+    "check_limits",
+    "check_path",
+    "follow",
+    "ptp_target",
+    "singularities",
+    "solve",
+    "solve_many",
+    "turn_of",
+]
+
+Axes = tuple[float, ...]
+
+_ALL_BITS = 7
+_ZERO = 1e-7
+"""Degrees below zero that still count as zero for a Turn: points are given to six digits or so."""
+_LIMIT = 1e-6
+"""Degrees by which an axis may lie beyond its software limit switch, for the sake of rounding."""
+_WRIST = 0.01812  # degrees of A5, given in [POS-08]
+_ELBOW = 1e-4  # degrees of A3, and below it mm from axis 1: ours, the manual has no figure
+_OVERHEAD = 1e-6
+_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
+
+
+class TargetStatus(Enum):
+    """$TARGET_STATUS: the Status of a target that names none [POS-09]."""
+
+    SOURCE = "#SOURCE"
+    BEST = "#BEST"
+
+
+class Singularity(Enum):
+    """Positions in which an axis is not determined; the values are indices of $SINGUL_POS."""
+
+    OVERHEAD = 1
+    EXTENDED = 2
+    WRIST = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Six axes in degrees, their Status and Turn, and the singularities they lie in."""
+
+    axes: Axes
+    status: int
+    turn: int
+    singularities: tuple[Singularity, ...]
+
+
+def turn_of(axes: Sequence[float]) -> int:
+    """The Turn of six axes: bit i-1 is set where axis i is negative [POS-07]."""
+    return sum(1 << place for place, value in enumerate(axes) if value < -_ZERO)
+
+
+def singularities(arm: Arm, axes: Sequence[float]) -> tuple[Singularity, ...]:
+    """The singularities that six axes lie in [POS-08]."""
+    found = {
+        Singularity.OVERHEAD: float(arm.distance_to_axis_1(axes)) <= _OVERHEAD,
+        Singularity.EXTENDED: abs(axes[2] - arm.machine.elbow) <= _ELBOW,
+        Singularity.WRIST: abs(axes[4]) <= _WRIST,
+    }
+    return tuple(kind for kind, holds in found.items() if holds)
+
+
+def check_limits(axes: Sequence[Axis], values: Sequence[float]) -> None:
+    """Raise `Fault` 1447 where a value lies beyond a software limit switch, or is no number."""
+    for axis, value in zip(axes, values, strict=True):
+        if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
+            raise _beyond(axis, value)
+
+
+def check_path(axes: Sequence[Axis], path: Array) -> None:
+    """Raise `Fault` where a path ``(n, axes)`` leads beyond a software limit switch [MOT-15].
+
+    1447 where it ends there, as no point behind a limit can be reached; 1211 where the limit lies
+    on the way to a point that could.
+    """
+    lower = np.array([axis.lower for axis in axes]) - _LIMIT
+    upper = np.array([axis.upper for axis in axes]) + _LIMIT
+    beyond = ((path < lower) | (path > upper)).any(axis=1)
+    if not beyond.any():
+        return
+    check_limits(axes, path[-1].tolist())
+    first = path[int(np.argmax(beyond))]
+    for axis, value in zip(axes, first.tolist(), strict=True):
+        if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
+            text = f"the path leads onto a software limit switch: {_outside(axis, value)}"
+            raise Fault("software_limit", text, number=1211, rules=("MOT-15",))
+
+
+def solve(
+    arm: Arm,
+    flange: Pose,
+    *,
+    status: int | None = None,
+    turn: int | None = None,
+    start: Sequence[float] | None = None,
+    preference: TargetStatus = TargetStatus.SOURCE,
+) -> Solution:
+    """The axes for a pose of the flange in front of the robot's foot.
+
+    ``status`` selects the way; bits 3 and 4 of it mean nothing [POS-06]. Without it the way is that
+    of ``start``, or with ``preference`` `TargetStatus.BEST` the one whose leading axis gets there
+    first. ``turn`` selects among whole turns of an axis where it can; without it the shortest way
+    from ``start`` is taken [POS-02]. Without ``start`` all axes count from 0, so that the most
+    central solution is taken.
+
+    Raises `Fault` 1366 where the pose cannot be reached in that way, 1447 where it can but not
+    within the software limits [MOT-15].
+    """
+    ways = arm.inverse(matrix_of(flange)) if flange.is_finite else np.empty((0, 6))
+    return _choose(arm, ways, status, turn, start, preference)
+
+
+def solve_many(
+    arm: Arm, flanges: npt.ArrayLike, statuses: Sequence[int], turns: Sequence[int]
+) -> list[Solution]:
+    """`solve` for poses of the flange ``(n, 4, 4)``, each with its Status and Turn."""
+    ways = arm.inverse(flanges)
+    return [
+        _choose(arm, way, status, turn, None, TargetStatus.SOURCE)
+        for way, status, turn in zip(ways, statuses, turns, strict=True)
+    ]
+
+
+def ptp_target(
+    arm: Arm,
+    flange: Pose,
+    start: Sequence[float],
+    *,
+    status: int | None = None,
+    turn: int | None = None,
+    preference: TargetStatus = TargetStatus.SOURCE,
+) -> Solution:
+    """The axes of a PTP target: as `solve`, and undetermined axes as $SINGUL_POS says [POS-08].
+
+    Axis 1 or axis 4 goes to 0, or stays where it is at the start. Near a straight wrist that leaves
+    the orientation off by up to 0.018 degrees. With the arm extended nothing is undetermined.
+    """
+    found = solve(arm, flange, status=status, turn=turn, start=start, preference=preference)
+    keeps = arm.machine.singul_pos
+    if Singularity.OVERHEAD in found.singularities and keeps[0]:
+        ways = arm.inverse(arm.turned_about_axis_1(matrix_of(flange), -start[0]))
+        ways[:, 0] += start[0]
+        found = _choose(arm, ways, status, turn, start, preference)
+    if Singularity.WRIST in found.singularities:
+        found = _settled_wrist(arm, found, start[3] if keeps[2] else 0.0, turn, start)
+    return found
+
+
+def follow(arm: Arm, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
+    """Axes ``(n, 6)`` along a path of flange poses ``(n, 4, 4)``, unbroken from ``start`` on.
+
+    Status and Turn result from the path [POS-01, POS-02]: each sample takes the way nearest to the
+    one before it. Raises `Fault` as `solve` does, for the first sample that cannot be reached, and
+    as `check_path`.
+    """
+    ways = arm.inverse(flanges)
+    if not len(ways):
+        return np.empty((0, 6))
+    path = _one_way(ways, np.asarray(start, dtype=np.float64))
+    if path is None:
+        path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
+    check_path(arm.machine.axes, path)
+    return path
+
+
+# ------------------------------------------------------------------------------------- one target
+
+
+def _choose(
+    arm: Arm,
+    ways: Array,
+    status: int | None,
+    turn: int | None,
+    start: Sequence[float] | None,
+    preference: TargetStatus,
+) -> Solution:
+    ways = ways[~np.isnan(ways).any(axis=1)]
+    if status is None and start is not None and preference is TargetStatus.SOURCE:
+        status = int(arm.status(start))
+    if status is not None:
+        ways = ways[_have_status(arm, ways, status)]
+    if not len(ways):
+        raise Fault("unreachable", "the target cannot be reached", number=1366, rules=("MOT-15",))
+    origin = tuple(start) if start is not None else (0.0,) * 6
+    fitting = [fit for way in ways if (fit := _fit(arm, way.tolist(), turn, origin)) is not None]
+    if not fitting:
+        named = zip(arm.machine.axes, ways[0].tolist(), strict=True)
+        raise next(_beyond(axis, value) for axis, value in named if not _turns(axis, value, 0.0))
+    axes = min(fitting, key=lambda fit: _effort(arm.machine.axes, fit, origin))
+    return Solution(axes, int(arm.status(axes)), turn_of(axes), singularities(arm, axes))
+
+
+def _have_status(arm: Arm, ways: Array, status: int) -> npt.NDArray[np.bool_]:
+    """Which ways ``(n, 6)`` have a Status; in a singularity its bit says nothing."""
+    free = 1 * (arm.distance_to_axis_1(ways) <= _OVERHEAD)
+    free |= 2 * (np.abs(ways[:, 2] - arm.machine.elbow) <= _ZERO)
+    free |= 4 * (np.abs(ways[:, 4]) <= _ZERO)
+    have: npt.NDArray[np.bool_] = (arm.status(ways) ^ status) & _ALL_BITS & ~free == 0
+    return have
+
+
+def _fit(arm: Arm, way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
+    """A way with each axis turned so that it lies within its limits, or ``None``."""
+    fitted = []
+    for place, (axis, value) in enumerate(zip(arm.machine.axes, way, strict=True)):
+        choices = _turns(axis, value, origin[place])
+        if turn is not None:
+            is_negative = bool(turn >> place & 1)
+            choices = [c for c in choices if (c < -_ZERO) == is_negative] or choices
+        if not choices:
+            return None
+        fitted.append(_nearest(choices, origin[place]))
+    return tuple(fitted)
+
+
+def _nearest(choices: Sequence[float], origin: float) -> float:
+    """The choice nearest to an origin; of two, the greater, so that rounding decides nothing."""
+    return min(choices, key=lambda choice: (round(abs(choice - origin), 6), -choice))
+
+
+def _turns(axis: Axis, value: float, origin: float) -> list[float]:
+    """The angles within the limits that differ from one by whole turns."""
+    lower = max(axis.lower, min(origin, 0.0) - 360.0) - _LIMIT
+    upper = min(axis.upper, max(origin, 0.0) + 360.0) + _LIMIT
+    first = math.ceil((lower - value) / 360.0)
+    last = math.floor((upper - value) / 360.0)
+    return [value + 360.0 * count for count in range(first, last + 1)]
+
+
+def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[float, float]:
+    """How long the leading axis takes at full speed; in degrees where speeds are unknown."""
+    ways = [abs(value - start) for value, start in zip(axes, origin, strict=True)]
+    speeds = [axis.dynamics.velocity if axis.dynamics else 1.0 for axis in machine_axes]
+    times = [way / speed for way, speed in zip(ways, speeds, strict=True)]
+    return max(times), sum(times)
+
+
+def _settled_wrist(
+    arm: Arm, found: Solution, a4: float, turn: int | None, start: Sequence[float]
+) -> Solution:
+    """A straight wrist with axis 4 at an angle of choice; as it was where axis 6 cannot follow."""
+    axes = arm.machine.axes
+    difference = found.axes[3] - a4
+    a5 = found.axes[4] * math.cos(math.radians(difference))
+    a6 = found.axes[5] + axes[3].direction * axes[5].direction * difference
+    settled = _fit(arm, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
+    if settled is None:
+        return found
+    return replace(found, axes=settled, status=int(arm.status(settled)), turn=turn_of(settled))
+
+
+# ---------------------------------------------------------------------------------------- a path
+
+
+def _one_way(ways: Array, start: Array) -> Array | None:
+    """The path that stays in the branch nearest to the start, where it is plainly unbroken."""
+    distances = np.abs(_near(ways[0], start) - start).max(axis=1)
+    if np.isnan(distances).all():
+        return None
+    branch = ways[:, int(np.nanargmin(distances))]
+    path: Array = np.unwrap(np.vstack((start, branch)), period=360.0, axis=0)
+    steps = np.abs(np.diff(path, axis=0))
+    return path[1:] if bool((steps < _SAME_WAY).all()) else None
+
+
+def _nearest_ways(arm: Arm, ways: Array, start: Array) -> Array:
+    """The path sample by sample; passes straight wrists, where axis 4 stays as it is."""
+    path = np.empty((len(ways), 6))
+    before = start
+    forearm, hand = arm.machine.axes[3].direction, arm.machine.axes[5].direction
+    for place, way in enumerate(ways):
+        choices = way.copy()
+        straight = np.abs(choices[:, 4]) <= _ZERO
+        choices[straight, 5] += forearm * hand * (choices[straight, 3] - before[3])
+        choices[straight, 3] = before[3]
+        choices = _near(choices, before)
+        distances = np.abs(choices - before).max(axis=1)
+        if np.isnan(distances).all():
+            raise Fault("unreachable", "the path cannot be followed", number=1366)
+        before = path[place] = choices[int(np.nanargmin(distances))]
+    return path
+
+
+def _near(ways: Array, origin: Array) -> Array:
+    """Ways turned by whole turns so that they lie nearest to an origin."""
+    near: Array = ways + 360.0 * np.round((origin - ways) / 360.0)
+    return near
+
+
+def _beyond(axis: Axis, value: float) -> Fault:
+    text = f"the point lies behind a software limit switch: {_outside(axis, value)}"
+    return Fault("software_limit", text, number=1447, rules=("MOT-15",))
+
+
+def _outside(axis: Axis, value: float) -> str:
+    return f"{axis.name} at {round(value, 4) + 0.0:g}, not within {axis.lower:g} to {axis.upper:g}"

@@ -1,0 +1,1 @@
+"""The geometry of motions: lines, arcs, splines, blends, orientation."""

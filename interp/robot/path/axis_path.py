@@ -1,0 +1,379 @@
+"""Curves: what the axes do along a path, over its parameter u from 0 to 1.
+
+Axes are arrays ``(n, axes)``, the six of the robot first, then the external ones, which go along in
+step with u. `Curve.rates` are first and second derivatives by u: exact for joint curves, elsewhere
+those of a spline through enough points of the curve. The axes themselves are always exact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.placement import IpoMode, Placement
+from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.targets import check_path, follow
+from interp.robot.path.pose_path import Course, poses_of
+from interp.robot.path.uniform_spline import Table
+from interp.values.faults import Fault
+
+__all__ = [
+    "BlendedAxes",
+    "BlendedOthers",
+    "CourseCurve",
+    "Curve",
+    "InStep",
+    "JointLine",
+    "JointSpline",
+    "Others",
+    "Piecewise",
+    "tool_positions",
+]
+
+_FEWEST = 33
+_MOST = 8193
+_SMOOTH = 0.004
+"""Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
+_ROUGH = 0.05  # degrees of them at which, with most points, an axis is taken to jump
+
+
+class Curve(Protocol):
+    """What the axes do along a path."""
+
+    @property
+    def arm(self) -> Arm:
+        """The kinematics."""
+        ...
+
+    @property
+    def placement(self) -> Placement:
+        """The frames in force, which tell where the tool is."""
+        ...
+
+    @property
+    def course(self) -> Course | None:
+        """The path of the tool, where that is what was programmed."""
+        ...
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether the axes go in step, so that the second derivative is zero."""
+        ...
+
+    @property
+    def grid(self) -> Array:
+        """Parameters ``(n,)`` from 0 to 1, close enough to see all of the curve."""
+        ...
+
+    @property
+    def end(self) -> Array:
+        """The axes at u = 1, ``(axes,)``."""
+        ...
+
+    def axes(self, u: Array) -> Array:
+        """Axes at parameters."""
+        ...
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First and second derivatives of the axes by u."""
+        ...
+
+
+class Others(Protocol):
+    """What the external axes do along a path, over its u; arrays ``(n, axes)``."""
+
+    def at(self, u: Array) -> Array:
+        """Axes at parameters."""
+        ...
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First and second derivatives by u."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InStep:
+    """External axes that go in step with the path."""
+
+    start: Array
+    end: Array
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        return self.start + u[:, None] * (self.end - self.start)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        zeros = np.zeros((len(u), len(self.start)))
+        return zeros + (self.end - self.start), zeros
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlendedOthers:
+    """External axes of a blend, as `BlendedAxes` has all of them."""
+
+    first: Others
+    before: float
+    second: Others
+    after: float
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        corner = self.first.at(np.ones(1))
+        axes: Array = self.first.at(one) - corner + self.second.at(other)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        return _blended_rates(self, u)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piecewise:
+    """A part of a spline that all knots share: from its parameter ``start`` over ``length``."""
+
+    spline: CubicSpline
+    start: float
+    length: float
+
+    def at(self, u: Array) -> Array:
+        """See `Others.at`."""
+        axes: Array = self.spline(self.start + u * self.length)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Others.rates`."""
+        where = self.start + u * self.length
+        return self.spline(where, 1) * self.length, self.spline(where, 2) * self.length**2
+
+
+@dataclass(frozen=True, eq=False)
+class JointSpline:
+    """All axes along a part of a spline through several positions: PTP spline blocks."""
+
+    arm: Arm
+    placement: Placement
+    part: Piecewise
+
+    course = None
+    is_straight = False
+
+    @cached_property
+    def end(self) -> Array:
+        """See `Curve.end`."""
+        end: Array = self.part.at(np.ones(1))[0]
+        return end
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        return np.linspace(0.0, 1.0, _FEWEST)
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        return self.part.at(u)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        return self.part.rates(u)
+
+
+@dataclass(frozen=True, eq=False)
+class JointLine:
+    """All axes in step from one position to another: PTP [MOT-01]."""
+
+    arm: Arm
+    placement: Placement
+    start: Array
+    end: Array
+
+    course = None
+    is_straight = True
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        return np.linspace(0.0, 1.0, 2)
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        return self.start + u[:, None] * (self.end - self.start)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        shape = (len(u), len(self.start))
+        return np.broadcast_to(self.end - self.start, shape), np.zeros(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class BlendedAxes:
+    """A blend of axes: ``first(1 - before·(1 - u)²) - P + second(after·u²)`` [BLD-12].
+
+    P are the axes at the point between. Between two PTP that is a parabola in the space of axes.
+    """
+
+    first: Curve
+    before: float
+    second: Curve
+    after: float
+
+    course = None
+    is_straight = False
+
+    @property
+    def arm(self) -> Arm:
+        """See `Curve.arm`."""
+        return self.first.arm
+
+    @property
+    def placement(self) -> Placement:
+        """See `Curve.placement`."""
+        return self.first.placement
+
+    @cached_property
+    def end(self) -> Array:
+        """See `Curve.end`."""
+        end: Array = self.axes(np.ones(1))[0]
+        return end
+
+    @property
+    def grid(self) -> Array:
+        """See `Curve.grid`."""
+        parts = ((self.first, self.before), (self.second, self.after))
+        needed = [math.ceil(2.0 * share * len(curve.grid)) + 1 for curve, share in parts]
+        return np.linspace(0.0, 1.0, max(_FEWEST, *needed))
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        axes: Array = self.first.axes(one) - self.first.end + self.second.axes(other)
+        return axes
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        return _blended_rates(self, u)
+
+
+class CourseCurve:
+    """The axes along a course, unbroken from ``start`` on; Turn results from the path [POS-02].
+
+    ``start`` are the six axes of the robot; ``others`` what the external ones do. Raises `Fault`:
+    1366, 1447 or 1211 where the course cannot be followed, 1102 where it leads through a
+    singularity that would make an axis jump.
+    """
+
+    is_straight = False
+
+    def __init__(
+        self, arm: Arm, placement: Placement, course: Course, start: Array, others: Others
+    ) -> None:
+        self.arm = arm
+        self.placement = placement
+        self.course: Course | None = course
+        self._course = course
+        self._before = matrix_of(placement.before)
+        self._after = matrix_of(placement.after)
+        self.others = others
+        self.grid, axes = self._points(start)
+        self._table = Table(axes)
+        self.end: Array = np.concatenate((axes[-1], others.at(np.ones(1))[0]))
+
+    def axes(self, u: Array) -> Array:
+        """See `Curve.axes`."""
+        robot = self._beside(u, self._table.at(u))
+        return np.concatenate((robot, self.others.at(u)), axis=1)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Curve.rates`."""
+        first, second = self._table.rates(u)
+        others, bends = self.others.rates(u)
+        return np.concatenate((first, others), axis=1), np.concatenate((second, bends), axis=1)
+
+    def _beside(self, u: Array, references: Array) -> Array:
+        """The six axes exactly, from some beside them."""
+        robot = self.arm.inverse_near(self._flanges(u), references)
+        lost = np.isnan(robot).any(axis=1)
+        if lost.any():  # stretched out to the last nanometre
+            robot[lost] = references[lost]
+        return robot
+
+    def _along(self, u: Array, start: Array) -> Array:
+        """The six axes at rising parameters, unbroken from the start on."""
+        flanges = self._flanges(u)
+        axes = self.arm.inverse_along(flanges, start.tolist())
+        return follow(self.arm, flanges, start.tolist()) if axes is None else axes
+
+    def _flanges(self, u: Array) -> Array:
+        poses = poses_of(self._course, u)
+        if self.placement.mode is IpoMode.TCP:
+            poses = _inverted(poses)
+        flanges: Array = self._before @ poses @ self._after
+        return flanges
+
+    def _points(self, start: Array) -> tuple[Array, Array]:
+        """Parameters and axes of so many points that a spline through them is the curve."""
+        count = _FEWEST
+        while True:
+            grid = np.linspace(0.0, 1.0, count)
+            axes = self._along(grid, start)
+            rough = np.abs(np.diff(axes, n=4, axis=0)).max()
+            if rough < _SMOOTH:
+                break
+            if count >= _MOST:
+                if rough > _ROUGH:
+                    raise _singular()
+                break
+            count = 2 * count - 1
+        if np.abs(axes[0] - start).max() > _ROUGH:
+            raise _singular()
+        check_path(self.arm.machine.axes, axes)
+        return grid, axes
+
+
+def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> tuple[Array, Array]:
+    """First and second derivatives of a blend by u, from those of both its parts."""
+    one, other = 1.0 - blend.before * (1.0 - u) ** 2, blend.after * u * u
+    one_rate, other_rate = 2.0 * blend.before * (1.0 - u)[:, None], 2.0 * blend.after * u[:, None]
+    first, first_bend = blend.first.rates(one)
+    second, second_bend = blend.second.rates(other)
+    return (
+        first * one_rate + second * other_rate,
+        first_bend * one_rate**2
+        - 2.0 * blend.before * first
+        + second_bend * other_rate**2
+        + 2.0 * blend.after * second,
+    )
+
+
+def tool_positions(curve: Curve, u: Array) -> Array:
+    """Where the tool is in the base, or with a fixed tool the base in the tool: mm, ``(n, 3)``."""
+    if curve.course is not None:
+        return curve.course.at(u)[0]
+    flanges = curve.arm.forward(curve.axes(u)[:, :ROBOT_AXES])
+    placement = curve.placement
+    points = matrix_of(placement.before.inverse()) @ flanges @ matrix_of(placement.tool)
+    if placement.mode is IpoMode.TCP:
+        points = _inverted(points)
+    positions: Array = points[:, :3, 3]
+    return positions
+
+
+def _inverted(poses: Array) -> Array:
+    turned = np.swapaxes(poses[:, :3, :3], 1, 2)
+    inverse = np.zeros_like(poses)
+    inverse[:, :3, :3] = turned
+    inverse[:, :3, 3] = -(turned @ poses[:, :3, 3:])[:, :, 0]
+    inverse[:, 3, 3] = 1.0
+    return inverse
+
+
+def _singular() -> Fault:
+    text = "the path leads through a singularity, where an axis would have to jump"
+    return Fault("axis_velocity", text, number=1102, rules=("MOT-08",))

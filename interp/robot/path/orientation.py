@@ -1,0 +1,127 @@
+"""How the orientation of the tool changes along a path [ORI-01 to ORI-06].
+
+The change from one orientation to another is a swivel, which turns the tool's direction the
+shortest way, and then a rotation about that direction; both grow in step with the path. The
+direction of a tool is its X axis. Rotations are matrices ``(…, 3, 3)``, angles radians.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.solver import Array
+
+__all__ = ["Carried", "Orientation", "Turning", "about", "angle_between", "turning"]
+
+_PARALLEL = 1e-12
+_MANY = 3  # dimensions of an array of matrices
+_DIRECTION = np.array([1.0, 0.0, 0.0])
+
+
+class Orientation(Protocol):
+    """An orientation over the parameter of a path, 0 to 1."""
+
+    @property
+    def swivel(self) -> float:
+        """By what angle the tool's direction changes, in radians, 0 or more."""
+        ...
+
+    @property
+    def rotation(self) -> float:
+        """By what angle the tool turns about its direction, in radians, 0 or more."""
+        ...
+
+    def at(self, u: Array) -> Array:
+        """Rotations ``(n, 3, 3)`` for parameters ``(n,)``."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turning:
+    """Swivel and rotation in step: ``start · R(axis, u·swivel) · Rx(u·twist)``."""
+
+    start: Array
+    axis: Array
+    swivel: float
+    twist: float
+
+    @property
+    def rotation(self) -> float:
+        """See `Orientation.rotation`."""
+        return abs(self.twist)
+
+    def at(self, u: Array) -> Array:
+        """See `Orientation.at`."""
+        turned = self.start
+        if self.swivel:
+            turned = turned @ about(self.axis, u * self.swivel)
+        if self.twist:
+            turned = turned @ about(_DIRECTION, u * self.twist)
+        return turned if turned.ndim == _MANY else np.tile(turned, (len(u), 1, 1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Carried:
+    """A turning told in a frame that turns about an axis by ``angle``: #PATH on circles."""
+
+    inner: Turning
+    axis: Array
+    angle: float
+
+    @property
+    def swivel(self) -> float:
+        """See `Orientation.swivel`; an upper bound, since both turnings add."""
+        return self.inner.swivel + abs(self.angle)
+
+    @property
+    def rotation(self) -> float:
+        """See `Orientation.rotation`."""
+        return self.inner.rotation
+
+    def at(self, u: Array) -> Array:
+        """See `Orientation.at`."""
+        turned: Array = about(self.axis, u * self.angle) @ self.inner.at(u)
+        return turned
+
+
+def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
+    """From one rotation to another; with ``extent`` the other is reached at 1 / extent."""
+    change = start.T @ end
+    ahead, left, up = change[:, 0]
+    aside = math.hypot(left, up)
+    swivel = math.atan2(aside, ahead)
+    if aside < _PARALLEL:
+        # The tool's direction stays, or is reversed and no axis is the shortest way.
+        axis = np.array([0.0, 1.0, 0.0])
+        swivel = 0.0 if ahead > 0.0 else math.pi
+    else:
+        axis = np.array([0.0, -up, left]) / aside
+    rest = about(axis, np.array([-swivel]))[0] @ change
+    twist = math.atan2(rest[2, 1], rest[1, 1])
+    if abs(twist) < _PARALLEL:
+        twist = 0.0
+    return Turning(start, axis, swivel * extent, twist * extent)
+
+
+def about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
+    """Rotations ``(n, 3, 3)`` about a unit axis by angles ``(n,)``."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, versine = np.sin(radians), 2.0 * np.sin(radians / 2.0) ** 2
+    turned: Array = (
+        np.eye(3) + sine[:, None, None] * cross + versine[:, None, None] * (cross @ cross)
+    )
+    return turned
+
+
+def angle_between(one: Array, other: Array) -> float:
+    """The angle of the rotation between two, in radians; exact for small ones too."""
+    difference = one.T @ other
+    off = difference - difference.T
+    sine = math.sqrt(off[2, 1] ** 2 + off[0, 2] ** 2 + off[1, 0] ** 2) / 2.0
+    return math.atan2(sine, (float(np.trace(difference)) - 1.0) / 2.0)

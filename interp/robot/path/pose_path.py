@@ -1,0 +1,245 @@
+"""Courses: paths of poses, told in the frame in which they are programmed.
+
+A course is pure geometry. Its parameter u runs from 0 to 1 and grows in step with the way along
+it; only in blends and splines does the way a unit of u takes vary. What an arm makes of a course is
+`interp.robot.path.axis_path`. Positions are mm, arrays ``(n, 3)``; rotations are ``(n, 3, 3)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from interp.robot.kinematics.solver import Array
+from interp.robot.path.circle import Circle
+from interp.robot.path.orientation import Orientation
+
+__all__ = ["Arc", "Blend", "Course", "Line", "Way", "poses_of"]
+
+#: Nodes and weights of Gauss on 0 to 1, which integrate polynomials of degree 9 exactly.
+_NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
+_PARTS = 32
+
+
+class Course(Protocol):
+    """A path of poses."""
+
+    @property
+    def kind(self) -> str:
+        """LIN, CIRC, SPL or BLEND: what sort of curve it is."""
+        ...
+
+    @property
+    def points(self) -> Array:
+        """What defines the curve, ``(n, 3)``; each class says what they are."""
+        ...
+
+    @property
+    def length(self) -> float:
+        """The way from start to end in mm."""
+        ...
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """By how many radians the tool swivels, and turns about its direction."""
+        ...
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """Positions and rotations."""
+        ...
+
+    def tangents(self, u: Array) -> Array:
+        """Positions differentiated by u."""
+        ...
+
+    def distances(self, u: Array) -> Array:
+        """The way from the start in mm, ``(n,)``."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Line:
+    """A straight line; ``points`` are its ends."""
+
+    start: Array
+    end: Array
+    orientation: Orientation
+    kind: str = "LIN"
+
+    @property
+    def points(self) -> Array:
+        """See `Course.points`."""
+        return np.stack((self.start, self.end))
+
+    @property
+    def length(self) -> float:
+        """See `Course.length`."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """See `Course.angles`."""
+        return self.orientation.swivel, self.orientation.rotation
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `Course.at`."""
+        return self.start + u[:, None] * (self.end - self.start), self.orientation.at(u)
+
+    def tangents(self, u: Array) -> Array:
+        """See `Course.tangents`."""
+        return np.broadcast_to(self.end - self.start, (len(u), 3))
+
+    def distances(self, u: Array) -> Array:
+        """See `Course.distances`."""
+        return u * self.length
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arc:
+    """A piece of a circle; ``points`` are its start, its centre and its end."""
+
+    circle: Circle
+    orientation: Orientation
+    kind: str = "CIRC"
+
+    @property
+    def points(self) -> Array:
+        """See `Course.points`."""
+        start, end = self.circle.at(np.array([0.0, 1.0]))
+        return np.stack((start, self.circle.centre, end))
+
+    @property
+    def length(self) -> float:
+        """See `Course.length`."""
+        return self.circle.length
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """See `Course.angles`."""
+        return self.orientation.swivel, self.orientation.rotation
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `Course.at`."""
+        return self.circle.at(u), self.orientation.at(u)
+
+    def tangents(self, u: Array) -> Array:
+        """See `Course.tangents`."""
+        circle = self.circle
+        phi = (u * circle.angle)[:, None]
+        onward = np.cos(phi) * circle.second - np.sin(phi) * circle.first
+        tangents: Array = circle.radius * circle.angle * onward
+        return tangents
+
+    def distances(self, u: Array) -> Array:
+        """See `Course.distances`."""
+        return u * self.length
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blend:
+    """From one course into the next around the point P between them [BLD-12].
+
+    ``first(1 - before·(1 - u)²) - P + second(after·u²)``, and the same with rotations. It leaves
+    the first course at ``1 - before`` and joins the second at ``after``, tangent to both. Between
+    straight lines that is a parabola; its ``points`` are those of the quadratic Bézier curve:
+    where it leaves the first course, P, and where it joins the second.
+    """
+
+    first: Course
+    before: float
+    second: Course
+    after: float
+    kind: str = "BLEND"
+
+    def _parameters(self, u: Array) -> tuple[Array, Array]:
+        return 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+
+    @property
+    def points(self) -> Array:
+        """See `Course.points`."""
+        leaves, _ = self.first.at(np.array([1.0 - self.before, 1.0]))
+        joins, _ = self.second.at(np.array([self.after]))
+        return np.concatenate((leaves, joins))
+
+    @property
+    def length(self) -> float:
+        """See `Course.length`."""
+        return float(self.distances(np.ones(1))[0])
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """See `Course.angles`."""
+        (a, b), (c, d) = self.first.angles, self.second.angles
+        return a * self.before + c * self.after, b * self.before + d * self.after
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `Course.at`."""
+        one, other = self._parameters(u)
+        (*before, corner), (*turned, turn) = self.first.at(np.append(one, 1.0))
+        behind, onward = self.second.at(other)
+        rotations: Array = np.array(turned) @ turn.T @ onward
+        return np.array(before) - corner + behind, rotations
+
+    def tangents(self, u: Array) -> Array:
+        """See `Course.tangents`."""
+        one, other = self._parameters(u)
+        leaving = (2.0 * self.before * (1.0 - u))[:, None] * self.first.tangents(one)
+        joining = (2.0 * self.after * u)[:, None] * self.second.tangents(other)
+        tangents: Array = leaving + joining
+        return tangents
+
+    def distances(self, u: Array) -> Array:
+        """See `Course.distances`."""
+        return Way(self.tangents).at(u)
+
+
+class Way:
+    """The length of a curve up to any of its parameters, from its tangents."""
+
+    def __init__(self, tangents: Callable[[Array], Array], parts: int = _PARTS) -> None:
+        self._tangents = tangents
+        self._knots = np.linspace(0.0, 1.0, parts + 1)
+        steps = self._between(self._knots[:-1], self._knots[1:])
+        self._sums = np.concatenate(([0.0], np.cumsum(steps)))
+
+    @property
+    def length(self) -> float:
+        """The whole length in mm."""
+        return float(self._sums[-1])
+
+    def at(self, u: Array) -> Array:
+        """Lengths ``(n,)`` from 0 to u."""
+        place = np.clip(np.searchsorted(self._knots, u, side="right") - 1, 0, len(self._sums) - 2)
+        lengths: Array = self._sums[place] + self._between(self._knots[place], u)
+        return lengths
+
+    def parameters(self, lengths: Array) -> Array:
+        """Parameters at which lengths are reached; within 0 to 1."""
+        wanted = np.clip(lengths, 0.0, self.length)
+        low, high = np.zeros_like(wanted), np.ones_like(wanted)
+        u = np.interp(wanted, self._sums, self._knots)
+        for _ in range(8):
+            missing = wanted - self.at(u)
+            low, high = np.where(missing >= 0.0, u, low), np.where(missing <= 0.0, u, high)
+            slope = np.linalg.norm(self._tangents(u), axis=1)
+            step = np.divide(missing, slope, out=np.zeros_like(u), where=slope > 0.0)
+            u = np.clip(u + step, low, high)
+        return u
+
+    def _between(self, start: Array, end: Array) -> Array:
+        width = end - start
+        nodes = start[:, None] + width[:, None] * _NODES
+        speeds = np.linalg.norm(self._tangents(nodes.reshape(-1)), axis=1)
+        integrals: Array = (speeds.reshape(nodes.shape) @ _WEIGHTS) * width
+        return integrals
+
+
+def poses_of(course: Course, u: Array) -> Array:
+    """Homogeneous matrices ``(n, 4, 4)``."""
+    poses = np.zeros((len(u), 4, 4))
+    poses[:, :3, 3], poses[:, :3, :3] = course.at(u)
+    poses[:, 3, 3] = 1.0
+    return poses

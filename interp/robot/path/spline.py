@@ -1,0 +1,269 @@
+"""Spline blocks: one path through all points, whatever the speed [SPL-01 to SPL-03].
+
+SLIN and SCIRC are exact lines and arcs. Between them a run of SPL is a cubic spline over the
+distances of its points, whose ends take tangent and curvature from a line or an arc beside them; so
+position, tangent and curvature go on unbroken wherever one end is free to fit. Where two exact
+segments meet at an angle, or the tool only turns, the arm stands. Orientations are a spline of
+rotations over the length of the path. How a real controller shapes SPL is not published, so that
+shape is an assumption; that the path passes the points is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation, RotationSpline
+
+from interp.robot.kinematics.solver import Array
+from interp.robot.path.circle import Circle
+from interp.robot.path.orientation import Orientation, angle_between, turning
+from interp.robot.path.pose_path import Arc, Course, Line, Way
+
+__all__ = ["Free", "Knot", "Segment", "chains_of", "courses_of"]
+
+_BEND = 1e-6  # radians between tangents that count as one
+_SHORT = 1e-3  # mm of path below which the tool does little but turn, and stands on either side
+_SAMPLES = 129
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Knot:
+    """A point of a block: position in mm, rotation ``(3, 3)``."""
+
+    position: Array
+    rotation: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segment:
+    """A segment as programmed, from one knot to the next. SCIRC has its ``circle``."""
+
+    kind: str
+    start: Knot
+    end: Knot
+    circle: Circle | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether it has a shape of its own."""
+        return self.kind != "SPL"
+
+    @property
+    def chord(self) -> float:
+        """The distance of its ends in mm, along an arc its length."""
+        if self.circle is not None:
+            return self.circle.length
+        return float(np.linalg.norm(self.end.position - self.start.position))
+
+    def shape(self) -> Line | Arc:
+        """The line or arc of an exact segment."""
+        keeps = turning(self.start.rotation, self.start.rotation)
+        if self.circle is not None:
+            return Arc(self.circle, keeps)
+        return Line(self.start.position, self.end.position, keeps)
+
+    def tangent(self, u: float) -> Array:
+        """The unit tangent of an exact segment."""
+        (tangent,) = self.shape().tangents(np.array([u]))
+        direction: Array = tangent / np.linalg.norm(tangent)
+        return direction
+
+    def curvature(self, u: float) -> Array:
+        """The curvature vector of an exact segment, in 1/mm."""
+        if self.circle is None:
+            return np.zeros(3)
+        (place,) = self.circle.at(np.array([u]))
+        inward: Array = (self.circle.centre - place) / self.circle.radius**2
+        return inward
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Swept:
+    """Orientation on a part of a spline of rotations over the length of a path."""
+
+    spline: RotationSpline
+    start: float
+    length: float
+    swivel: float
+    rotation: float = 0.0
+
+    def at(self, u: Array) -> Array:
+        rotations: Array = self.spline(self.start + u * self.length).as_matrix()
+        return rotations
+
+
+class Free:
+    """An SPL: a curve of the fifth degree over its own parameter, told over its length.
+
+    ``points`` are its ends; ``ends`` has position, first and second derivative at both, ``(2, 3,
+    3)``, over a parameter that grows by ``span``.
+    """
+
+    kind = "SPL"
+
+    def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
+        self.points = ends[:, 0]
+        self._coefficients = _quintic(ends, span)
+        self._orientation = orientation
+        self.way = Way(self._slopes)
+        self.length = self.way.length
+        grid = np.linspace(0.0, 1.0, _SAMPLES)
+        self._parameter = CubicSpline(self.way.at(grid) / self.length, grid)
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """See `interp.robot.path.pose_path.Course.angles`: here the greatest rate over u."""
+        return self._orientation.swivel, self._orientation.rotation
+
+    def turned(self, orientation: Orientation) -> Free:
+        """The same with another orientation."""
+        other = object.__new__(Free)
+        other.__dict__.update(self.__dict__, _orientation=orientation)
+        return other
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `interp.robot.path.pose_path.Course.at`."""
+        powers = self._own(u)[:, None] ** np.arange(6)
+        return powers @ self._coefficients, self._orientation.at(u)
+
+    def tangents(self, u: Array) -> Array:
+        """See `interp.robot.path.pose_path.Course.tangents`."""
+        slopes = self._slopes(self._own(u))
+        tangents: Array = slopes / np.linalg.norm(slopes, axis=1)[:, None] * self.length
+        return tangents
+
+    def distances(self, u: Array) -> Array:
+        """See `interp.robot.path.pose_path.Course.distances`."""
+        return u * self.length
+
+    def _own(self, u: Array) -> Array:
+        own: Array = self._parameter(u)
+        return own
+
+    def _slopes(self, own: Array) -> Array:
+        powers = own[:, None] ** np.arange(5) * np.arange(1, 6)
+        slopes: Array = powers @ self._coefficients[1:]
+        return slopes
+
+
+def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
+    """The segments in rows that are passed without standing still."""
+    chains: list[list[Segment]] = []
+    for segment in segments:
+        before = chains[-1][-1] if chains else None
+        if before is None or _is_corner(before, segment):
+            chains.append([segment])
+        else:
+            chains[-1].append(segment)
+    return chains
+
+
+def courses_of(chain: Sequence[Segment], *, is_constant: bool = False) -> list[Course]:
+    """The courses of the segments of one chain, unbroken; with ``is_constant`` nothing turns."""
+    if chain[0].chord < _SHORT:
+        start, end = chain[0].start, chain[0].end
+        turned = start.rotation if is_constant else end.rotation
+        return [
+            Line(start.position, start.position, turning(start.rotation, turned), chain[0].kind)
+        ]
+    still = turning(chain[0].start.rotation, chain[0].start.rotation)
+    shapes: list[Line | Arc | Free] = []
+    place = 0
+    while place < len(chain):
+        if chain[place].is_exact:
+            shapes.append(chain[place].shape())
+            place += 1
+            continue
+        last = place
+        while last < len(chain) and not chain[last].is_exact:
+            last += 1
+        before = chain[place - 1] if place else None
+        behind = chain[last] if last < len(chain) else None
+        ends, spans = _run(chain[place:last], before, behind)
+        shapes += [
+            Free(ends[number : number + 2], span, still) for number, span in enumerate(spans)
+        ]
+        place = last
+    swept = _orientations(chain, [shape.length for shape in shapes], is_constant)
+    return [
+        _turned(shape, orientation, segment.kind)
+        for shape, orientation, segment in zip(shapes, swept, chain, strict=True)
+    ]
+
+
+def _turned(shape: Line | Arc | Free, orientation: Orientation, kind: str) -> Course:
+    if isinstance(shape, Free):
+        return shape.turned(orientation)
+    if isinstance(shape, Arc):
+        return Arc(shape.circle, orientation, kind)
+    return Line(shape.start, shape.end, orientation, kind)
+
+
+def _is_corner(before: Segment, segment: Segment) -> bool:
+    if before.chord < _SHORT or segment.chord < _SHORT:
+        return True
+    if not (before.is_exact and segment.is_exact):
+        return False
+    return float(np.linalg.norm(before.tangent(1.0) - segment.tangent(0.0))) > _BEND
+
+
+def _run(
+    run: Sequence[Segment], before: Segment | None, behind: Segment | None
+) -> tuple[Array, Array]:
+    """Position, first and second derivative at each point of a run of SPL, and the spans."""
+    points = np.array([run[0].start.position, *(segment.end.position for segment in run)])
+    spans = np.array([segment.chord for segment in run])
+    free = (2, np.zeros(3))
+    spline = CubicSpline(
+        np.concatenate(([0.0], np.cumsum(spans))),
+        points,
+        bc_type=(
+            (1, before.tangent(1.0)) if before else free,
+            (1, behind.tangent(0.0)) if behind else free,
+        ),
+    )
+    knots = spline.x
+    ends = np.stack((points, spline(knots, 1), spline(knots, 2)), axis=1)
+    if before:
+        ends[0, 2] = before.curvature(1.0)
+    if behind:
+        ends[-1, 2] = behind.curvature(0.0)
+    return ends, spans
+
+
+def _quintic(ends: Array, span: float) -> Array:
+    """Coefficients ``(6, 3)``, lowest power first, over a parameter of 0 to 1."""
+    (p0, v0, a0), (p1, v1, a1) = ends * np.array([1.0, span, span * span])[:, None]
+    rest = p1 - p0 - v0 - a0 / 2.0
+    slope = v1 - v0 - a0
+    bend = a1 - a0
+    return np.stack(
+        (
+            p0,
+            v0,
+            a0 / 2.0,
+            10.0 * rest - 4.0 * slope + bend / 2.0,
+            -15.0 * rest + 7.0 * slope - bend,
+            6.0 * rest - 3.0 * slope + bend / 2.0,
+        )
+    )
+
+
+def _orientations(
+    chain: Sequence[Segment], lengths: Sequence[float], is_constant: bool
+) -> Sequence[Orientation]:
+    rotations = np.array([chain[0].start.rotation, *(segment.end.rotation for segment in chain)])
+    turned = max(angle_between(one, rotations[0]) for one in rotations)
+    if is_constant or turned < 1e-12:
+        return [turning(rotations[0], rotations[0])] * len(chain)
+    knots = np.concatenate(([0.0], np.cumsum(lengths)))
+    spline = RotationSpline(knots, Rotation.from_matrix(rotations))
+    swept = []
+    for start, length in zip(knots, lengths, strict=False):
+        where = np.linspace(start, start + length, 17)
+        rate = float(np.linalg.norm(spline(where, 1), axis=1).max()) * length
+        swept.append(_Swept(spline, float(start), float(length), rate))
+    return swept

@@ -1,0 +1,56 @@
+"""A spline through evenly spaced points, made and read quickly.
+
+The coefficients of a cubic spline are linear in its points. For a given number of points the map is
+worked out once; then a spline is one product of matrices.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from interp.robot.kinematics.solver import Array
+
+__all__ = ["Table"]
+
+_MAPPED = 129
+"""Points above which the map takes more room than it is worth."""
+
+
+class Table:
+    """A twice smooth function of 0 to 1 through points ``(n, columns)``, with its derivatives."""
+
+    def __init__(self, points: Array) -> None:
+        self._count = len(points) - 1
+        if len(points) <= _MAPPED:
+            mapped = _map(len(points)) @ points
+            self._coefficients = mapped.reshape(4, self._count, points.shape[1])
+        else:
+            spline = CubicSpline(np.linspace(0.0, 1.0, len(points)), points)
+            self._coefficients = np.ascontiguousarray(spline.c)
+
+    def at(self, u: Array) -> Array:
+        """Values ``(n, columns)``."""
+        (c3, c2, c1, c0), dt = self._local(u)
+        values: Array = c0 + dt * (c1 + dt * (c2 + dt * c3))
+        return values
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First and second derivatives."""
+        (c3, c2, c1, _), dt = self._local(u)
+        return c1 + dt * (2.0 * c2 + dt * 3.0 * c3), 2.0 * c2 + dt * 6.0 * c3
+
+    def _local(self, u: Array) -> tuple[Array, Array]:
+        """The coefficients in force at each parameter, and how far it lies behind their point."""
+        place = np.minimum(np.maximum((u * self._count).astype(np.intp), 0), self._count - 1)
+        return self._coefficients[:, place], (u - place / self._count)[:, None]
+
+
+@lru_cache(maxsize=8)
+def _map(count: int) -> Array:
+    """From points to coefficients, ``(4 (count - 1), count)``."""
+    coefficients = CubicSpline(np.linspace(0.0, 1.0, count), np.eye(count)).c
+    mapped: Array = coefficients.reshape(-1, count)
+    return mapped

@@ -1,0 +1,76 @@
+"""$ORI_TYPE #JOINT: the tool keeps to its path while the wrist axes go in step [ORI-01, ORI-03].
+
+Axes 4 to 6 turn evenly from their values at the start to those at the end, so a straight wrist is
+no obstacle. Axes 1 to 3 then have to bring the tool to its place, which Newton's method finds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.placement import Placement
+from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.targets import ptp_target
+from interp.robot.path.axis_path import CourseCurve, Others
+from interp.robot.path.pose_path import Course, poses_of
+from interp.values.faults import Fault
+
+__all__ = ["WristCurve"]
+
+_MAIN = 3
+_STEP = 1e-5  # degrees
+_EXACT = 1e-9  # mm
+_CLOSE = 1e-6
+_LONGEST = 20.0  # degrees of one step of Newton's
+_ROUNDS = 30
+
+
+class WristCurve(CourseCurve):
+    """The axes along the positions of a course, with the orientation that the wrist gives.
+
+    Raises `Fault` 2829 where the end cannot be reached in the configuration of the start.
+    """
+
+    def __init__(
+        self, arm: Arm, placement: Placement, course: Course, start: Array, others: Others
+    ) -> None:
+        (end,) = poses_of(course, np.ones(1))
+        try:
+            goal = ptp_target(arm, placement.flange(Pose.from_matrix(end.tolist())), start.tolist())
+        except Fault as error:
+            text = "start and end have different configurations, which #JOINT does not allow"
+            raise Fault("configuration", text, number=2829, rules=("ORI-03",)) from error
+        self._from, self._to = start, np.array(goal.axes)
+        self._tool = matrix_of(placement.tool)
+        super().__init__(arm, placement, course, start, others)
+        #: The orientation is not that of the course, so that only the axes can be blended.
+        self.course = None
+
+    def _along(self, u: Array, start: Array) -> Array:
+        return self._beside(u, start + u[:, None] * (self._to - self._from))
+
+    def _beside(self, u: Array, references: Array) -> Array:
+        axes = references.copy()
+        axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
+        positions, _ = self._course.at(u)
+        wanted = positions @ self._before[:3, :3].T + self._before[:3, 3]
+        shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))
+        for _ in range(_ROUNDS):
+            places = self._tool_at(axes + shifts[:, None])
+            missing = wanted - places[0]
+            if np.abs(missing).max(initial=0.0) < _EXACT:
+                break
+            slopes = np.moveaxis(places[1:] - places[0], 0, -1) / _STEP
+            try:
+                step = np.linalg.solve(slopes, missing[:, :, None])[:, :, 0]
+            except np.linalg.LinAlgError:
+                break
+            axes[:, :_MAIN] += np.clip(step, -_LONGEST, _LONGEST)
+        if np.abs(missing).max(initial=0.0) > _CLOSE:
+            raise Fault("unreachable", "the path cannot be followed", number=1366)
+        return axes
+
+    def _tool_at(self, axes: Array) -> Array:
+        places: Array = self.arm.forward(axes)[..., :3, :] @ self._tool[:, 3]
+        return places

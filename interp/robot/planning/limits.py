@@ -1,0 +1,234 @@
+"""How fast a curve may be travelled, so that no axis exceeds what the machine data allow.
+
+With u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration
+``q''·u̇² + q'·ü``. Where ``|q''|·v² + |q'|·a`` stays below the limit of each axis, every profile
+with speeds up to v and accelerations up to a keeps it. So each stretch of a curve gets one v and
+one a of that kind, from samples of it; a curve whose samples differ much is cut into stretches.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, Machine
+from interp.robot.kinematics.solver import Array
+from interp.robot.path.axis_path import Curve
+from interp.robot.planning.profile import Bounds
+
+__all__ = ["AxisLimits", "Ceiling", "PathLimits", "Stretch", "axis_limits", "ceiling_of"]
+
+_MARGIN = 0.97
+"""Share of a limit that is used, for what lies between samples."""
+_ROUNDING = 1.0 - 1e-9
+_SHARE = 0.5
+"""Share of an axis's acceleration that a change of speed may take on a curve; the rest is left for
+the bends of the curve."""
+_UNEVEN = 1.25
+"""Ratio of speeds within a stretch above which it is worth cutting."""
+_SHORTEST = 4  # samples of a stretch
+_RAMP = 0.08
+"""Seconds over which a path acceleration builds up: an assumption, no rule has a figure."""
+
+_ROTARY = Dynamics(180.0, 450.0, 4500.0)
+_LINEAR = Dynamics(1000.0, 2500.0, 25000.0)
+"""What an axis may do whose machine data do not say: assumed, of the size of other arms'."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AxisLimits:
+    """Speed, acceleration and jerk of all axes, each ``(axes,)``, in deg or mm and seconds."""
+
+    velocity: Array
+    acceleration: Array
+    jerk: Array
+
+    def scaled(
+        self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
+    ) -> AxisLimits:
+        """With shares in per cent of each [MOT-02]; what lies outside 0 to 100 counts as 100."""
+        count = len(self.velocity)
+        return AxisLimits(
+            self.velocity * _shares(velocity, count),
+            self.acceleration * _shares(acceleration, count),
+            self.jerk * _shares(jerk, count),
+        )
+
+    def widest(self, other: AxisLimits) -> AxisLimits:
+        """The wider limit of two for each axis."""
+        return AxisLimits(
+            np.maximum(self.velocity, other.velocity),
+            np.maximum(self.acceleration, other.acceleration),
+            np.maximum(self.jerk, other.jerk),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PathLimits:
+    """A length that u stands for, how fast it may grow, and how fast its speed may change.
+
+    Millimetres or degrees: the path, the swivel and the rotation of the tool each have one
+    [ORI-06]. The slowest of them decides. Where ``jerk`` is infinite, acceleration builds up over
+    a fixed time.
+    """
+
+    length: float
+    velocity: float
+    acceleration: float
+    jerk: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A part of a curve with one set of bounds, all per unit of u.
+
+    ``velocity`` is what the axes allow, ``programmed`` the speed that the override takes shares of.
+    ``hardest`` and ``sharpest`` are acceleration and jerk for the hardest ramp there is [INT-09].
+    ``size`` is a length in mm or degrees that u stands for: it keeps numbers of a sensible size.
+    """
+
+    start: float
+    end: float
+    velocity: float
+    programmed: float
+    acceleration: float
+    jerk: float
+    hardest: float
+    sharpest: float
+    size: float
+
+    def bounds(self, override: float, is_hard: bool = False) -> Bounds:
+        """Bounds under an override of 0 to 1."""
+        speed = min(self.velocity, self.programmed * override)
+        if is_hard:
+            return Bounds(speed, self.hardest, self.sharpest)
+        return Bounds(speed, self.acceleration, self.jerk)
+
+    def between(self, start: float, end: float) -> Stretch:
+        """The part of it between two parameters."""
+        if start <= self.start and end >= self.end:
+            return self
+        return replace(self, start=max(start, self.start), end=min(end, self.end))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ceiling:
+    """The stretches of a curve, from u = 0 to 1."""
+
+    stretches: tuple[Stretch, ...]
+
+    def between(self, start: float, end: float) -> tuple[Stretch, ...]:
+        """The stretches of a part of the curve, cut at its ends."""
+        parts = (
+            stretch.between(start, end)
+            for stretch in self.stretches
+            if stretch.end > start and stretch.start < end
+        )
+        return tuple(part for part in parts if part.end > part.start)
+
+
+def axis_limits(machine: Machine) -> AxisLimits:
+    """What the machine data allow [MOT-05, MOT-06]."""
+    known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
+    return AxisLimits(
+        np.array([one.velocity for one in known]),
+        np.array([one.acceleration for one in known]),
+        np.array([one.jerk for one in known]),
+    )
+
+
+def ceiling_of(
+    curve: Curve,
+    machine: AxisLimits,
+    programmed: AxisLimits,
+    paths: Sequence[PathLimits],
+    share: float = _SHARE,
+) -> Ceiling:
+    """The bounds of a curve.
+
+    ``machine`` is never exceeded; ``programmed`` holds for its speeds like a programmed speed, and
+    for accelerations. ``paths`` are those that take part, and may be empty. ``jerk`` is one of the
+    path in mm/s³; where it is infinite, accelerations build up over a fixed time.
+    """
+    grid = curve.grid
+    first, second = (np.abs(rates) for rates in curve.rates(grid))
+    per_axis = _least(programmed.acceleration / _positive(first))
+    wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
+    acceleration = np.minimum((1.0 if curve.is_straight else share) * per_axis, wanted)
+    velocity = _least(machine.velocity / _positive(first))
+    if not curve.is_straight:
+        left = programmed.acceleration - first * acceleration[:, None]
+        velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
+        acceleration = acceleration * _MARGIN
+    slowest = np.minimum(
+        _least(programmed.velocity / _positive(first)),
+        min((path.velocity / path.length for path in paths), default=math.inf),
+    )
+    used = np.minimum(velocity, slowest)
+    bent = second * used[:, None] ** 2
+    hardest = _least((machine.acceleration - bent) / _positive(first)) * _MARGIN
+    hardest = np.maximum(hardest, acceleration)
+    sharpest = _least(machine.jerk / _positive(first))
+    smooth = np.minimum(_least(programmed.jerk / _positive(first)), sharpest)
+    for path in paths:
+        is_known = math.isfinite(path.jerk)
+        smooth = np.minimum(smooth, path.jerk / path.length if is_known else acceleration / _RAMP)
+    size = max([*(path.length for path in paths), float(first.max(initial=0.0)), 1e-9])
+    columns = np.stack((velocity, slowest, acceleration, smooth, hardest, sharpest), axis=1)
+    columns *= _ROUNDING
+    cuts = _cuts(used, 0, len(grid) - 1)
+    return Ceiling(tuple(_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts)))
+
+
+def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:
+    """The stretch between two samples, with what the sample beside it on either side allows."""
+    least = columns[max(low - 1, 0) : high + 2].min(axis=0)
+    velocity, programmed, acceleration, jerk, hardest, sharpest = (float(value) for value in least)
+    return Stretch(
+        start=float(grid[low]),
+        end=float(grid[high]),
+        velocity=velocity,
+        programmed=programmed,
+        acceleration=acceleration,
+        jerk=jerk,
+        hardest=hardest,
+        sharpest=sharpest,
+        size=size,
+    )
+
+
+def _cuts(speeds: Array, low: int, high: int) -> list[int]:
+    """Places of samples at which to cut, both ends included."""
+    part = speeds[low : high + 1]
+    if high - low < 2 * _SHORTEST or float(part.max()) <= _UNEVEN * float(part.min()):
+        return [low, high]
+    middle = (low + high) // 2
+    left, right = _cuts(speeds, low, middle), _cuts(speeds, middle, high)
+    lowest = [float(speeds[a : b + 1].min()) for a, b in ((left[-2], middle), (middle, right[1]))]
+    if max(lowest) <= _UNEVEN * min(lowest):  # no use in a cut between two that are alike
+        return [*left[:-1], *right[1:]]
+    return [*left, *right[1:]]
+
+
+def _dynamics(axis: Axis) -> Dynamics:
+    if axis.dynamics is not None:
+        return axis.dynamics
+    return _LINEAR if axis.kind is AxisKind.LINEAR else _ROTARY
+
+
+def _shares(percents: Sequence[float], count: int) -> Array:
+    known = [percent / 100.0 if 0.0 < percent <= 100.0 else 1.0 for percent in percents[:count]]
+    return np.array(known + [1.0] * (count - len(known)))
+
+
+def _positive(rates: Array) -> Array:
+    return np.maximum(rates, 1e-12)
+
+
+def _least(ratios: Array) -> Array:
+    least: Array = ratios.min(axis=1)
+    return least

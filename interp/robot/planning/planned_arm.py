@@ -1,0 +1,427 @@
+"""The arm as it is planned: motions in, one unbroken path out, and the time of each point on it.
+
+Each motion becomes a section of path, and so does each blend between two. From where the arm is
+at a call, all that lies ahead is scheduled anew; what has been travelled stays. So a motion that is
+appended in time turns the stop at the end of the last one into a blend, and one that comes too late
+leaves the stop as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.arm import ArmEvent, Motion, Position, Samples
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.targets import check_limits
+from interp.robot.path.targets_in_force import Programmed, check_numbers, check_start
+from interp.robot.planning.blending import blend_of, zone_of
+from interp.robot.planning.execution import Journey
+from interp.robot.planning.path_events import Passage, events_of
+from interp.robot.planning.spline_blocks import block
+from interp.robot.planning.timeline import (
+    MICROSECOND,
+    Key,
+    Leg,
+    Section,
+    Timeline,
+    micros,
+    tool_tangents,
+)
+from interp.robot.planning.tracks import Track, Tracks
+from interp.values.faults import Fault
+
+__all__ = ["PlannedArm"]
+
+_BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    """All that is planned and not yet travelled. ``last`` is the motion that the next follows.
+
+    ``programmed`` is the target that the next motion starts from.
+    """
+
+    programmed: Programmed
+    route: tuple[Section, ...] = ()
+    passages: tuple[Passage, ...] = ()
+    last: Track | None = None
+    is_aborted: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Mark:
+    plan: _Plan
+    brakes: tuple[_Plan | None, ...]
+    legs: tuple[Leg, ...]
+    stopped: ArmEvent | None
+    has_begun: bool
+    now: int
+
+
+class PlannedArm:
+    """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
+
+    ``start`` are the axes as `Machine.standing` takes them. With ``is_selected`` the first motion
+    has to be a PTP that leaves nothing open [MOT-10]. Raises `Fault` 1447 for a start beyond a
+    software limit switch, 1443 for a first motion that is not allowed as such.
+    """
+
+    def __init__(
+        self, machine: Machine, start: Sequence[float], *, is_selected: bool = True
+    ) -> None:
+        self._tracks = Tracks(machine)
+        axes = np.array(machine.standing(start))
+        check_limits((*machine.axes, *machine.externals), axes.tolist())
+        self._plan = _Plan(Programmed(self._tracks.arm, axes))
+        #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
+        self._brakes: list[_Plan | None] = []
+        self._timeline = Timeline(axes)
+        self._journey = Journey(self._timeline)
+        self._override = 1.0
+        self._stopped: ArmEvent | None = None
+        self._has_begun = not is_selected
+        self._agenda: list[ArmEvent] | None = None
+        self._now = 0
+
+    # ------------------------------------------------------------------------------- planning
+
+    def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
+        """Append a motion; see `interp.robot.arm.Arm.plan`.
+
+        Returns the numbers of messages that stop nothing: 3171 for a motion of length zero
+        [MOT-11], 2868 for a PTP into a singularity [POS-08].
+        """
+        self._observe(now)
+        if not self._has_begun:
+            check_start(motion)
+        check_numbers(motion)
+        plan = self._standing_plan() if self._is_braked else self._plan
+        if motion.kind in {"SPLINE", "PTP_SPLINE"}:
+            track, programmed = block(self._tracks, motion, plan.programmed)
+        else:
+            track, programmed = self._tracks.track(
+                motion, plan.programmed, is_after_abort=plan.is_aborted
+            )
+        if plan is not self._plan:
+            self._brakes[-1] = self._plan
+            self._plan = plan
+        if not self._append_blended(track, programmed):
+            sections = _sections(track)
+            self._plan = _Plan(
+                programmed,
+                (*self._plan.route, *sections),
+                (*self._plan.passages, Passage(motion, sections)),
+                track,
+            )
+            self._reschedule(self._plan.route)
+        self._has_begun = True
+        return track.notices
+
+    def mark(self) -> object:
+        """See `interp.robot.arm.Arm.mark`."""
+        return _Mark(
+            self._plan,
+            tuple(self._brakes),
+            tuple(self._timeline.legs),
+            self._stopped,
+            self._has_begun,
+            self._now,
+        )
+
+    def rewind(self, mark: object) -> None:
+        """See `interp.robot.arm.Arm.rewind`."""
+        if not isinstance(mark, _Mark):
+            raise TypeError("not a mark of this arm")
+        self._plan, self._brakes = mark.plan, list(mark.brakes)
+        self._timeline.restore(0, mark.legs)
+        self._stopped = mark.stopped
+        self._has_begun, self._now = mark.has_begun, mark.now
+        self._agenda = None
+
+    def _append_blended(self, track: Track, programmed: Programmed) -> bool:
+        """Append a motion with a blend from the last one into it, if there is a way and time."""
+        before = self._plan
+        if before.last is None or not before.route or not before.passages:
+            return False
+        body, passage = before.route[-1], before.passages[-1]
+        zone = zone_of(before.last, track)
+        if zone is None or body.number != passage.number:
+            return False
+        leaves = 1.0 - zone.before
+        reached = self._journey.reached(body, self._now * MICROSECOND)
+        if self._override == 0.0:  # it may brake still
+            reached = max(reached, self._journey.stood_at(body))
+        if leaves < body.start or reached > leaves:
+            return False
+        try:
+            curve, ceiling = blend_of(
+                before.last, track, zone, self._tracks.machine, self._tracks.limits
+            )
+        except Fault:
+            return False
+        number = track.motion.number
+        shorter = replace(body, end=leaves)
+        blend = Section(body.number, number, curve, ceiling, gear=1.0 / (2.0 * zone.before))
+        first, *others = _sections(track)
+        rest = (replace(first, start=zone.after, gear=2.0 * zone.after), *others)
+        route = (*before.route[:-1], shorter, blend, *rest)
+        if not self._reschedule(route, new_behind=shorter):
+            return False
+        self._plan = _Plan(
+            programmed,
+            route,
+            (
+                *before.passages[:-1],
+                replace(passage, body=(*passage.body[:-1], shorter), out=blend),
+                Passage(track.motion, rest, into=blend),
+            ),
+            track,
+        )
+        return True
+
+    def _standing_plan(self) -> _Plan:
+        """An empty plan from where the arm stops."""
+        legs = self._timeline.legs
+        axes = self._timeline.axes_at(max(legs[-1].ends, self._now * MICROSECOND))
+        return _Plan(Programmed(self._tracks.arm, axes))
+
+    # ----------------------------------------------------------------------------------- events
+
+    def next_event(self) -> ArmEvent | None:
+        """See `interp.robot.arm.Arm.next_event`."""
+        agenda = self._events()
+        return agenda[-1] if agenda else None
+
+    def take(self) -> ArmEvent:
+        """As `interp.robot.arm.Arm.take`. Raises `IndexError` where nothing lies ahead."""
+        event = self._events().pop()
+        self._now = max(self._now, event.time)
+        if event.kind == "stopped":
+            self._stopped = None
+            return event
+        self._plan = replace(self._plan, passages=self._taken(self._plan.passages, event))
+        return event
+
+    def pending(self) -> int:
+        """See `interp.robot.arm.Arm.pending`."""
+        plans = (*(plan for plan in self._brakes if plan is not None), self._plan)
+        return sum(
+            ("motion_end", None) not in passage.taken for plan in plans for passage in plan.passages
+        )
+
+    def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:
+        """With an event taken; a motion with no events left is dropped, unless it is the last."""
+        found = []
+        for passage in passages:
+            known = passage
+            if passage.number == event.motion:
+                known = replace(passage, taken=passage.taken | {(event.kind, event.key)})
+            if passage is passages[-1] or not known.is_over:
+                found.append(known)
+        return tuple(found)
+
+    def _events(self) -> list[ArmEvent]:
+        """All events ahead, the earliest last."""
+        if self._agenda is None:
+            found = [
+                (time, passage.number, rank, event)
+                for passage in self._plan.passages
+                for time, rank, event in events_of(
+                    passage, self._timeline, self._now, self._stop_from
+                )
+            ]
+            found.sort(key=lambda entry: entry[:3], reverse=True)
+            self._agenda = [event for _, _, _, event in found]
+            if self._stopped is not None:
+                time = self._stopped.time
+                place = sum(event.time > time for event in self._agenda)
+                self._agenda.insert(place, self._stopped)
+        return self._agenda
+
+    # ------------------------------------------------------------------------------ where it is
+
+    def target(self) -> Position:
+        """Where the motion planned last leads, or where the arm stands if there was none."""
+        programmed = self._plan.programmed
+        return Position(tuple(programmed.axes.tolist()), programmed.flange)
+
+    def position(self, time: int) -> Position:
+        """See `interp.robot.arm.Arm.position`."""
+        axes = self._timeline.axes_at(time * MICROSECOND)
+        flange = self._tracks.arm.forward(axes[:ROBOT_AXES])
+        return Position(tuple(axes.tolist()), Pose.from_matrix(flange.tolist()))
+
+    def speed(self, time: int) -> float:
+        """See `interp.robot.arm.Arm.speed`."""
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
+        if leg is None or seconds >= leg.ends:
+            return 0.0
+        u, speed, _ = leg.at(np.array([seconds]))
+        tangent = tool_tangents(leg.section.curve, u)
+        return float(np.linalg.norm(tangent)) * abs(float(speed[0])) / 1000.0
+
+    def distances(self, time: int) -> tuple[float, float]:
+        """See `interp.robot.arm.Arm.distances`; 0 and 0 where no motion is on."""
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
+        if leg is None:
+            return 0.0, 0.0
+        section, u = leg.section, leg.state(seconds).u
+        number = section.number
+        if section.following is not None and u >= 0.5:
+            number = section.following
+        for passage in self._plan.passages:
+            if passage.number == number:
+                return passage.distances(section.key, u)
+        return 0.0, 0.0
+
+    def sample(self, times: npt.NDArray[np.int64]) -> Samples:
+        """See `interp.robot.arm.Arm.sample`."""
+        return self._timeline.sample(np.asarray(times, dtype=np.int64))
+
+    def path(self) -> tuple[Leg, ...]:
+        """The legs of path from the first that is remembered to the last that is planned.
+
+        Each has its `Section` with the curve: its parameters, for a path of the tool its course
+        with kind and control points, and when it is travelled.
+        """
+        return tuple(self._timeline.legs)
+
+    def forget(self, before: int) -> None:
+        """Drop what was travelled before a time: nobody will ask for it any more."""
+        self._timeline.forget(before * MICROSECOND)
+
+    # ------------------------------------------------------------------------ stopping and going
+
+    def override(self, now: int, percent: float) -> None:
+        """See `interp.robot.arm.Arm.override`. Raises `Fault` 1422 outside 0 to 100."""
+        if not 0.0 <= percent <= 100.0:
+            text = f"$OV_PRO is {percent:g}, not within 0 to 100"
+            raise Fault("invalid", text, number=1422, rules=("MOT-09",))
+        self._observe(now)
+        was, self._override = self._override, percent / 100.0
+        if self._is_braked or was == self._override:
+            return
+        if self._override == 0.0:
+            self._halt(was, is_hard=False)
+        else:
+            self._reschedule(self._plan.route)
+
+    def brake(self, now: int, is_hard: bool) -> None:
+        """See `interp.robot.arm.Arm.brake`."""
+        self._observe(now)
+        self._halt(self._override or 1.0, is_hard=is_hard)
+        self._brakes.append(None)
+        self._tell_stop()
+
+    def proceed(self, now: int) -> None:
+        """See `interp.robot.arm.Arm.proceed`: undoes the latest brake.
+
+        Raises `ValueError` where the arm has been moved away and not back.
+        """
+        self._observe(now)
+        if self._brakes and (plan := self._brakes[-1]) is not None:
+            here = self._timeline.axes_at(self._end())
+            if np.abs(here - self._left_at(plan)).max() > _BACK:
+                raise ValueError("the arm is not where the brake has left it")
+            self._plan = plan
+        del self._brakes[-1:]
+        self._stopped = None
+        if not self._is_braked and self._override > 0.0:
+            self._reschedule(self._plan.route)
+
+    def discard(self, now: int) -> None:
+        """See `interp.robot.arm.Arm.discard`."""
+        self._observe(now)
+        is_moving = self._journey.is_moving(now * MICROSECOND)
+        if is_moving and not self._is_braked:
+            self._halt(self._override or 1.0, is_hard=False)
+            self._tell_stop()
+        else:
+            self._timeline.cut(now * MICROSECOND if not is_moving else self._end())
+        self._brakes.clear()
+        axes = self._timeline.axes_at(self._end())
+        self._plan = _Plan(Programmed(self._tracks.arm, axes), is_aborted=True)
+        self._agenda = None
+
+    def _tell_stop(self) -> None:
+        passages = self._plan.passages
+        number = passages[0].number if passages else 0
+        leg = self._timeline.leg_at(self._end())
+        if leg is not None:
+            number = leg.section.number
+        time = max(self._now, micros(self._end()))
+        self._stopped = ArmEvent(time, "stopped", number)
+        self._agenda = None
+
+    def _end(self) -> float:
+        """When the last leg ends, or now."""
+        legs = self._timeline.legs
+        return max(legs[-1].ends if legs else 0.0, self._now * MICROSECOND)
+
+    @property
+    def _is_braked(self) -> bool:
+        """Whether the last brake still holds what it interrupted."""
+        return bool(self._brakes) and self._brakes[-1] is None
+
+    def _observe(self, now: int) -> None:
+        """Time has gone on: what was travelled is no longer ahead."""
+        self._now = max(self._now, now)
+        route = self._plan.route
+        ahead = self._journey.ahead(route, self._now * MICROSECOND)
+        if len(ahead) < len(route):
+            self._plan = replace(self._plan, route=ahead)
+
+    def _left_at(self, plan: _Plan) -> Array:
+        """The axes where a plan was interrupted."""
+        if not plan.route:
+            return plan.programmed.axes
+        section = plan.route[0]
+        axes: Array = section.curve.axes(np.array([self._journey.stood_at(section)]))[0]
+        return axes
+
+    def _reschedule(self, route: Sequence[Section], *, new_behind: Section | None = None) -> bool:
+        """Lay legs for a route from now on; with an override of 0, once that is greater.
+
+        Where it is new behind a section, only if no seam is overrun.
+        """
+        self._agenda = None
+        if self._override == 0.0:
+            return True
+        time = self._now * MICROSECOND
+        return self._journey.go(route, time, self._override, new_behind=new_behind)
+
+    def _halt(self, override: float, *, is_hard: bool) -> None:
+        """Stop on the path."""
+        self._agenda = None
+        self._journey.halt(self._plan.route, self._now * MICROSECOND, override, is_hard=is_hard)
+
+    def _stop_from(self, time: float) -> tuple[Key, float] | None:
+        """Where a brake at a time would end; ``None`` where the arm stands then."""
+        if self._is_braked:
+            return None
+        return self._journey.stop_from(self._plan.route, time, self._override or 1.0)
+
+
+def _sections(track: Track) -> tuple[Section, ...]:
+    """The sections of a motion that nothing is blended into or out of."""
+    return tuple(
+        Section(
+            track.motion.number,
+            None,
+            piece.curve,
+            piece.ceiling,
+            gear=piece.gear,
+            is_still=piece.is_still,
+            part=part,
+        )
+        for part, piece in enumerate(track.pieces)
+    )

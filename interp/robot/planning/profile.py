@@ -1,0 +1,272 @@
+"""How a stretch of path is travelled: position, speed and acceleration over time.
+
+A profile has one degree of freedom and bounded jerk. Ruckig finds it; here it becomes a row of
+cubics that can be evaluated at many times at once. Positions are in whatever unit the caller has,
+times in seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import ruckig
+
+from interp.robot.kinematics.solver import Array
+
+__all__ = ["Bounds", "Profile", "Ramp", "ramp", "standing", "stop", "travel"]
+
+_SLACK = 1e-7
+"""Share of a length within which speeding up or braking all the way is what fills it."""
+_EXACT = 1e-9
+"""Share of a length by which Ruckig's answer may miss it."""
+_ROUNDS = 60
+_INSTANT = 1e-12  # seconds
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """The most that a profile may have: speed, acceleration, jerk."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+class Profile:
+    """Cubics one after the other, each with its start: time, position, speed, acceleration, jerk.
+
+    It begins at time 0 and position 0.
+    """
+
+    def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
+        """From a speed on, with pieces of duration, acceleration at their start, and jerk."""
+        time = position = 0.0
+        knots: list[tuple[float, ...]] = []
+        for duration, acceleration, jerk in pieces:
+            knots.append((time, position, speed, acceleration, jerk))
+            position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
+            speed += duration * (acceleration + duration * jerk / 2.0)
+            time += duration
+        self.knots = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
+        #: Seconds from start to end, the position and the speed there.
+        self.duration, self.length, self.final = time, position, speed
+
+    @property
+    def lowest(self) -> float:
+        """The lowest speed at a start of a piece or at the end."""
+        return min(self.final, *(knot[2] for knot in self.knots))
+
+    @cached_property
+    def _columns(self) -> Array:
+        return np.array(self.knots).T
+
+    def at(self, times: Array) -> tuple[Array, Array, Array]:
+        """Position, speed and acceleration; before the start and behind the end as there."""
+        clipped = np.minimum(np.maximum(times, 0.0), self.duration)
+        starts, positions, speeds, accelerations, jerks = self._columns
+        place = np.searchsorted(starts, clipped, side="right") - 1
+        dt = clipped - starts[place]
+        jerk, acceleration, speed = jerks[place], accelerations[place], speeds[place]
+        return (
+            positions[place] + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
+            speed + dt * (acceleration + dt * jerk / 2),
+            acceleration + dt * jerk,
+        )
+
+    def state(self, time: float) -> tuple[float, float, float]:
+        """`at` for a single time."""
+        clipped = min(max(time, 0.0), self.duration)
+        start, position, speed, acceleration, jerk = self.knots[0]
+        for knot in self.knots[1:]:
+            if knot[0] > clipped:
+                break
+            start, position, speed, acceleration, jerk = knot
+        dt = clipped - start
+        return (
+            position + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
+            speed + dt * (acceleration + dt * jerk / 2),
+            acceleration + dt * jerk,
+        )
+
+    def time_at(self, position: float) -> float:
+        """When a position is reached first; the nearest end where it never is."""
+        if position <= 0.0:
+            return 0.0
+        if position >= self.length:
+            return self.duration
+        low, high = self.knots[0], self.duration
+        for knot in self.knots[1:]:
+            if knot[1] >= position:
+                high = knot[0]
+                break
+            low = knot
+        origin, start, speed, acceleration, jerk = low
+        first, last = 0.0, high - origin
+        dt = last / 2
+        for _ in range(_ROUNDS):
+            beyond = start + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)) - position
+            first, last = (first, dt) if beyond >= 0.0 else (dt, last)
+            slope = speed + dt * (acceleration + dt * jerk / 2)
+            following = dt - beyond / slope if slope > 0.0 else first
+            if not first < following < last:
+                following = (first + last) / 2
+            if abs(following - dt) < _INSTANT:
+                break
+            dt = following
+        return origin + dt
+
+    def stretched(self, length: float) -> Profile:
+        """The same with its end at a length that differs in rounding only."""
+        if self.length <= 0.0:
+            return self
+        share = length / self.length
+        other = Profile(0.0, ())
+        other.knots = [
+            (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
+        ]
+        other.duration, other.length, other.final = self.duration, length, self.final * share
+        return other
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """The quickest change of speed, with the acceleration at zero in the end.
+
+    ``pieces`` are up to three of duration, acceleration at the start, and jerk.
+    """
+
+    duration: float
+    distance: float
+    pieces: tuple[tuple[float, float, float], ...]
+
+
+_NONE = Ramp(0.0, 0.0, ())
+
+
+def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ramp:
+    """The change from a speed and acceleration to a target speed.
+
+    The acceleration has to be within its bound.
+    """
+    jerk, most = bounds.jerk, bounds.acceleration
+    eased = speed + acceleration * abs(acceleration) / (2 * jerk)
+    sign = 1.0 if target >= eased else -1.0
+    start = sign * acceleration  # as if speeding up
+    change = sign * (target - speed)
+    peak = math.sqrt(max(jerk * change + start * start / 2, 0.0))
+    hold = 0.0
+    if peak > most:
+        hold = (change - (2 * most * most - start * start) / (2 * jerk)) / most
+        peak = most
+    rise, fall = max(peak - start, 0.0) / jerk, peak / jerk
+    # Distances in the mirrored frame, from the speed at the start of each phase.
+    first = sign * speed
+    second = first + rise * (start + peak) / 2
+    third = second + hold * peak
+    travelled = (
+        rise * (first + rise * (start / 2 + rise * jerk / 6))
+        + hold * (second + hold * peak / 2)
+        + fall * (third + fall * (peak / 2 - fall * jerk / 6))
+    )
+    pieces = (
+        (rise, acceleration, sign * jerk),
+        (hold, sign * peak, 0.0),
+        (fall, sign * peak, -sign * jerk),
+    )
+    return Ramp(rise + hold + fall, sign * travelled, pieces)
+
+
+def travel(
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+) -> Profile:
+    """The quickest way over a length, from a speed and acceleration to a target speed.
+
+    The acceleration is zero in the end. The caller has seen by `ramp` that it can be done; where
+    the length is just what the change of speed takes, that change is all there is.
+    """
+    direct = ramp(speed, acceleration, target, bounds)
+    if direct.distance >= length * (1.0 - _SLACK):
+        return Profile(speed, _lasting(direct.pieces)).stretched(length)
+    found = _solved(length, speed, acceleration, target, bounds)
+    misses = found is None or abs(found.length - length) > _EXACT * length
+    if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
+        found = _searched(length, speed, acceleration, target, bounds)
+    return found.stretched(length)
+
+
+def stop(speed: float, acceleration: float, bounds: Bounds) -> Profile:
+    """The quickest way to stand still, however far that is."""
+    return Profile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
+
+
+def standing(duration: float) -> Profile:
+    """No motion at all."""
+    return Profile(0.0, ((duration, 0.0, 0.0),))
+
+
+def _solved(
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+) -> Profile | None:
+    """What Ruckig finds, if anything.
+
+    It is asked in units in which the speed is at most 1, since its tolerances are absolute.
+    """
+    unit = max(bounds.velocity, target)
+    asked = ruckig.InputParameter(1)
+    asked.current_position = [0.0]
+    asked.current_velocity = [speed / unit]
+    asked.current_acceleration = [acceleration / unit]
+    asked.target_position = [length / unit]
+    asked.target_velocity = [target / unit]
+    asked.target_acceleration = [0.0]
+    asked.max_velocity = [1.0]
+    asked.max_acceleration = [bounds.acceleration / unit]
+    asked.max_jerk = [bounds.jerk / unit]
+    trajectory = ruckig.Trajectory(1)
+    try:
+        result = ruckig.Ruckig(1).calculate(asked, trajectory)
+    except ruckig.RuckigError:
+        return None
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        return None
+    solved = trajectory.profiles[0][0]
+    pieces = [
+        *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
+        *zip(solved.t, solved.a[:-1], solved.j, strict=True),
+    ]
+    return Profile(speed, _lasting((t, a * unit, jerk * unit) for t, a, jerk in pieces))
+
+
+def _searched(
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+) -> Profile:
+    """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
+
+    def parts(cruise: float) -> tuple[Ramp, Ramp]:
+        return ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds)
+
+    def fits(cruise: float) -> bool:
+        return sum(part.distance for part in parts(cruise)) <= length
+
+    eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
+    low, high = max(eased, target), max(bounds.velocity, target)
+    if fits(low):
+        for _ in range(_ROUNDS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if fits(middle) else (low, middle)
+        ramps = parts(low)
+    else:  # it brakes already, and all that is left over is travelled behind that
+        low, ramps = target, (ramp(speed, acceleration, target, bounds), _NONE)
+    rest = max(length - sum(part.distance for part in ramps), 0.0)
+    cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
+    return Profile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
+
+
+def _lasting(
+    pieces: Iterable[tuple[float, float, float]],
+) -> Iterator[tuple[float, float, float]]:
+    return (piece for piece in pieces if piece[0] > 0.0)

@@ -1,0 +1,211 @@
+"""Spline blocks as tracks: each segment a piece, with the speeds that its ranges ask for.
+
+A block is planned as a whole [SPL-01]. Its points are told in the frames that are in force for the
+block; speeds may differ by segment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from interp.robot.arm import Motion, Settings, SplinePart
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.solver import Array, matrix_of
+from interp.robot.kinematics.targets import check_path
+from interp.robot.path.axis_path import InStep, JointLine, JointSpline, Others, Piecewise
+from interp.robot.path.circle import circle_through
+from interp.robot.path.pose_path import Course
+from interp.robot.path.spline import Knot, Segment, chains_of, courses_of
+from interp.robot.path.targets_in_force import Programmed
+from interp.robot.planning.limits import ceiling_of
+from interp.robot.planning.spline_ranges import with_ranges
+from interp.robot.planning.tracks import Piece, Track, Tracks
+from interp.values.faults import Fault
+
+__all__ = ["block"]
+
+_STILL = 1e-6  # mm or degrees
+_CLOSE = np.linspace(0.0, 1.0, 257)
+"""Of u, where a spline of axes is looked at for software limits: it may swing beyond its points."""
+_MOST_SEGMENTS = 1000
+"""Segments of one block; where the limit of a controller lies is not published."""
+
+
+def block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+    """The track of a spline block, and the target it leads to.
+
+    Raises `Fault`: 2359 or 2380 for a segment of the other type [SPL-04], 3273 for too many, 3214
+    to 3217 where a constant speed cannot be kept [SPL-05], and as `Tracks.track` does.
+    """
+    is_ptp = motion.kind == "PTP_SPLINE"
+    for part in motion.parts:
+        if (part.kind == "SPTP") is not is_ptp:
+            text = f"{part.kind} is not allowed in this spline block"
+            raise Fault("spline", text, number=2380 if is_ptp else 2359, rules=("SPL-04",))
+    if len(motion.parts) > _MOST_SEGMENTS:
+        raise Fault("spline", "the spline block is too long", number=3273, rules=("SPL-06",))
+    if not motion.parts:
+        still = tracks.still(before.axes, motion.settings)
+        return Track(motion, (still,), tracks.limits), before
+    if is_ptp:
+        return _ptp_block(tracks, motion, before)
+    return _cp_block(tracks, motion, before)
+
+
+# ------------------------------------------------------------------------------------- CP blocks
+
+
+def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+    """SPL, SLIN and SCIRC."""
+    settings = motion.settings
+    placement = settings.placement
+    knot = _knot(placement.in_path(placement.point(before.flange)))
+    target, segments, externals = before, [], [before.axes[ROBOT_AXES:]]
+    for part in motion.parts:
+        components = target.components_of(part.target, placement)
+        following = _knot(placement.in_path(Pose.of(*components)))
+        segment = _segment(part, knot, following, target, settings)
+        externals.append(target.externals(part.target, False))
+        axes = np.concatenate((target.axes[:ROBOT_AXES], externals[-1]))
+        target, knot = target.reached(axes, components, placement), segment.end
+        segments.append(segment)
+    pieces = _pieces(tracks, motion, segments, np.array(externals), before.axes)
+    track = Track(motion, with_ranges(motion, pieces), tracks.limits)
+    axes = pieces[-1].curve.end
+    is_told = motion.parts[-1].angle is None
+    point = target.components if is_told else None
+    return track, before.reached(axes, point, placement)
+
+
+def _segment(
+    part: SplinePart, start: Knot, end: Knot, before: Programmed, settings: Settings
+) -> Segment:
+    """A segment of a block; SCIRC ends as far along its circle as its angle says."""
+    if part.kind != "SCIRC":
+        return Segment(part.kind, start, end)
+    placement = settings.placement
+    components = before.components_of(part.auxiliary or {}, placement)
+    middle = placement.in_path(Pose.of(*components))
+    circle = circle_through(start.position, np.array(middle.position), end.position, part.angle)
+    (place,) = circle.at(np.ones(1))
+    return Segment(part.kind, start, Knot(place, end.rotation), circle)
+
+
+def _pieces(
+    tracks: Tracks,
+    motion: Motion,
+    segments: Sequence[Segment],
+    externals: Array,
+    start: Array,
+) -> tuple[Piece, ...]:
+    """A piece for each segment, unbroken from the axes of the start on."""
+    keeps = motion.settings.orientation == "#CONSTANT"
+    pieces: list[Piece] = []
+    axes = start[:ROBOT_AXES]
+    number = 0
+    for row in chains_of(segments):
+        chain = _kept(row, segments[0].start) if keeps else row
+        courses = courses_of(chain, is_constant=keeps)
+        travelled = externals[number : number + len(chain) + 1]
+        for place, course in enumerate(courses):
+            settings = motion.parts[number].settings or motion.settings
+            # Wrist axes in step would change their speed at each point, so they are not [ORI-03].
+            settings = replace(settings, orientation="#VAR")
+            others = _others(courses, travelled, place)
+            length = max(course.length, *np.degrees(course.angles))
+            if (
+                length < _STILL
+                and np.abs(travelled[place + 1] - travelled[place]).max(initial=0.0) < _STILL
+            ):
+                piece = tracks.still(np.concatenate((axes, travelled[place])), settings)
+            else:
+                check_path(tracks.machine.externals, others.at(_CLOSE))
+                piece = tracks.along(course, axes, others, "SPL", settings)
+                if place:
+                    piece = replace(piece, gear=courses[place - 1].length / course.length)
+                axes = piece.curve.end[:ROBOT_AXES]
+            pieces.append(piece)
+            number += 1
+    return tuple(pieces)
+
+
+def _kept(chain: Sequence[Segment], first: Knot) -> list[Segment]:
+    """The segments with the orientation in which the block begins."""
+    return [
+        replace(
+            segment,
+            start=Knot(segment.start.position, first.rotation),
+            end=Knot(segment.end.position, first.rotation),
+        )
+        for segment in chain
+    ]
+
+
+def _others(courses: Sequence[Course], externals: Array, place: int) -> Others:
+    """The external axes along a segment: a spline over the length of the chain."""
+    if len(courses) == 1 or not externals.shape[1]:
+        return InStep(externals[place], externals[place + 1])
+    knots = np.cumsum([0.0, *(course.length for course in courses)])
+    spline = CubicSpline(knots, externals, bc_type="natural")
+    return Piecewise(spline, float(knots[place]), courses[place].length)
+
+
+def _knot(pose: Pose) -> Knot:
+    matrix = matrix_of(pose)
+    return Knot(matrix[:3, 3], matrix[:3, :3])
+
+
+# ------------------------------------------------------------------------------------ PTP blocks
+
+
+def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+    """A spline of all axes through the targets of the SPTP, over the times of the leading axes."""
+    target, points, spans = before, [before.axes], []
+    for part in motion.parts:
+        own = part.settings or motion.settings
+        goal = target.goal(motion, part.target, motion.settings.placement)
+        travel = np.abs(goal.axes - points[-1])
+        is_still = bool(travel.max() < _STILL)
+        spans.append(0.0 if is_still else float((travel / tracks.programmed(own).velocity).max()))
+        points.append(points[-1] if is_still else goal.axes)
+        target = target.reached(goal.axes, None, motion.settings.placement)
+    pieces: list[Piece] = []
+    for first, last in _runs(spans):
+        knots = np.cumsum([0.0, *spans[first:last]])
+        spline = None
+        if last - first > 1:
+            spline = CubicSpline(knots, np.array(points[first : last + 1]), bc_type="natural")
+        for place in range(first, last):
+            own = motion.parts[place].settings or motion.settings
+            if spans[place] == 0.0:
+                pieces.append(tracks.still(points[place], own))
+                continue
+            curve: JointLine | JointSpline
+            if spline is None:
+                curve = JointLine(tracks.arm, own.placement, points[place], points[place + 1])
+            else:
+                part_of = Piecewise(spline, float(knots[place - first]), spans[place])
+                curve = JointSpline(tracks.arm, own.placement, part_of)
+                check_path(tracks.every, part_of.at(_CLOSE))
+            limits = tracks.programmed(own)
+            ceiling = ceiling_of(curve, tracks.limits, limits, tracks.reduced(curve, own))
+            gear = spans[place - 1] / spans[place] if place > first else 0.0
+            pieces.append(Piece(curve, ceiling, (), gear))
+    last_settings = motion.parts[-1].settings or motion.settings
+    track = Track(motion, tuple(pieces), tracks.programmed(last_settings))
+    return track, target
+
+
+def _runs(spans: Sequence[float]) -> list[tuple[int, int]]:
+    """Segments in rows that are passed without standing still; one of no length is its own row."""
+    cuts = {0, len(spans)}
+    for place, span in enumerate(spans):
+        if span == 0.0:
+            cuts |= {place, place + 1}
+    return list(pairwise(sorted(cuts)))

@@ -1,0 +1,229 @@
+"""CONST_VEL and TIME_BLOCK: parts of a spline block with a constant speed, or a given duration.
+
+Where a range begins or ends is told in mm from the end of the segment behind it, or from its start
+[SPL-07].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from interp.robot.arm import Motion, SplineRange
+from interp.robot.kinematics.solver import Array
+from interp.robot.planning.limits import Ceiling, Stretch
+from interp.robot.planning.profile import Profile
+from interp.robot.planning.schedule import AtRest, Step, schedule
+from interp.robot.planning.tracks import Piece
+from interp.values.faults import Fault
+
+__all__ = ["with_ranges"]
+
+_ROUNDS = 60
+_SAME = 1e-6
+"""Relative difference of speeds or durations that counts as none."""
+
+Pieces = tuple[Piece, ...]
+
+
+def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
+    """The pieces of a block with the speeds that its ranges leave.
+
+    Raises `Fault`: 3214 where the programmed speed cannot be kept in a range of constant speed,
+    3215 where the arm stands in it, 3216 or 3217 where the way before or behind it is too short to
+    speed up or brake [SPL-05]; and where both kinds of range are in one block [SPL-10].
+    """
+    marks = list(_marks(motion))
+    keywords = {mark.range.keyword for mark in marks}
+    if not keywords:
+        return pieces
+    if len(keywords) > 1:
+        text = "CONST_VEL and TIME_BLOCK exclude each other in a spline block"
+        raise Fault("spline", text, rules=("SPL-10",))
+    if keywords == {"CONST_VEL"}:
+        return _constant(pieces, marks)
+    return _timed(pieces, marks)
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """A range's word, and the number of the segment it is written before."""
+
+    range: SplineRange
+    number: int
+
+
+def _marks(motion: Motion) -> Iterator[_Mark]:
+    for number, part in enumerate(motion.parts):
+        for each in part.ranges:
+            yield _Mark(each, number)
+    for each in motion.ranges:
+        yield _Mark(each, len(motion.parts))
+
+
+# ------------------------------------------------------------------------------- constant speed
+
+
+def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
+    ends = np.cumsum([0.0, *(_length(piece) for piece in pieces)])
+    start: float | None = None
+    for mark in marks:
+        told = mark.range
+        segment = min(mark.number + (0 if told.on_start else 1), len(pieces))
+        place = float(np.clip(ends[segment] + (told.value or 0.0), 0.0, ends[-1]))
+        if told.edge == "START":
+            start = place
+        elif start is not None:
+            pieces = _kept(pieces, ends, start, place)
+            start = None
+    return pieces if start is None else _kept(pieces, ends, start, float(ends[-1]))
+
+
+def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
+    """The pieces with one programmed speed from a length of the path to another."""
+    inside = [
+        number
+        for number in range(len(pieces))
+        if ends[number + 1] > start and ends[number] < end and not pieces[number].is_still
+    ]
+    if not inside or end <= start:
+        return pieces
+    if any(pieces[number].gear == 0.0 and ends[number] > start for number in inside):
+        raise _broken(3215, "the speed falls to zero in a range of constant speed")
+    speed = min(
+        stretch.programmed * _length(pieces[number])
+        for number in inside
+        for stretch in pieces[number].ceiling.stretches
+    )
+    changed = list(pieces)
+    for number in inside:
+        length = _length(pieces[number])
+        low, high = (float(np.clip((x - ends[number]) / length, 0.0, 1.0)) for x in (start, end))
+        whole = pieces[number].ceiling
+        within = []
+        for stretch in whole.between(low, high):
+            if stretch.velocity * length < speed * (1.0 - _SAME):
+                raise _broken(3214, "the programmed speed cannot be kept in its range")
+            within.append(replace(stretch, programmed=min(speed / length, stretch.velocity)))
+        stretches = (*whole.between(0.0, low), *within, *whole.between(high, 1.0))
+        changed[number] = replace(pieces[number], ceiling=Ceiling(stretches))
+    _check_reached(changed, ends, start, end, speed)
+    return tuple(changed)
+
+
+def _check_reached(
+    pieces: Sequence[Piece],
+    ends: Array,
+    start: float,
+    end: float,
+    speed: float,
+) -> None:
+    """Raise `Fault` 3216 or 3217 unless a range is entered and left with its speed."""
+    for number, stretch, profile in _travelled(pieces):
+        length = _length(pieces[number])
+        place = float(ends[number]) + stretch.start * length
+        first, out = profile.knots[0][2], profile.final
+        scale = length / stretch.size
+        if abs(place - start) < _SAME * length and first * scale < speed * (1.0 - _SAME):
+            raise _broken(3216, "the way to speed up before a range of constant speed is too short")
+        reached = place + (stretch.end - stretch.start) * length
+        if abs(reached - end) < _SAME * length and out * scale < speed * (1.0 - _SAME):
+            raise _broken(3217, "the way to brake behind a range of constant speed is too short")
+
+
+# ----------------------------------------------------------------------------------- durations
+
+
+def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
+    """The pieces slowed down so that the parts of a TIME_BLOCK take their shares of its duration.
+
+    Speeds are sought by trying. Parts that cannot be so quick are travelled as quickly as can be.
+    """
+    groups: list[range] = []
+    shares: list[float] = []
+    begins: int | None = None
+    for mark in marks:
+        told = mark.range
+        if told.edge == "START":
+            groups, shares, begins = [], [], mark.number
+        elif begins is not None and told.edge == "PART":
+            groups.append(range(begins, mark.number))
+            shares.append(told.value or 0.0)
+            begins = mark.number
+        elif begins is not None and told.edge == "END":
+            if not groups:
+                groups, shares = [range(begins, mark.number)], [1.0]
+            total = sum(shares) or 1.0
+            wanted = [(told.value or 0.0) * share / total for share in shares]
+            pieces = _slowed(pieces, groups, wanted)
+            begins = None
+    return pieces
+
+
+def _slowed(pieces: Pieces, groups: Sequence[range], wanted: Sequence[float]) -> Pieces:
+    speeds = np.ones(len(groups))
+    slowed = pieces
+    for _ in range(_ROUNDS):
+        taken = np.zeros(len(groups))
+        for number, _, profile in _travelled(slowed):
+            for place, group in enumerate(groups):
+                if number in group:
+                    taken[place] += profile.duration
+        ratios = taken / np.maximum(wanted, 1e-9)
+        if np.abs(ratios - 1.0).max() < _SAME:
+            break
+        speeds = np.minimum(speeds * ratios, 1.0)
+        changed = list(pieces)
+        for speed, group in zip(speeds, groups, strict=True):
+            for number in group:
+                changed[number] = _slower(pieces[number], float(speed))
+        slowed = tuple(changed)
+    return slowed
+
+
+def _slower(piece: Piece, share: float) -> Piece:
+    """A piece with a share of its speed, and with the acceleration and jerk that go with it."""
+    return replace(
+        piece,
+        ceiling=Ceiling(
+            tuple(
+                replace(
+                    stretch,
+                    velocity=stretch.velocity * share,
+                    programmed=stretch.programmed * share,
+                    acceleration=stretch.acceleration * share**2,
+                    jerk=stretch.jerk * share**3,
+                )
+                for stretch in piece.ceiling.stretches
+            )
+        ),
+    )
+
+
+# ---------------------------------------------------------------------------------------- shared
+
+
+def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, Profile]]:
+    """The stretches of a block travelled from rest to rest: number of the piece, and how."""
+    numbers, steps = [], []
+    for number, piece in enumerate(pieces):
+        if piece.is_still:
+            continue
+        for place, stretch in enumerate(piece.ceiling.stretches):
+            numbers.append(number)
+            steps.append(Step(stretch, 1.0 if place else piece.gear))
+    profiles = schedule(steps, AtRest, 1.0) or []
+    for number, step, profile in zip(numbers, steps, profiles, strict=True):
+        if profile is not None:
+            yield number, step.stretch, profile
+
+
+def _length(piece: Piece) -> float:
+    course = piece.curve.course
+    return course.length if course is not None else 0.0
+
+
+def _broken(number: int, text: str) -> Fault:
+    return Fault("constant_velocity", text, number=number, rules=("SPL-05",))

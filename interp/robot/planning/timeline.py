@@ -1,0 +1,238 @@
+"""What the arm does over time: sections of path, and the legs in which they are travelled."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.arm import Samples
+from interp.robot.kinematics.solver import Array
+from interp.robot.path.axis_path import Curve, tool_positions
+from interp.robot.path.pose_path import Way
+from interp.robot.planning.limits import Ceiling, Stretch
+from interp.robot.planning.profile import Profile
+from interp.robot.planning.schedule import State, Step
+
+__all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros", "tool_tangents"]
+
+MICROSECOND = 1e-6
+#: The number of a motion, whether it is the blend behind it, and the part of a spline block.
+Key = tuple[int, bool, int]
+
+_NOTHING = 1e-9  # of u
+_NEAR = 1e-4  # of u: half the width of a difference
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A part of the path: of one motion, or the blend from one into the next.
+
+    ``number`` is that of the motion, of a blend's first; ``following`` that of its second, else
+    ``None``. ``start`` and ``end`` are the parameters of the curve between which it is travelled.
+    ``gear`` times the speed in which the section before ends is that in which this one begins, both
+    per unit of their own u; 0 where the arm stands between them. ``is_still`` is a motion of
+    length zero, which takes no time. The segments of a spline block have a ``part`` from 0 on.
+    """
+
+    number: int
+    following: int | None
+    curve: Curve
+    ceiling: Ceiling
+    start: float = 0.0
+    end: float = 1.0
+    gear: float = 0.0
+    is_still: bool = False
+    part: int = 0
+
+    @property
+    def key(self) -> Key:
+        """What stays the same when the section is cut anew; in the order of the path."""
+        return self.number, self.following is not None, self.part
+
+    @property
+    def is_used_up(self) -> bool:
+        """Whether the blends on either side have left nothing of a motion."""
+        return self.end - self.start <= _NOTHING and not self.is_still
+
+    def steps(self, start: float) -> list[Step]:
+        """The stretches from a parameter on; at the start of the section its gear counts."""
+        parts = () if self.is_used_up else self.ceiling.between(start, self.end)
+        return [Step(part, 1.0 if place else self.gear) for place, part in enumerate(parts)]
+
+    @cached_property
+    def way(self) -> Way:
+        """How far the tool travels along the curve, from u = 0 on."""
+        return Way(lambda u: tool_tangents(self.curve, u))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Leg:
+    """A section travelled from ``begins`` on, in seconds; cut off at ``ends``.
+
+    The profile's positions count from ``stretch.start`` in units of ``stretch.size``.
+    """
+
+    section: Section
+    stretch: Stretch
+    profile: Profile
+    begins: float
+    ends: float
+
+    def at(self, times: Array) -> tuple[Array, Array, Array]:
+        """u, u̇ and ü at times."""
+        size = self.stretch.size
+        position, speed, acceleration = self.profile.at(np.minimum(times, self.ends) - self.begins)
+        return self.stretch.start + position / size, speed / size, acceleration / size
+
+    def state(self, time: float) -> State:
+        """The state at a time."""
+        position, speed, acceleration = self.profile.state(min(time, self.ends) - self.begins)
+        stretch = self.stretch
+        u = min(stretch.start + position / stretch.size, stretch.end)
+        return State(u, max(speed, 0.0) / stretch.size, acceleration / stretch.size)
+
+    @property
+    def last(self) -> float:
+        """The parameter at which it ends."""
+        if self.section.is_still:
+            return self.section.end
+        if self.ends >= self.begins + self.profile.duration:
+            reached = self.stretch.start + self.profile.length / self.stretch.size
+            return min(reached, self.stretch.end)
+        return self.state(self.ends).u
+
+    def time_at(self, u: float) -> float:
+        """When a parameter is passed, in seconds."""
+        passed = self.profile.time_at((u - self.stretch.start) * self.stretch.size)
+        return min(self.begins + passed, self.ends)
+
+
+class Timeline:
+    """Legs in the order of time. Between legs, before and behind them the arm stands."""
+
+    def __init__(self, start: Array) -> None:
+        self.start = start
+        self.legs: list[Leg] = []
+        self._begins: list[float] = []
+        self._of: dict[Key, list[Leg]] = {}
+
+    @property
+    def end(self) -> float:
+        """When the last leg ends, in seconds; 0 if there is none."""
+        return self.legs[-1].ends if self.legs else 0.0
+
+    def append(self, leg: Leg) -> None:
+        """A leg behind all others."""
+        self.legs.append(leg)
+        self._begins.append(leg.begins)
+        self._of.setdefault(leg.section.key, []).append(leg)
+
+    def cut(self, time: float) -> list[Leg]:
+        """Forget what comes after a time; returns the legs that were ahead or under way."""
+        place = bisect_right(self._begins, time)
+        if place and self.legs[place - 1].ends > time:
+            place -= 1
+        removed = self._dropped(place)
+        if removed and removed[0].begins < time:
+            self.append(replace(removed[0], ends=time))
+        return removed
+
+    def restore(self, count: int, legs: Sequence[Leg]) -> None:
+        """The first so many legs, and others behind them."""
+        self._dropped(count)
+        for leg in legs:
+            self.append(leg)
+
+    def forget(self, time: float) -> None:
+        """Drop the legs that ended before a time, except the last of them."""
+        count = 0
+        while count + 1 < len(self.legs) and self.legs[count + 1].begins < time:
+            count += 1
+        kept = self.legs[count:]
+        if count:
+            self._dropped(0)
+            for leg in kept:
+                self.append(leg)
+
+    def _dropped(self, place: int) -> list[Leg]:
+        """The legs from a place on, which are then no longer in it."""
+        removed = self.legs[place:]
+        for leg in removed:
+            own = self._of[leg.section.key]
+            own.remove(leg)
+            if not own:
+                del self._of[leg.section.key]
+        del self.legs[place:]
+        del self._begins[place:]
+        return removed
+
+    def leg_at(self, time: float) -> Leg | None:
+        """The last leg that begins at a time or before; ``None`` if the arm has not moved yet."""
+        place = bisect_right(self._begins, time)
+        return self.legs[place - 1] if place else None
+
+    def of(self, key: Key) -> Sequence[Leg]:
+        """The legs of a section, in their order."""
+        return self._of.get(key, ())
+
+    def axes_at(self, time: float) -> Array:
+        """All axes at a time."""
+        leg = self.leg_at(time)
+        if leg is None:
+            return self.start
+        axes: Array = leg.section.curve.axes(leg.at(np.array([time]))[0])[0]
+        return axes
+
+    def sample(self, times: npt.NDArray[np.int64]) -> Samples:
+        """Set-points at rising times in µs."""
+        seconds: Array = np.asarray(times, dtype=np.float64) * MICROSECOND
+        axes = np.empty((len(times), len(self.start)))
+        speeds, accelerations = np.zeros_like(axes), np.zeros_like(axes)
+        places = np.searchsorted(np.array(self._begins), seconds, side="right") - 1
+        axes[places < 0] = self.start
+        for curve, wanted, parts in self._grouped(places, seconds):
+            u, speed, acceleration = (np.concatenate(column) for column in zip(*parts, strict=True))
+            first, second = curve.rates(u)
+            axes[wanted] = curve.axes(u)
+            speeds[wanted] = first * speed[:, None]
+            accelerations[wanted] = second * speed[:, None] ** 2 + first * acceleration[:, None]
+        return Samples(times, axes, speeds, accelerations)
+
+    def _grouped(
+        self, places: npt.NDArray[np.intp], seconds: Array
+    ) -> Iterator[tuple[Curve, slice, list[tuple[Array, Array, Array]]]]:
+        """Samples by curve: its slice of the times, and what its legs have there."""
+        first = int(np.searchsorted(places, 0))
+        while first < len(places):
+            curve = self.legs[places[first]].section.curve
+            start, parts = first, []
+            while first < len(places) and self.legs[places[first]].section.curve is curve:
+                leg = self.legs[places[first]]
+                behind = int(np.searchsorted(places, places[first], side="right"))
+                u, speed, acceleration = leg.at(seconds[first:behind])
+                standing = seconds[first:behind] >= leg.ends
+                speed[standing] = acceleration[standing] = 0.0
+                parts.append((u, speed, acceleration))
+                first = behind
+            yield curve, slice(start, first), parts
+
+
+def micros(seconds: float) -> int:
+    """The whole microsecond at which something has happened."""
+    return math.ceil(seconds / MICROSECOND - 1e-3)
+
+
+def tool_tangents(curve: Curve, u: Array) -> Array:
+    """Positions of the tool differentiated by u, ``(n, 3)`` in mm."""
+    if curve.course is not None:
+        return curve.course.tangents(u)
+    middle = np.clip(u, _NEAR, 1.0 - _NEAR)
+    both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
+    tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
+    return tangents

@@ -1,0 +1,305 @@
+"""From a motion instruction to its own piece of path: a curve, and how fast it may be travelled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from interp.robot.arm import Motion, Settings, Target
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.placement import IpoMode
+from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.path.axis_path import (
+    CourseCurve,
+    Curve,
+    InStep,
+    JointLine,
+    Others,
+    tool_positions,
+)
+from interp.robot.path.circle import Circle, circle_through
+from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
+from interp.robot.path.pose_path import Arc, Course, Line
+from interp.robot.path.targets_in_force import Programmed
+from interp.robot.path.wrist import WristCurve
+from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
+from interp.values.faults import Fault
+
+__all__ = ["Piece", "Track", "Tracks"]
+
+_STILL = 1e-6  # mm or degrees: less is no motion
+_ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
+_METRE = 1000.0
+_SPLINE_JERKS = (500e3, 50e3)
+"""mm/s³ and deg/s³: as delivered [MOT-05]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """A part of a motion's path that is one curve: all of it, but for spline blocks.
+
+    ``paths`` are its limits along the path; none for PTP. ``gear`` times the speed in which the
+    piece before ends is that in which this one begins; 0 where the arm stands between them.
+    """
+
+    curve: Curve
+    ceiling: Ceiling
+    paths: tuple[PathLimits, ...] = ()
+    gear: float = 0.0
+    is_still: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """One motion's own path, from the target before it to its own.
+
+    ``axis_limits`` are what its percentages leave of the machine data.
+    """
+
+    motion: Motion
+    pieces: tuple[Piece, ...]
+    axis_limits: AxisLimits
+    is_singular: bool = False
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it has a length of zero [MOT-11]."""
+        return all(piece.is_still for piece in self.pieces)
+
+    @property
+    def notices(self) -> tuple[int, ...]:
+        """Numbers of messages that stop nothing."""
+        return (
+            (_ZERO_LENGTH,) * self.is_still
+            + (_SINGULAR,) * self.is_singular
+            + (_TURNED_VARIABLY,) * self._is_turned_variably
+        )
+
+    @property
+    def _is_turned_variably(self) -> bool:
+        """Whether #JOINT is taken as #VAR: in spline blocks, with a fixed tool [ORI-03]."""
+        motion = self.motion
+        every = [part.settings or motion.settings for part in motion.parts] or [motion.settings]
+        is_fixed = motion.settings.placement.mode is IpoMode.TCP
+        wants = any(settings.orientation == "#JOINT" for settings in every)
+        return self.is_cp and wants and (bool(motion.parts) or is_fixed)
+
+    @property
+    def is_cp(self) -> bool:
+        """Whether the path of the tool is what was programmed."""
+        return self.motion.kind not in {"PTP", "SPTP", "PTP_SPLINE"}
+
+
+class Tracks:
+    """Makes tracks for one arm."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.arm = Arm(machine)
+        self.limits = axis_limits(machine)
+        self.every = (*machine.axes, *machine.externals)
+
+    def track(
+        self, motion: Motion, before: Programmed, *, is_after_abort: bool = False
+    ) -> tuple[Track, Programmed]:
+        """The track of a motion behind a target, and the target it leads to.
+
+        After an aborted motion CIRC is executed as LIN, since its start is not where it was
+        [INT-14]. Raises `Fault`, with 3094 for #IGNORE, which only segments of a spline block may
+        have (where it is allowed is unconfirmed) [ORI-03].
+        """
+        is_cp = motion.kind not in {"PTP", "SPTP"}
+        if is_cp and motion.settings.orientation == "#IGNORE":
+            raise Fault(
+                "orientation", "#IGNORE is not allowed here", number=3094, rules=("ORI-03",)
+            )
+        match motion.kind:
+            case "PTP" | "SPTP":
+                return self._ptp(motion, before)
+            case "LIN" | "SLIN":
+                return self._line(motion, before)
+            case "CIRC" | "SCIRC":
+                if is_after_abort and motion.kind == "CIRC":
+                    return self._line(motion, before)
+                return self._circle(motion, before)
+            case _:
+                raise Fault("motion", f"{motion.kind} is no motion of this arm")
+
+    # ------------------------------------------------------------------------------------ kinds
+
+    def _ptp(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        settings = motion.settings
+        goal = before.goal(motion, motion.target, settings.placement)
+        curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
+        limits = self.programmed(settings)
+        is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
+        ceiling = ceiling_of(curve, self.limits, limits, self.reduced(curve, settings))
+        piece = Piece(curve, ceiling, is_still=is_still)
+        track = Track(motion, (piece,), limits, goal.is_singular)
+        return track, before.reached(goal.axes, goal.components, settings.placement)
+
+    def _line(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        placement = motion.settings.placement
+        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        point = self._point(motion, motion.target, before)
+        end = matrix_of(placement.in_path(Pose.of(*point)))
+        course = Line(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
+        return self._along(motion, before, course, point)
+
+    def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
+        placement = motion.settings.placement
+        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        middle = Pose.of(*self._point(motion, motion.auxiliary or {}, before))
+        auxiliary = placement.in_path(middle)
+        point = self._point(motion, motion.target, before)
+        end = matrix_of(placement.in_path(Pose.of(*point)))
+        circle = circle_through(
+            start[:3, 3], np.array(auxiliary.position), end[:3, 3], motion.angle
+        )
+        course = Arc(circle, _along_circle(motion.settings, circle, start, end))
+        return self._along(motion, before, course, point)
+
+    def _along(
+        self, motion: Motion, before: Programmed, course: Course, point: tuple[float, ...]
+    ) -> tuple[Track, Programmed]:
+        """The track of a course; its last pose is the target, except for an angle of its own."""
+        settings = motion.settings
+        externals = before.externals(motion.target, motion.is_relative)
+        travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
+        swivel, rotation = (math.degrees(angle) for angle in course.angles)
+        if max(course.length, swivel, rotation, travel) < _STILL:
+            track = Track(motion, (self.still(before.axes, settings),), self.limits)
+            return track, before.reached(before.axes, point, settings.placement)
+        others = InStep(before.axes[ROBOT_AXES:], externals)
+        piece = self.along(course, before.axes[:ROBOT_AXES], others, motion.kind, settings)
+        track = Track(motion, (piece,), self.limits)
+        axes = piece.curve.end
+        reached = point if motion.angle is None else None
+        return track, before.reached(axes, reached, settings.placement)
+
+    def along(
+        self, course: Course, start: Array, others: Others, kind: str, settings: Settings
+    ) -> Piece:
+        """The piece of a course from axes of the robot on. Raises `Fault`."""
+        curve: Curve
+        if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
+            curve = WristCurve(self.arm, settings.placement, course, start, others)
+            paths = self.paths(settings, course.length, 0.0, 0.0, is_spline=kind[0] == "S")
+            self.check_speed(settings, curve, paths)
+            return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+        curve = CourseCurve(self.arm, settings.placement, course, start, others)
+        swivel, rotation = (math.degrees(angle) for angle in course.angles)
+        paths = self.paths(settings, course.length, swivel, rotation, is_spline=kind[0] == "S")
+        self.check_speed(settings, curve, paths)
+        return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+
+    def still(self, axes: Array, settings: Settings) -> Piece:
+        """A piece of no length."""
+        curve = JointLine(self.arm, settings.placement, axes, axes)
+        return Piece(curve, ceiling_of(curve, self.limits, self.limits, ()), is_still=True)
+
+    def _point(self, motion: Motion, target: Target, before: Programmed) -> tuple[float, ...]:
+        placement = motion.settings.placement
+        return before.components_of(target, placement, motion.is_relative, motion.reference)
+
+    # ----------------------------------------------------------------------------------- limits
+
+    def programmed(self, settings: Settings) -> AxisLimits:
+        """What percentages and T1 leave of the machine data [MOT-02, MOT-07]."""
+        percent = settings.axis_velocity
+        if settings.is_reduced:
+            share = self.machine.t1_reduction
+            percent = tuple(min(p if 0.0 < p <= 100.0 else 100.0, 100.0) * share for p in percent)
+        return self.limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
+
+    def paths(
+        self,
+        settings: Settings,
+        length: float,
+        swivel: float,
+        rotation: float,
+        *,
+        is_spline: bool = False,
+    ) -> tuple[PathLimits, ...]:
+        """The limits along a path of so many mm, degrees and degrees [MOT-04, MOT-05, MOT-07].
+
+        Spline motions have the jerk that controllers are delivered with.
+        """
+        velocity, acceleration = self.machine.velocity, self.machine.acceleration
+        speed = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
+        if settings.is_reduced:
+            speed = min(speed, self.machine.t1_speed)
+        gain = min(_above(settings.acceleration, "$ACC.CP"), acceleration.path)
+        jerks = _SPLINE_JERKS if is_spline else (math.inf, math.inf)
+        limits = [PathLimits(length, speed * _METRE, gain * _METRE, jerks[0])]
+        turns = (
+            (swivel, settings.swivel, velocity.swivel, acceleration.swivel, "ORI1"),
+            (rotation, settings.rotation, velocity.rotation, acceleration.rotation, "ORI2"),
+        )
+        for angle, (fastest, steepest), most, most_gain, name in turns:
+            turn = min(_above(fastest, f"$VEL.{name}"), most)
+            turn_gain = min(_above(steepest, f"$ACC.{name}"), most_gain)
+            limits.append(PathLimits(angle, turn, turn_gain, jerks[1]))
+        return tuple(limit for limit in limits if limit.length > _STILL)
+
+    def reduced(self, curve: Curve, settings: Settings) -> tuple[PathLimits, ...]:
+        """In T1 the tool is no faster than $VEL_CP_T1 in PTP either [MOT-07]."""
+        if not settings.is_reduced:
+            return ()
+        places = tool_positions(curve, np.linspace(0.0, 1.0, 65))
+        fastest = float(np.linalg.norm(np.diff(places, axis=0), axis=1).max()) * 64.0
+        if fastest < _STILL:
+            return ()
+        return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
+
+    def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
+        """Raise `Fault` 1102 where an axis would be too fast and $CP_VEL_TYPE forbids to slow down.
+
+        The speed looked at is the programmed one, or what can be reached from standstill at the
+        nearer end; with a neighbour to blend into it would be slowed down there all the same.
+        """
+        may_reduce = settings.speed_type in {"#VAR_ALL", "#VAR_ALL_MODEL"}
+        if may_reduce or (settings.speed_type == "#VAR_T1" and settings.is_reduced) or not paths:
+            return
+        grid = curve.grid
+        first, _ = curve.rates(grid)
+        most = min(path.velocity / path.length for path in paths)
+        gain = min(path.acceleration / path.length for path in paths)
+        speeds = np.minimum(np.sqrt(2.0 * gain * np.minimum(grid, 1.0 - grid)), most)
+        over = (np.abs(first) * speeds[:, None] > self.limits.velocity).any(axis=0)
+        if over.any():
+            name = self.every[int(np.argmax(over))].name
+            text = f"the path would move {name} faster than it can"
+            raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
+
+
+def _turning(settings: Settings, start: Array, end: Array) -> Turning:
+    """The orientation along a line; #CONSTANT keeps that of the start [ORI-01]."""
+    if settings.orientation == "#CONSTANT":
+        return turning(start[:3, :3], start[:3, :3])
+    return turning(start[:3, :3], end[:3, :3])
+
+
+def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:
+    """The orientation along an arc, told in space or in the frame of the path [ORI-04].
+
+    The programmed end point has its orientation where it lies on the circle [MOT-13].
+    """
+    extent = circle.angle / circle.programmed
+    if settings.circle != "#PATH":
+        keeps = settings.orientation == "#CONSTANT"
+        return turning(start[:3, :3], start[:3, :3] if keeps else end[:3, :3], extent)
+    back = about(circle.normal, np.array([-circle.programmed]))[0]
+    other = start[:3, :3] if settings.orientation == "#CONSTANT" else back @ end[:3, :3]
+    return Carried(turning(start[:3, :3], other, extent), circle.normal, circle.angle)
+
+
+def _above(value: float, name: str) -> float:
+    """A speed or acceleration that is one. Raises `Fault` 1422."""
+    if not value > 0.0 or not math.isfinite(value):
+        raise Fault("invalid", f"{name} is {value:g}", number=1422, rules=("MSG-11",))
+    return value

@@ -1,0 +1,1 @@
+"""Robots that follow the planned set-points: kinematic and MuJoCo; videos."""

@@ -1,0 +1,107 @@
+"""The robots that set-points can be sent to, behind one small interface.
+
+All of them are told the same set-points at the same times, so a program has the same trace on each:
+``none`` takes no set-points at all, ``kinematic`` is where it is told to be, and ``mujoco`` is an
+arm with masses that follows as well as it can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.arm import Samples
+from interp.robot.kinematics.machine_data import Machine
+from interp.values.faults import Fault
+
+__all__ = ["ROBOTS", "KinematicRobot", "NoRobot", "Robot", "RobotFault", "RobotName", "make_robot"]
+
+RobotName = Literal["none", "kinematic", "mujoco"]
+ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
+
+
+class RobotFault(Fault):
+    """The robot cannot go on: it has touched something, or was sent where nothing can be.
+
+    ``time`` is when, in µs. The arm has to stop; the robot itself stands from then on.
+    """
+
+    def __init__(self, slug: str, text: str, time: int) -> None:
+        super().__init__(slug, text)
+        self.time = time
+
+
+class Robot(Protocol):
+    """Follows set-points."""
+
+    @property
+    def step(self) -> int:
+        """µs from one set-point to the next that it needs; 0 where it needs none."""
+        ...
+
+    @property
+    def chunk(self) -> int:
+        """µs of set-points that it should be sent at once; a fault shows no earlier."""
+        ...
+
+    def stand(self, axes: Sequence[float]) -> None:
+        """It stands at axes, robot axes first, in degrees (mm for linear ones)."""
+        ...
+
+    def follow(self, samples: Samples) -> npt.NDArray[np.float64] | None:
+        """Follow set-points that are ``step`` apart and go on where the last ones ended.
+
+        Returns measured axes of shape (n, axes), in degrees or mm; ``None`` where nothing is
+        measured and the set-points stand for them. Raises `RobotFault`.
+        """
+        ...
+
+
+class NoRobot:
+    """No robot: only the plan passes, for programs whose control flow is all that counts."""
+
+    step = 0
+    chunk = 1_000_000
+
+    def stand(self, axes: Sequence[float]) -> None:
+        """Nothing stands."""
+
+    def follow(self, samples: Samples) -> None:
+        """Nothing follows."""
+
+
+class KinematicRobot:
+    """Is where it is told to be; ``cycle`` is the interpolation cycle in µs."""
+
+    chunk = 1_000_000
+
+    def __init__(self, cycle: int) -> None:
+        self.step = cycle
+
+    def stand(self, axes: Sequence[float]) -> None:
+        """It has no state of its own."""
+
+    def follow(self, samples: Samples) -> None:
+        """Look at the set-points. Raises `RobotFault` where one is no number."""
+        check_samples(samples)
+
+
+def check_samples(samples: Samples) -> None:
+    """Raise `RobotFault` at the first set-point that is no number."""
+    sound = np.isfinite(samples.axes).all(axis=1)
+    if not sound.all():
+        raise RobotFault(
+            "set_point", "a set-point is no number", int(samples.times[int(np.argmin(sound))])
+        )
+
+
+def make_robot(name: RobotName, machine: Machine, cycle: int) -> Robot:
+    """A robot by its name. Raises `ImportError` for ``mujoco`` where MuJoCo is not installed."""
+    if name == "mujoco":
+        from interp.robot.simulation.mujoco import MujocoRobot
+
+        return MujocoRobot(machine)
+    return KinematicRobot(cycle) if name == "kinematic" else NoRobot()

@@ -1,0 +1,187 @@
+"""Set-points on their way from the planned path to a robot, and the record of both.
+
+What is past does not change any more, so set-points are taken from the path behind the clock, in
+chunks. The record has a row each interpolation cycle, from the start on.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.arm import Arm
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.placement import Placement
+from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.solver import matrix_of
+from interp.robot.simulation.robots import Robot, RobotFault
+
+__all__ = ["Following", "PathRecord"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PathRecord:
+    """``n`` rows, one each interpolation cycle.
+
+    ``times`` (n,) in µs; ``axes`` (n, axes) in degrees or mm; ``points`` (n, 6) are X, Y, Z in mm
+    and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
+    (n, 3) are X, Y, Z of the tool in front of the robot's foot, whatever the base. The measured
+    ones are ``None`` where the robot measures nothing.
+    """
+
+    times: npt.NDArray[np.int64]
+    axes: Array
+    points: Array
+    tips: Array
+    axes_measured: Array | None
+    points_measured: Array | None
+    tips_measured: Array | None
+
+    def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
+        """The columns of a path file: t, q1…q6, e1…, x…c, and measured ones with ``_meas``."""
+        columns: dict[str, npt.NDArray[np.int64] | Array] = {"t": self.times}
+        columns |= _named(self.axes, self.points, "")
+        if self.axes_measured is not None and self.points_measured is not None:
+            columns |= _named(self.axes_measured, self.points_measured, "_meas")
+        return columns
+
+
+class Following:
+    """Sends the set-points of a path to a robot as time goes on.
+
+    ``start`` is where the arm stands at time 0, as `Machine.standing` takes it; ``cycle`` the
+    interpolation cycle in µs, a multiple of the robot's step.
+    """
+
+    def __init__(
+        self, arm: Arm, robot: Robot, machine: Machine, cycle: int, start: Sequence[float]
+    ) -> None:
+        if robot.step and cycle % robot.step:
+            raise ValueError(f"a cycle of {cycle} µs is no multiple of {robot.step} µs")
+        stands = machine.standing(start)
+        self._arm = arm
+        self._robot = robot
+        self._kinematics = Kinematics(machine)
+        self._cycle = cycle
+        self._sent = 0
+        self._place_times = [0]
+        self._placements = [Placement(robroot=machine.robroot)]
+        self._times: list[npt.NDArray[np.int64]] = [np.zeros(1, dtype=np.int64)]
+        self._axes: list[Array] = [np.array([stands])]
+        self._measured: list[Array | None] = [None]
+        self._last: Array | None = None
+        robot.stand(stands)
+
+    @property
+    def chunk(self) -> int | None:
+        """µs from one `advance` to the next, at most; ``None`` where nothing is sent."""
+        return self._robot.chunk if self._robot.step else None
+
+    def placed(self, time: int, placement: Placement) -> None:
+        """From a time on, not before the last one told, points count in these frames."""
+        if time == self._place_times[-1]:
+            self._place_times.pop()
+            self._placements.pop()
+        self._place_times.append(time)
+        self._placements.append(placement)
+
+    def advance(self, now: int) -> None:
+        """Time has come to ``now``: send what fills a chunk. Raises `RobotFault` once."""
+        while self._robot.step and now - self._sent >= self._robot.chunk:
+            self._send(self._sent + self._robot.chunk)
+
+    def settle(self, now: int) -> None:
+        """Send all set-points up to ``now``. Raises `RobotFault`."""
+        self.advance(now)
+        if self._robot.step and now - self._sent >= self._robot.step:
+            self._send(now)
+
+    def measured(self, now: int) -> tuple[float, ...]:
+        """Axes as measured at ``now``, or within a step before it; raises `RobotFault`."""
+        self.settle(now)
+        if self._last is None:
+            return self._arm.position(now).axes
+        return tuple(self._last.tolist())
+
+    def record(self) -> PathRecord:
+        """All rows so far."""
+        times, axes = np.concatenate(self._times), np.concatenate(self._axes)
+        points, tips = self._points(times, axes)
+        rows = [axes[:1] if row is None else row for row in self._measured]
+        if self._last is None:
+            return PathRecord(times, axes, points, tips, None, None, None)
+        measured = np.concatenate(rows)
+        return PathRecord(times, axes, points, tips, measured, *self._points(times, measured))
+
+    def _send(self, until: int) -> None:
+        step = self._robot.step
+        times = np.arange(self._sent + step, until + 1, step, dtype=np.int64)
+        self._sent = int(times[-1])
+        samples = self._arm.sample(times)
+        try:
+            measured = self._robot.follow(samples)
+        except RobotFault as fault:
+            self._keep(times[times < fault.time], samples.axes, None)
+            raise
+        self._keep(times, samples.axes, measured)
+
+    def _keep(self, times: npt.NDArray[np.int64], axes: Array, measured: Array | None) -> None:
+        if not len(times):
+            return
+        rows = np.flatnonzero(times % self._cycle == 0)
+        self._times.append(times[rows])
+        self._axes.append(axes[rows])
+        if measured is not None:
+            self._last = measured[-1]
+            self._measured.append(measured[rows])
+        else:
+            self._measured.append(axes[rows])
+
+    def _points(self, times: npt.NDArray[np.int64], axes: Array) -> tuple[Array, Array]:
+        """Of the tool, X, Y, Z, A, B, C (n, 6) in the base in force, and X, Y, Z (n, 3)."""
+        flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
+        points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
+        for rows, placement in self._stretches(times):
+            before = matrix_of(placement.before.inverse())
+            standing = flanges[rows] @ matrix_of(placement.tool)
+            poses = before @ standing
+            points[rows, :3] = poses[:, :3, 3]
+            points[rows, 3:] = _angles(poses)
+            tips[rows] = standing[:, :3, 3]
+        return points, tips
+
+    def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:
+        """Rows during which a placement was in force."""
+        known = times.tolist()
+        starts = [bisect_right(known, time - 1) for time in self._place_times]
+        for first, last, placement in zip(
+            starts, [*starts[1:], len(known)], self._placements, strict=True
+        ):
+            if first < last:
+                yield slice(first, last), placement
+
+
+def _angles(poses: Array) -> Array:
+    """A, B, C (n, 3) in degrees of poses (n, 4, 4), as `kinematics.frames.Pose.angles`."""
+    over = np.hypot(poses[:, 0, 0], poses[:, 1, 0])
+    a = np.where(over > 1e-12, np.arctan2(poses[:, 1, 0], poses[:, 0, 0]), 0.0)
+    sine, cosine = np.sin(a), np.cos(a)
+    c = np.arctan2(
+        sine * poses[:, 0, 2] - cosine * poses[:, 1, 2],
+        cosine * poses[:, 1, 1] - sine * poses[:, 0, 1],
+    )
+    angles: Array = np.degrees(np.stack((a, np.arctan2(-poses[:, 2, 0], over), c), axis=-1))
+    return angles
+
+
+def _named(axes: Array, points: Array, suffix: str) -> dict[str, Array]:
+    robot = {f"q{number + 1}": axes[:, number] for number in range(ROBOT_AXES)}
+    others = {f"e{number + 1}": column for number, column in enumerate(axes[:, ROBOT_AXES:].T)}
+    place = {name: points[:, number] for number, name in enumerate("xyzabc")}
+    return {f"{name}{suffix}": column for name, column in (robot | others | place).items()}

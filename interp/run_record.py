@@ -1,0 +1,115 @@
+"""The record of a run, as the page of a run and notebooks take it: plain data, ready for JSON."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.controller.motion_queue import PlannedPoint
+from interp.program.load import CheckedProgram
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.simulation.tracking import PathRecord
+from interp.session import Run, Setup
+
+__all__ = ["record_of"]
+
+Array = npt.NDArray[np.float64]
+
+
+def record_of(run: Run, program: CheckedProgram, setup: Setup) -> dict[str, Any]:
+    """Outcome, trace, sources, path, limits and programmed points of a run.
+
+    Times are µs, lengths mm in front of the robot's foot, speeds of axes deg/s or mm/s, that of the
+    tool m/s.
+    """
+    outcome = run.outcome
+    events = [json.loads(event.line()) for event in run.events]
+    blended = {event["motion"] for event in events if event["kind"] == "blend_apex"}
+    record: dict[str, Any] = {
+        "main": program.main.module.path,
+        "executor": setup.executor,
+        "robot": setup.robot,
+        "profile": setup.profile.name,
+        "machine": run.machine.name,
+        "outcome": {
+            "kind": outcome.ending,
+            "time": outcome.time,
+            "text": "" if outcome.error is None else str(outcome.error),
+            "at": "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}",
+        },
+        "events": events,
+        "files": _files(
+            program, {event["at"].rpartition(":")[0] for event in events if event["at"]}
+        ),
+        "limits": _limits(run.machine),
+        "points": [
+            {
+                "motion": point.number,
+                "kind": point.kind,
+                "at": f"{point.at.file}:{point.at.line}",
+                "place": _tip(point),
+                "blended": point.number in blended,
+            }
+            for point in run.controller.points
+        ],
+    }
+    if run.path is not None:
+        record["path"] = _path(run.path)
+        record["deviation"] = _deviation(run.path)
+    return record
+
+
+def _files(program: CheckedProgram, named: set[str]) -> list[dict[str, str]]:
+    """The sources that the trace speaks of, the one the program began with first."""
+    units = [program.main, *(unit for unit in program.units.values() if unit is not program.main)]
+    return [
+        {
+            "path": unit.source.name if unit.source.name in named else unit.module.path,
+            "text": unit.source.text,
+        }
+        for unit in units
+        if unit is program.main or {unit.module.path, unit.source.name} & named
+    ]
+
+
+def _tip(point: PlannedPoint) -> list[float]:
+    """Where a motion leads the tool, in front of the robot's foot; empty where nobody knows."""
+    if point.position is None:
+        return []
+    return [round(value, 4) for value in (point.position.flange @ point.tool).position]
+
+
+def _limits(machine: Machine) -> dict[str, Any]:
+    axes = (*machine.axes, *machine.externals)
+    speeds = [axis.dynamics.velocity if axis.dynamics is not None else 0.0 for axis in axes]
+    return {"axis_speeds": speeds, "speed": machine.velocity.path}
+
+
+def _path(path: PathRecord) -> dict[str, Any]:
+    seconds = path.times / 1e6
+    speeds = np.zeros_like(path.axes)
+    tip_speed = np.zeros(len(path.times))
+    if len(path.times) > 1:
+        speeds = np.gradient(path.axes, seconds, axis=0)
+        steps: Array = np.gradient(path.tips, seconds, axis=0)
+        tip_speed = np.linalg.norm(steps, axis=1) / 1000
+    record: dict[str, Any] = {
+        "t": path.times.tolist(),
+        "tool": path.tips.round(4).tolist(),
+        "speed": tip_speed.round(6).tolist(),
+        "axis_speeds": [column.round(4).tolist() for column in speeds.T],
+    }
+    if path.tips_measured is not None:
+        record["tool_measured"] = path.tips_measured.round(4).tolist()
+    return record
+
+
+def _deviation(path: PathRecord) -> dict[str, float] | None:
+    """How far the measured tool is from its set-point, mm."""
+    if path.tips_measured is None:
+        return None
+    off = np.linalg.norm(path.tips_measured - path.tips, axis=1)
+    return {"most": float(off.max()), "mean": float(off.mean())}

@@ -1,0 +1,1 @@
+"""The values of KRL: operators, built-in functions, text forms, faults, frames."""

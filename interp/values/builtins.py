@@ -1,0 +1,326 @@
+"""The predefined functions: those that only compute, and the names of those that need the world.
+
+`FUNCTIONS` are functions of numbers and poses, as primitives that machines have as instructions.
+`BUILTINS` are all that only compute; `call` carries one out, whatever it takes and changes. `WORLD`
+are the rest, which an executor hands over as `interp.port.requests.Invoke`.
+
+Angles are in degrees [FCT-02]. Functions of the C library compute in double, and the result is
+rounded to single once. Angles are reduced to less than a full circle before, so that they stay
+exact however large they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from grammar.semantics.predefined import Parameter, System
+from grammar.semantics.types import (
+    AXES,
+    BOOL,
+    CARTESIAN,
+    CHAR,
+    INT,
+    REAL,
+    Array,
+    Enumeration,
+    Structure,
+    Type,
+)
+from interp.values.faults import fault
+from interp.values.formats import sread, swrite
+from interp.values.frames import RADIAN, inverted, radians
+from interp.values.operators import Kind, Primitive
+from interp.values.texts import TEXTS, Outcome
+from interp.values.values import (
+    EnumValue,
+    Value,
+    constant,
+    converted,
+    has_value,
+    known,
+    single,
+    text_of,
+)
+
+__all__ = [
+    "BUILTINS",
+    "FUNCTIONS",
+    "WORLD",
+    "Builtin",
+    "Randomness",
+    "Reply",
+    "Surroundings",
+    "call",
+    "reads_text",
+]
+
+
+# ------------------------------------------------------------------------------- numbers
+
+
+def _sqrt(number: float) -> float:
+    if number < 0:
+        raise fault("domain")
+    return single(math.sqrt(number))
+
+
+def _tan(degrees: float) -> float:
+    if abs(math.fmod(degrees, 180.0)) == 90.0:
+        raise fault("domain")
+    return single(math.tan(radians(degrees)))
+
+
+def _acos(cosine: float) -> float:
+    if not -1 <= cosine <= 1:
+        raise fault("domain")
+    return single(math.acos(cosine) * RADIAN)
+
+
+def _atan2(y: float, x: float) -> float:
+    if x == 0 and y == 0:
+        raise fault("domain")
+    return single(math.atan2(y, x) * RADIAN)
+
+
+def _function(
+    name: str,
+    function: Callable[..., Any],
+    faults: str,
+    sentence: str,
+    operands: tuple[Kind, ...] = ("REAL",),
+) -> Primitive:
+    return Primitive(name, operands, "REAL", function, tuple(faults.split()), sentence)
+
+
+#: Functions of numbers and poses, by their names in KRL.
+FUNCTIONS: Mapping[str, Primitive] = MappingProxyType(
+    {
+        "ABS": _function("abs", abs, "", "the number without its sign"),
+        "SQRT": _function("sqrt", _sqrt, "domain", "the square root"),
+        "SIN": _function("sin", lambda a: single(math.sin(radians(a))), "", "the sine"),
+        "COS": _function("cos", lambda a: single(math.cos(radians(a))), "", "the cosine"),
+        "TAN": _function("tan", _tan, "domain", "the tangent"),
+        "ACOS": _function("acos", _acos, "domain", "the angle from 0 to 180 of a cosine"),
+        "ATAN2": _function(
+            "atan2",
+            _atan2,
+            "domain",
+            "the angle from -180 to 180 of the point y, x",
+            ("REAL", "REAL"),
+        ),
+        "INV_POS": Primitive(
+            *("inv_pos", ("FRAME",), "FRAME", inverted),
+            ("uninitialised", "overflow"),
+            "the inverse of a pose",
+        ),
+    }
+)
+
+
+# ------------------------------------------------------------------------------- surroundings
+
+
+class Randomness:
+    """Random numbers that are the same on every executor: Marsaglia's xorshift of 32 bits.
+
+    ``state`` is never 0; a seed of 0 is taken as 1.
+    """
+
+    def __init__(self, seed: int = 1) -> None:
+        self.state = seed & 0xFFFFFFFF or 1
+
+    def __call__(self) -> float:
+        """The next number, from 0 to below 1, a multiple of 2**-32."""
+        state = self.state
+        state ^= state << 13 & 0xFFFFFFFF
+        state ^= state >> 17
+        state ^= state << 5 & 0xFFFFFFFF
+        self.state = state
+        return state / 2**32
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the functions need of the executor that calls them.
+
+    ``random`` gives numbers from 0 to below 1. ``find`` gives the type and the value of a variable
+    by the text that names it (``"I"``, ``"F.X"``, ``"T[]"``); ``None`` where it is not declared.
+    """
+
+    random: Callable[[], float]
+    find: Callable[[str], tuple[Type, Value | None] | None]
+
+
+def _frand(surroundings: Surroundings, least: float, most: float) -> Outcome:
+    return single(least + (most - least) * surroundings.random()), {}
+
+
+def _varstate(surroundings: Surroundings, name: Value) -> Outcome:
+    """A variable is initialised when it has a value in any part [TYP-18]."""
+    found = surroundings.find(text_of(name))
+    if found is None:
+        return _word("VAR_STATE", "UNKNOWN"), {}
+    return _word("VAR_STATE", "INITIALIZED" if has_value(found[1]) else "DECLARED"), {}
+
+
+_SCALARS: Mapping[Type, str] = {INT: "INT", REAL: "REAL", BOOL: "BOOL", CHAR: "CHAR"}
+
+
+def _vartype(surroundings: Surroundings, name: Value) -> Outcome:
+    """An array has the type of its elements (unconfirmed) [TYP-18]."""
+    found = surroundings.find(text_of(name))
+    type_ = None if found is None else found[0]
+    if isinstance(type_, Array):
+        type_ = type_.element
+    match type_:
+        case Enumeration():
+            word = "ENUM"
+        case Structure():
+            word = type_.name.upper() if type_.name.upper() in CARTESIAN | AXES else "STRUC"
+        case None:
+            word = "UNKNOWN"
+        case _:
+            word = _SCALARS.get(type_, "UNKNOWN")
+    return _word("VAR_TYPE", f"TYP_{word}"), {}
+
+
+def _word(type_name: str, name: str) -> EnumValue:
+    type_ = System.load().types[type_name]
+    assert isinstance(type_, Enumeration)
+    return constant(type_, name)
+
+
+# ------------------------------------------------------------------------------- all of them
+
+
+@dataclass(frozen=True, slots=True)
+class Builtin:
+    """A predefined function that only computes.
+
+    ``changes_more`` tells that the arguments behind those of the table are passed :OUT too.
+    """
+
+    name: str
+    function: Callable[..., Outcome]
+    parameters: tuple[Parameter, ...]
+    has_more: bool
+    changes_more: bool
+    result: Type | None
+    uses_surroundings: bool
+
+    def is_out(self, place: int) -> bool:
+        """Whether the argument of a place, counted from 0, may be changed."""
+        if place < len(self.parameters):
+            return self.parameters[place].is_out
+        return self.changes_more
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The result, ``None`` for a procedure, and all arguments after the call.
+
+    Arguments that did not change are the same objects. A changed one is assigned as any value is:
+    a text to an array of CHAR, an INT to a REAL.
+    """
+
+    result: Value | None
+    arguments: tuple[Value | None, ...]
+
+
+def _plain(function: Callable[..., Any]) -> Callable[..., Outcome]:
+    return lambda *arguments: (function(*arguments), {})
+
+
+_COMPUTING: Mapping[str, Callable[..., Outcome]] = {
+    **{name: _plain(primitive.function) for name, primitive in FUNCTIONS.items()},
+    **TEXTS,
+    "SWRITE": swrite,
+    "SREAD": sread,
+}
+_ASKING: Mapping[str, Callable[..., Outcome]] = {
+    "FRAND": _frand,
+    "VARSTATE": _varstate,
+    "VARTYPE": _vartype,
+}
+
+
+def _builtin(name: str) -> Builtin:
+    known_as = System.load().functions[name]
+    return Builtin(
+        name,
+        _ASKING.get(name) or _COMPUTING[name],
+        known_as.parameters,
+        known_as.has_more,
+        changes_more=name == "SREAD",
+        result=known_as.result,
+        uses_surroundings=name in _ASKING,
+    )
+
+
+#: All predefined functions that only compute, by name.
+BUILTINS: Mapping[str, Builtin] = MappingProxyType(
+    {name: _builtin(name) for name in sorted({*_COMPUTING, *_ASKING})}
+)
+
+#: All predefined routines that need the world, or act on it. CAST_FROM and CAST_TO are among them
+#: because no rule tells how values lie in a buffer.
+WORLD: frozenset[str] = frozenset(
+    """
+    ACTIVATE_FORCE_MODE ADVANCEDVECTORMOVEON CAL_TO_RDC CANCELPROGSYNC CAST_FROM CAST_TO CCLOSE
+    CHECKPIDONRDC CHECK_MAM_ON_RDC CHG_KRL_BP CIOCTL CLEAR_KRLMSG CLR_ALL_KRL_BP CLR_KRL_BP COPEN
+    COPY_MAM_HD_TO_RDC CREAD CREATE_RDC_ARCHIVE CWRITE DELETE_BACKWARD_BUFFER DELETE_PID_ON_RDC
+    DELETE_RDC_CONTENT DIAG_START DIAG_STOP DISABLE_KRL_BP EB EB_ABS EK EMI_RECSTATE EMI_STARTPOS
+    ENABLE_KRL_BP EO ERR_CLEAR ERR_RAISE EXISTS_KRLDLG EXISTS_KRLMSG FORWARD GETCYCDEF GETSYSSTATE
+    GETVARSIZE GET_AXESMASK GET_BRAKETEST_TIME GET_DECL_PLACE GET_DIAGSTATE GET_MSGBUFFER
+    GET_RDC_FS_STATE GET_SYSTEM_DATA INTERIMENERGY INVERSE IOCTL ISMESSAGESET IS_KEY_PRESSED LK
+    MAXIMIZE_USEDXROBVERS MBX_REC MD_CMD MD_SETSTATE MOVE_BACKWARD MOVE_FORWARD PIDTORDC PULSE
+    RDC_FILE_TO_HD REMOTECMD REMOTEREAD RESET_TORQUE_LIMITS RESTORE_RDC_ARCHIVE ROB_STOP
+    ROB_STOP_RELEASE SET_BRAKE_DELAY SET_KRLDLG SET_KRLDLGANSWER SET_KRLMSG SET_KRL_BP SET_MAM_ON_HD
+    SET_OPT_FILTER SET_SYSTEM_DATA SET_SYSTEM_DATA_DELAYED SET_TORQUE_LIMITS SET_USEDXROBVERS
+    SUPPRESS_REPOSITIONING SYNC SYNCCMD TEST_BRAKE TIMER_LIMIT TOOL_ADJ VECTORMOVEOFF VECTORMOVEON
+    VECTORMOVEZEROVELOCITY WSPACEGIVE WSPACETAKE
+    """.split()
+)
+
+
+def call(name: str, arguments: Sequence[Value | None], surroundings: Surroundings) -> Reply:
+    """Carry out a function of `BUILTINS`; an argument left out is ``None``.
+
+    What is passed :IN is converted to the parameter's type [ARI-04]. Faults ``uninitialised`` where
+    it has no value, ``argument`` where there are too few or too many arguments or a wrong one, and
+    what the function faults. The arguments themselves are not changed: see `Reply`.
+    """
+    builtin = BUILTINS[name.upper()]
+    least = len(builtin.parameters)
+    if len(arguments) < least or (len(arguments) > least and not builtin.has_more):
+        raise fault("argument")
+    given: list[Any] = [
+        argument if parameter.is_out else _passed(parameter.type, argument)
+        for parameter, argument in zip(builtin.parameters, arguments, strict=False)
+    ]
+    given += arguments[least:]
+    if builtin.uses_surroundings:
+        given.insert(0, surroundings)
+    result, changes = builtin.function(*given)
+    after = (changes.get(place, argument) for place, argument in enumerate(arguments))
+    return Reply(result, tuple(after))
+
+
+def reads_text(type_: Type) -> bool:
+    """Whether a function reads a text by a parameter :IN of this type [FCT-04].
+
+    There an array of CHAR that the caller of a routine has left out is the empty text, as one is
+    that never had a value (unconfirmed: the message routines in backups of three independent
+    controllers ask for STRLEN of a parameter that is left out, and go on only if it is not 0).
+    """
+    return isinstance(type_, Array) and type_.element == CHAR and len(type_.sizes) == 1
+
+
+def _passed(type_: Type, argument: Value | None) -> Value:
+    """An argument passed :IN; a text stays as it is, whatever the size of the parameter."""
+    value = known(argument)
+    return value if isinstance(type_, Array) else converted(value, type_)

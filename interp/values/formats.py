@@ -1,0 +1,317 @@
+"""SWRITE and SREAD: values into a text and out of it, by a format [FCT-09].
+
+A format is text with specifications ``%[flags][width][.precision]letter``, as in C's printf:
+
+=====  ==================================================================================
+``+``  a sign before positive numbers too
+``-``  aligned to the left
+``0``  filled up with zeros instead of blanks
+``#``  ``0x`` before hexadecimal numbers but zero; always a point in e, f, g
+=====  ==================================================================================
+
+The width is the least number of characters. It counts the point but not the sign, which is where
+KUKA's format differs from C's: 1.56 in ``%+8.4f`` is two blanks, then ``+1.5600``.
+
+=============  ===============================================================================
+``d i``        INT; a REAL as by ``f``; BOOL as 1 or 0
+``u x``        INT as a number of 32 bits without sign, decimal or hexadecimal
+``e f g``      REAL, INT
+``c``          CHAR, or INT as its code
+``s``          text; the precision is the most characters. BOOL as TRUE or FALSE, ``#NAME``
+``%``          a percent sign
+=============  ===============================================================================
+
+The flags, the width, the offset and the limit of ten variables are from a transcription of the
+manual on CREAD and CWRITE; the letters but ``d``, BOOL, enumerations, STATE and all of SREAD are
+recollection (unconfirmed). Both stop at what cannot be converted: STATE then has #FMT_ERR and the
+number of conversions before, and what was written or read before stays.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from grammar.semantics.predefined import System
+from grammar.semantics.types import INT, INT_MAX, Enumeration, Structure
+from interp.values.faults import fault
+from interp.values.texts import DECIMAL, INTEGER, Outcome, integer_of, real_of
+from interp.values.values import (
+    ArrayValue,
+    EnumValue,
+    StructureValue,
+    Value,
+    constant,
+    converted,
+    copied,
+    empty,
+    known,
+    text_of,
+)
+
+__all__ = ["sread", "swrite"]
+
+#: No text is longer [FCT-04], so no width or precision needs to be.
+_LONGEST = 2047
+#: The most variables of one call.
+_MOST = 10
+
+_SPECIFICATION = re.compile(r"%([-+#0]*)([0-9]{0,4})(?:\.([0-9]{1,4}))?([a-zA-Z])")
+
+
+class _Mismatch(Exception):
+    """A value or a text does not fit its specification."""
+
+
+#: Flags, width, precision, letter.
+_Specification = tuple[str, int | None, int | None, str]
+
+
+def _pieces(pattern: str) -> Iterator[str | _Specification]:
+    """Texts and specifications in order; `_Mismatch` at a wrong one."""
+    place = 0
+    while place < len(pattern):
+        if pattern.startswith("%%", place):
+            yield "%"
+            place += 2
+            continue
+        if pattern[place] != "%":
+            end = pattern.find("%", place)
+            end = len(pattern) if end < 0 else end
+            yield pattern[place:end]
+            place = end
+            continue
+        found = _SPECIFICATION.match(pattern, place)
+        if not found:
+            raise _Mismatch
+        flags, width, precision, letter = found.groups()
+        least, digits = _count(width), _count(precision)
+        yield flags, least, digits, letter
+        place = found.end()
+
+
+def _count(digits: str | None) -> int | None:
+    number = int(digits) if digits else None
+    if number is not None and number > _LONGEST:
+        raise _Mismatch
+    return number
+
+
+# ------------------------------------------------------------------------------- STATE
+
+
+def _state(word: str, hits: int, length: int) -> StructureValue:
+    """A STATE_T: the result, how many conversions, how many characters [FCT-08]."""
+    types = System.load().types
+    structure, results = types["STATE_T"], types["CMD_STAT"]
+    assert isinstance(structure, Structure)
+    assert isinstance(results, Enumeration)
+    value = empty(structure)
+    assert isinstance(value, StructureValue)
+    value.set("RET1", constant(results, word))
+    value.set("MSG_NO", 0)
+    value.set("HITS", hits)
+    value.set("LENGTH", length)
+    return value
+
+
+# ------------------------------------------------------------------------------- SWRITE
+
+
+def swrite(
+    target: Value | None, _state_before: Value | None, offset: Value, pattern: Value, *values: Value
+) -> Outcome:
+    """Write values into a text from behind the first ``offset`` characters on.
+
+    The offset is moved behind what was written. What stood elsewhere in the text stays: a program
+    that wants it gone clears it first (unconfirmed). An offset outside the text gives #CMD_ABORT
+    (unconfirmed).
+    """
+    if not isinstance(target, ArrayValue):
+        raise fault("argument")
+    start = converted(known(offset), INT)
+    assert isinstance(start, int)
+    if not 0 <= start <= len(target):
+        return None, {1: _state("CMD_ABORT", 0, 0)}
+    text: ArrayValue = copied(target)
+    end, hits, word = start, 0, "CMD_OK"
+    left = list(values)
+    try:
+        for piece in _pieces(text_of(pattern)):
+            if isinstance(piece, str):
+                written = piece
+            elif left and hits < _MOST:
+                written = _written(piece, known(left[0]))
+            else:
+                raise _Mismatch
+            if end + len(written) > len(text):
+                raise _Mismatch
+            text.elements[end : end + len(written)] = written
+            end += len(written)
+            if not isinstance(piece, str):
+                left.pop(0)
+                hits += 1
+        if left:
+            raise _Mismatch
+    except _Mismatch:
+        word = "FMT_ERR"
+    return None, {0: text, 1: _state(word, hits, end - start), 2: end}
+
+
+def _written(specification: _Specification, value: Value) -> str:
+    flags, width, precision, letter = specification
+    if letter in "cs":
+        body = _characters(letter, precision, value)
+        return body.ljust(width or 0) if "-" in flags else body.rjust(width or 0)
+    sign, prefix, digits = _digits(specification, value)
+    if "-" in flags:
+        return sign + (prefix + digits).ljust(width or 0)
+    if "0" in flags:
+        return sign + prefix + digits.rjust((width or 0) - len(prefix), "0")
+    return " " * ((width or 0) - len(prefix + digits)) + sign + prefix + digits
+
+
+def _characters(letter: str, precision: int | None, value: Value) -> str:
+    match letter, value:
+        case ("c", str()) if len(value) == 1:
+            return value
+        case ("c", int()) if not isinstance(value, bool) and 0 <= value <= 255:
+            return chr(value)
+        case ("s", bool()):
+            text = "TRUE" if value else "FALSE"
+        case ("s", EnumValue()):
+            text = f"#{value.name.upper()}"
+        case ("s", str() | ArrayValue()):
+            text = text_of(value)
+        case _:
+            raise _Mismatch
+    return text[:precision]
+
+
+def _digits(specification: _Specification, value: Value) -> tuple[str, str, str]:
+    """Sign, prefix and digits of a number."""
+    flags, _, precision, letter = specification
+    if not isinstance(value, int | float):
+        raise _Mismatch
+    sign = "-" if value < 0 else "+" if "+" in flags else ""
+    if letter in "efg" or (letter in "di" and isinstance(value, float)):
+        kind = letter if letter in "efg" else "f"
+        form = f"{'#' if '#' in flags else ''}.{6 if precision is None else precision}{kind}"
+        return sign, "", format(abs(float(value)), form)
+    if letter not in "diux" or isinstance(value, float):
+        raise _Mismatch
+    number = int(value)
+    if letter in "di":
+        return sign, "", str(abs(number)).zfill(precision or 0)
+    prefix = "0x" if letter == "x" and "#" in flags and number != 0 else ""
+    return (
+        "",
+        prefix,
+        format(number & 0xFFFFFFFF, "d" if letter == "u" else "x").zfill(precision or 0),
+    )
+
+
+# ------------------------------------------------------------------------------- SREAD
+
+#: What a number looks like, by letter.
+_NUMBERS: Mapping[str, re.Pattern[str]] = {
+    **dict.fromkeys("di", INTEGER),
+    "u": re.compile(r"[0-9]+"),
+    "x": re.compile(r"(?:0[xX])?[0-9a-fA-F]+"),
+    **dict.fromkeys("efg", DECIMAL),
+}
+
+
+def sread(
+    text: Value,
+    _state_before: Value | None,
+    offset: Value,
+    pattern: Value,
+    *variables: Value | None,
+) -> Outcome:
+    """Read values from a text from behind the first ``offset`` characters on.
+
+    It reads as C's scanf does: blanks of the format stand for any number of blanks, other
+    characters for themselves; before all but ``c`` blanks are skipped; the width is the most
+    characters. The offset is moved behind what was read. An offset outside the text gives
+    #CMD_ABORT.
+    """
+    given = text_of(text)
+    start = converted(known(offset), INT)
+    assert isinstance(start, int)
+    if not 0 <= start <= len(given):
+        return None, {1: _state("CMD_ABORT", 0, 0)}
+    changes: dict[int, Value] = {}
+    end, word = start, "CMD_OK"
+    most = min(len(variables), _MOST)
+    try:
+        for piece in _pieces(text_of(pattern)):
+            if isinstance(piece, str):
+                end = _skipped(given, end, piece)
+            elif len(changes) < most:
+                value, end = _read(given, end, piece)
+                changes[4 + len(changes)] = value
+            else:
+                raise _Mismatch
+        if len(changes) < len(variables):
+            raise _Mismatch
+    except _Mismatch:
+        word = "FMT_ERR"
+    hits = len(changes)
+    return None, {1: _state(word, hits, end - start), 2: end, **changes}
+
+
+def _skipped(text: str, place: int, expected: str) -> int:
+    """The place behind what the format expects literally."""
+    for letter in expected:
+        if letter == " ":
+            place = _blanks(text, place)
+        elif text.startswith(letter, place):
+            place += 1
+        else:
+            raise _Mismatch
+    return place
+
+
+def _blanks(text: str, place: int) -> int:
+    while text.startswith(" ", place):
+        place += 1
+    return place
+
+
+def _read(text: str, place: int, specification: _Specification) -> tuple[Value, int]:
+    """A value, and the place behind it."""
+    flags, width, precision, letter = specification
+    if flags or precision is not None or width == 0:
+        raise _Mismatch
+    if letter == "c":
+        found = text[place : place + (width or 1)]
+        if len(found) < (width or 1):
+            raise _Mismatch
+        return found, place + len(found)
+    place = _blanks(text, place)
+    most = len(text) if width is None else place + width
+    if letter == "s":
+        found = text[place:most].partition(" ")[0]
+        if not found:
+            raise _Mismatch
+        return found, place + len(found)
+    match = _NUMBERS[letter].match(text, place, most) if letter in _NUMBERS else None
+    number = None if match is None else _number(letter, match[0])
+    if match is None or number is None:
+        raise _Mismatch
+    return number, match.end()
+
+
+def _number(letter: str, digits: str) -> int | float | None:
+    """The number; ``None`` where it is too large."""
+    if letter in "efg":
+        return real_of(digits)
+    if letter in "di":
+        return integer_of(digits)
+    if len(digits) > len("0x") + 32:
+        return None
+    number = int(digits, 16 if letter == "x" else 10)
+    if number > 0xFFFFFFFF:
+        return None
+    return number - (1 << 32) if number > INT_MAX else number

@@ -1,0 +1,298 @@
+"""Operators on values: one table of typed primitives, and the way from operators to them.
+
+A `Primitive` works on operands of fixed kinds; it is what becomes an instruction of the machines.
+`select` tells, from the kinds that the checker knows, which primitive an operator is and how its
+operands are converted before; `apply` does the same for values at hand. Both read one table, so an
+operator has one meaning.
+
+Operands are evaluated from left to right and always both: AND and OR do not stop after the first,
+as no rule says that they would (unconfirmed). An INT beside a REAL becomes a REAL, and so is
+rounded to single, before anything else [ARI-01]; a CHAR in a relation or bit operation is its code
+[ARI-10]. That a value is missing is found when it is read, so primitives never see ``None``.
+"""
+
+from __future__ import annotations
+
+import operator as python
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Any, Literal, cast
+
+from grammar.semantics import operations
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    Aggregate,
+    Constant,
+    Enumeration,
+    Text,
+    Type,
+    is_cartesian,
+)
+from interp.values.faults import fault
+from interp.values.frames import composed
+from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
+
+__all__ = [
+    "BINARY",
+    "PRIMITIVES",
+    "UNARY",
+    "Kind",
+    "Primitive",
+    "Selection",
+    "apply",
+    "apply_unary",
+    "kind_of",
+    "kind_of_value",
+    "select",
+]
+
+#: What primitives tell apart. FRAME is any pose: FRAME, POS, E3POS, E6POS.
+Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
+
+
+@dataclass(frozen=True, slots=True)
+class Primitive:
+    """An operation on operands of fixed kinds.
+
+    ``faults`` are the slugs of the faults that it can raise, ``sentence`` tells what it gives.
+    """
+
+    name: str
+    operands: tuple[Kind, ...]
+    result: Kind
+    function: Callable[..., Any]
+    faults: tuple[str, ...]
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """How an operator is carried out: the conversions of each operand, then the primitive.
+
+    ``primitive`` is ``None`` where nothing is left to do: the sign ``+``.
+    """
+
+    conversions: tuple[tuple[Primitive, ...], ...]
+    primitive: Primitive | None
+    result: Kind
+
+
+# ------------------------------------------------------------------------------- functions
+
+
+def _divided(left: int, right: int) -> int:
+    if right == 0:
+        raise fault("division_by_zero")
+    quotient = abs(left) // abs(right)
+    return integer(quotient if (left < 0) == (right < 0) else -quotient)
+
+
+def _quotient(left: float, right: float) -> float:
+    if right == 0:
+        raise fault("division_by_zero")
+    return single(left / right)
+
+
+def _code(letter: str) -> int:
+    if len(letter) != 1:  # the empty text, which the checker lets stand for a letter
+        raise fault("operand")
+    return ord(letter)
+
+
+def _letter(code: int) -> str:
+    if not 0 <= code <= 255:
+        raise fault("inadmissible")
+    return chr(code)
+
+
+# ------------------------------------------------------------------------------- the table
+
+_Row = tuple[str, str, Callable[..., Any], str, str]
+
+# Name, kinds of the operands and of the result, function, faults, sentence. In double, + - * / and
+# the square root of singles are exact enough for one rounding to give what single arithmetic gives.
+_ROWS: tuple[_Row, ...] = (
+    ("add_int", "INT INT INT", lambda a, b: integer(a + b), "overflow", "the sum"),
+    ("sub_int", "INT INT INT", lambda a, b: integer(a - b), "overflow", "the difference"),
+    ("mul_int", "INT INT INT", lambda a, b: integer(a * b), "overflow", "the product"),
+    (
+        *("div_int", "INT INT INT", _divided, "division_by_zero overflow"),
+        "the quotient, its fraction dropped",
+    ),
+    ("neg_int", "INT INT", lambda a: integer(-a), "overflow", "the number with the other sign"),
+    ("add_real", "REAL REAL REAL", lambda a, b: single(a + b), "overflow", "the sum"),
+    ("sub_real", "REAL REAL REAL", lambda a, b: single(a - b), "overflow", "the difference"),
+    ("mul_real", "REAL REAL REAL", lambda a, b: single(a * b), "overflow", "the product"),
+    ("div_real", "REAL REAL REAL", _quotient, "division_by_zero overflow", "the quotient"),
+    ("neg_real", "REAL REAL", python.neg, "", "the number with the other sign"),
+    ("eq_int", "INT INT BOOL", python.eq, "", "whether both are equal"),
+    ("ne_int", "INT INT BOOL", python.ne, "", "whether both differ"),
+    ("lt_int", "INT INT BOOL", python.lt, "", "whether the first is less"),
+    ("gt_int", "INT INT BOOL", python.gt, "", "whether the first is greater"),
+    ("le_int", "INT INT BOOL", python.le, "", "whether the first is less or equal"),
+    ("ge_int", "INT INT BOOL", python.ge, "", "whether the first is greater or equal"),
+    ("eq_real", "REAL REAL BOOL", python.eq, "", "whether both are equal, to the last bit"),
+    ("ne_real", "REAL REAL BOOL", python.ne, "", "whether both differ, if only in the last bit"),
+    ("lt_real", "REAL REAL BOOL", python.lt, "", "whether the first is less"),
+    ("gt_real", "REAL REAL BOOL", python.gt, "", "whether the first is greater"),
+    ("le_real", "REAL REAL BOOL", python.le, "", "whether the first is less or equal"),
+    ("ge_real", "REAL REAL BOOL", python.ge, "", "whether the first is greater or equal"),
+    ("eq_bool", "BOOL BOOL BOOL", python.eq, "", "whether both are equal"),
+    ("ne_bool", "BOOL BOOL BOOL", python.ne, "", "whether both differ"),
+    ("eq_enum", "ENUM ENUM BOOL", python.eq, "", "whether both are the same constant"),
+    ("ne_enum", "ENUM ENUM BOOL", python.ne, "", "whether both are different constants"),
+    ("not_bool", "BOOL BOOL", python.not_, "", "the opposite"),
+    ("and_bool", "BOOL BOOL BOOL", python.and_, "", "whether both are TRUE"),
+    ("or_bool", "BOOL BOOL BOOL", python.or_, "", "whether one is TRUE, or both"),
+    ("exor_bool", "BOOL BOOL BOOL", python.xor, "", "whether one is TRUE and not both"),
+    ("not_bits", "INT INT", python.invert, "", "all 32 bits turned over"),
+    ("and_bits", "INT INT INT", python.and_, "", "the bits that both have"),
+    ("or_bits", "INT INT INT", python.or_, "", "the bits that one has, or both"),
+    ("exor_bits", "INT INT INT", python.xor, "", "the bits that one has and not both"),
+    ("compose", "FRAME FRAME FRAME", composed, "uninitialised overflow", "the pose left:right"),
+    ("int_to_real", "INT REAL", single, "", "the number, rounded to single"),
+    ("real_to_int", "REAL INT", rounded, "overflow", "the nearest INT, halves away from zero"),
+    ("char_to_int", "CHAR INT", _code, "operand", "the code of the letter"),
+    ("int_to_char", "INT CHAR", _letter, "inadmissible", "the letter of the code, 0 to 255"),
+)
+
+
+def _primitive(row: _Row) -> Primitive:
+    name, kinds, function, faults, sentence = row
+    *operands, result = cast("list[Kind]", kinds.split())
+    return Primitive(name, tuple(operands), result, function, tuple(faults.split()), sentence)
+
+
+#: All primitives by name, in a fixed order.
+PRIMITIVES: Mapping[str, Primitive] = MappingProxyType({row[0]: _primitive(row) for row in _ROWS})
+
+#: The primitives of an operator, most narrow first: the first whose operands can be had is taken.
+BINARY: Mapping[str, tuple[str, ...]] = {
+    "+": ("add_int", "add_real"),
+    "-": ("sub_int", "sub_real"),
+    "*": ("mul_int", "mul_real"),
+    "/": ("div_int", "div_real"),
+    "==": ("eq_int", "eq_real", "eq_bool", "eq_enum"),
+    "<>": ("ne_int", "ne_real", "ne_bool", "ne_enum"),
+    "<": ("lt_int", "lt_real"),
+    ">": ("gt_int", "gt_real"),
+    "<=": ("le_int", "le_real"),
+    ">=": ("ge_int", "ge_real"),
+    "AND": ("and_bool",),
+    "OR": ("or_bool",),
+    "EXOR": ("exor_bool",),
+    "B_AND": ("and_bits",),
+    "B_OR": ("or_bits",),
+    "B_EXOR": ("exor_bits",),
+    ":": ("compose",),
+}
+UNARY: Mapping[str, tuple[str, ...]] = {
+    "-": ("neg_int", "neg_real"),
+    "NOT": ("not_bool",),
+    "B_NOT": ("not_bits",),
+}
+
+#: Operators that take a CHAR, by its code.
+_OF_LETTERS = operations.EQUALITY | operations.ORDER | operations.BITWISE | {"B_NOT"}
+#: How a kind becomes another.
+_WAYS: Mapping[tuple[Kind, Kind], tuple[str, ...]] = {
+    ("INT", "REAL"): ("int_to_real",),
+    ("CHAR", "INT"): ("char_to_int",),
+    ("CHAR", "REAL"): ("char_to_int", "int_to_real"),
+}
+
+
+@cache
+def select(operator: str, *kinds: Kind) -> Selection | None:
+    """How an operator works on one or two operands of these kinds; ``None`` where it does not.
+
+    Raises `ValueError` for what is no such operator.
+    """
+    table = BINARY if len(kinds) == 2 else UNARY
+    if operator == "+" and len(kinds) == 1:
+        return Selection(((),), None, kinds[0]) if kinds[0] in ("INT", "REAL") else None
+    if operator not in table:
+        raise ValueError(f"{operator!r} is no operator of so many operands: {len(kinds)}")
+    for name in table[operator]:
+        primitive = PRIMITIVES[name]
+        ways = [
+            _way(kind, to, operator) for kind, to in zip(kinds, primitive.operands, strict=True)
+        ]
+        if all(way is not None for way in ways):
+            conversions = tuple(tuple(PRIMITIVES[step] for step in way or ()) for way in ways)
+            return Selection(conversions, primitive, primitive.result)
+    return None
+
+
+def _way(kind: Kind, to: Kind, operator: str) -> tuple[str, ...] | None:
+    if kind == to:
+        return ()
+    if kind == "CHAR" and operator not in _OF_LETTERS:
+        return None
+    return _WAYS.get((kind, to))
+
+
+# ------------------------------------------------------------------------------- kinds
+
+_SCALARS: Mapping[Type, Kind] = {INT: "INT", REAL: "REAL", BOOL: "BOOL", CHAR: "CHAR"}
+_PYTHON: Mapping[type, Kind] = {
+    int: "INT",
+    float: "REAL",
+    bool: "BOOL",
+    str: "CHAR",
+    EnumValue: "ENUM",
+    StructureValue: "FRAME",
+}
+
+
+def kind_of(type_: Type) -> Kind | None:
+    """The kind of a type; ``None`` where no operator takes it: arrays, other structures."""
+    match type_:
+        case Enumeration() | Constant():
+            return "ENUM"
+        case Text():
+            return "CHAR" if type_.length <= 1 else None
+        case Aggregate():
+            return "FRAME" if type_.structure is None or is_cartesian(type_.structure) else None
+    if is_cartesian(type_):
+        return "FRAME"
+    return _SCALARS.get(type_)
+
+
+def kind_of_value(value: Value) -> Kind:
+    """The kind of a value; faults ``operand`` where no operator takes it."""
+    kind = _PYTHON.get(type(value))
+    if kind is None or (isinstance(value, StructureValue) and not is_cartesian(value.type)):
+        raise fault("operand")
+    return kind
+
+
+# ------------------------------------------------------------------------------- values at hand
+
+
+def apply(operator: str, left: Value, right: Value) -> Value:
+    """``left operator right``; faults ``operand`` where it does not work on these."""
+    return _applied(select(operator, kind_of_value(left), kind_of_value(right)), (left, right))
+
+
+def apply_unary(operator: str, operand: Value) -> Value:
+    """``operator operand``; faults ``operand`` where it does not work on this."""
+    return _applied(select(operator, kind_of_value(operand)), (operand,))
+
+
+def _applied(selection: Selection | None, operands: tuple[Value, ...]) -> Value:
+    if selection is None:
+        raise fault("operand")
+    values: list[Any] = list(operands)
+    for place, steps in enumerate(selection.conversions):
+        for step in steps:
+            values[place] = step.function(values[place])
+    if selection.primitive is None:
+        return operands[0]
+    result: Value = selection.primitive.function(*values)
+    return result

@@ -1,0 +1,192 @@
+"""The predefined functions on texts: STRLEN to STRTOE6AXIS [FCT-04 to FCT-06].
+
+Each takes its arguments as `interp.values.builtins.call` prepares them and gives its result and the
+new values of arguments passed :OUT, by place. Where a function fails it says so by its result and
+changes nothing; this and all that is marked *unconfirmed* is our decision, told by no rule. Letter
+case is that of A to Z only, whatever the code page.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from string import ascii_lowercase, ascii_uppercase
+from typing import Any
+
+from grammar.semantics.predefined import System
+from grammar.semantics.types import INT, INT_MAX, INT_MIN, REAL, Structure, Type
+from interp.values.faults import Fault, fault
+from interp.values.values import (
+    ArrayValue,
+    EnumValue,
+    StructureValue,
+    Value,
+    empty,
+    single,
+    text_of,
+)
+
+__all__ = ["DECIMAL", "INTEGER", "TEXTS", "Outcome", "integer_of", "real_of"]
+
+#: The result, and the new values of arguments by place.
+Outcome = tuple[Value | None, Mapping[int, Value]]
+
+_UPPER = str.maketrans(ascii_lowercase, ascii_uppercase)
+
+
+def _array(value: Value | None) -> ArrayValue:
+    if not isinstance(value, ArrayValue):
+        raise fault("argument")
+    return value
+
+
+def _cased(text: str, mode: EnumValue) -> str:
+    return text if mode.name == "CASE_SENS" else text.translate(_UPPER)
+
+
+# ------------------------------------------------------------------------------- STR…
+
+
+def _strlen(text: Value) -> Outcome:
+    return len(text_of(text)), {}
+
+
+def _strdecllen(text: Value | None) -> Outcome:
+    return len(_array(text)), {}
+
+
+def _strclear(text: Value | None) -> Outcome:
+    _array(text)
+    return True, {0: ""}
+
+
+def _stradd(target: Value | None, text: Value) -> Outcome:
+    """The length of both; 0 where they do not fit, and then nothing changes (unconfirmed)."""
+    joined = text_of(_array(target)) + text_of(text)
+    if len(joined) > len(_array(target)):
+        return 0, {}
+    return len(joined), {0: joined}
+
+
+def _strfind(start: int, text: Value, wanted: Value, mode: EnumValue) -> Outcome:
+    """The place, counted from 1, at ``start`` or behind it; 0 where it is nowhere.
+
+    Nothing is found before place 1 or when there is nothing to find (unconfirmed).
+    """
+    what = _cased(text_of(wanted), mode)
+    if start < 1 or not what:
+        return 0, {}
+    return _cased(text_of(text), mode).find(what, start - 1) + 1, {}
+
+
+def _strcomp(one: Value, other: Value, mode: EnumValue) -> Outcome:
+    return _cased(text_of(one), mode) == _cased(text_of(other), mode), {}
+
+
+def _strcopy(target: Value | None, text: Value) -> Outcome:
+    """FALSE where it does not fit, and then nothing changes (unconfirmed)."""
+    found = text_of(text)
+    if len(found) > len(_array(target)):
+        return False, {}
+    return True, {0: found}
+
+
+# ------------------------------------------------------------------------------- STRTO…
+
+#: How an INT and a REAL are written.
+INTEGER = re.compile(r"[+-]?[0-9]+")
+DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+#: More digits than any number of 32 bits needs; longer ones are refused before they are read.
+_DIGITS = 64
+
+
+def integer_of(text: str) -> int | None:
+    """A decimal INT; ``None`` for what is none or too large."""
+    if len(text) > _DIGITS or not INTEGER.fullmatch(text):
+        return None
+    number = int(text)
+    return number if INT_MIN <= number <= INT_MAX else None
+
+
+def real_of(text: str) -> float | None:
+    """A decimal number as REAL; ``None`` for what is none or too large."""
+    if len(text) > _DIGITS or not DECIMAL.fullmatch(text):
+        return None
+    try:
+        return single(float(text))
+    except Fault:
+        return None
+
+
+def _bool_of(text: str) -> bool | None:
+    return {"TRUE": True, "FALSE": False}.get(text.translate(_UPPER))
+
+
+def _structure_of(type_: Structure, text: str) -> StructureValue | None:
+    """``{X 1.0,Y 2.0}``, with or without braces, type and names [FCT-06].
+
+    Without names it is all components in order (unconfirmed); with names, those left out get no
+    value, as in an aggregate of a program [TYP-19].
+    """
+    inner = re.fullmatch(rf"\{{(?:\s*{type_.name}\s*:)?(.*)\}}", text, re.IGNORECASE | re.DOTALL)
+    parts = [part.split() for part in (inner[1] if inner else text).split(",")]
+    names = [member.name for member in type_.members]
+    if len(parts) == len(names) and all(len(part) == 1 for part in parts):
+        parts = [[name, *part] for name, part in zip(names, parts, strict=True)]
+    value = empty(type_)
+    assert isinstance(value, StructureValue)
+    for part in parts:
+        place = names.index(part[0].upper()) if part and part[0].upper() in names else None
+        if len(part) != 2 or place is None or value.members[place] is not None:
+            return None
+        number = _number_of(type_.members[place].type, part[1])
+        if number is None:
+            return None
+        value.members[place] = number
+    return value
+
+
+def _number_of(type_: Type, text: str) -> int | float | None:
+    return integer_of(text) if type_ == INT else real_of(text)
+
+
+def _reader(read: Callable[[str], Value | None]) -> Callable[..., Outcome]:
+    """A function that reads a value from a text: FALSE where there is none."""
+
+    def function(text: Value, _target: Value | None) -> Outcome:
+        value = read(text_of(text).strip(" "))
+        return (False, {}) if value is None else (True, {1: value})
+
+    return function
+
+
+def _structure_reader(name: str) -> Callable[..., Outcome]:
+    type_ = System.load().types[name]
+    assert isinstance(type_, Structure)
+    assert all(member.type in (INT, REAL) for member in type_.members)
+    return _reader(lambda text: _structure_of(type_, text))
+
+
+def _strtostring(text: Value, target: Value | None) -> Outcome:
+    copied, changes = _strcopy(target, text)
+    return copied, {place + 1: value for place, value in changes.items()}
+
+
+#: The functions by name; what they do stands in ``grammar/system/functions.tsv``.
+TEXTS: Mapping[str, Callable[..., Any]] = {
+    "STRLEN": _strlen,
+    "STRDECLLEN": _strdecllen,
+    "STRCLEAR": _strclear,
+    "STRADD": _stradd,
+    "STRFIND": _strfind,
+    "STRCOMP": _strcomp,
+    "STRCOPY": _strcopy,
+    "STRTOBOOL": _reader(_bool_of),
+    "STRTOINT": _reader(integer_of),
+    "STRTOREAL": _reader(real_of),
+    "STRTOSTRING": _strtostring,
+    **{
+        f"STRTO{name}": _structure_reader(name)
+        for name in ("FRAME", "POS", "E3POS", "E6POS", "AXIS", "E3AXIS", "E6AXIS")
+    },
+}

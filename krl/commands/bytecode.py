@@ -1,0 +1,118 @@
+"""`krl compile`, `krl asm` and `krl disasm`: programs of the bytecode machine."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.output_files import check_files, whole
+from krl.program_loading import load_program
+
+if TYPE_CHECKING:
+    from interp.bytecode.program import Program
+
+__all__ = ["assemble_file", "compile_file", "disassemble_image"]
+
+_LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large
+_MOST_TOLD = 20
+
+
+def compile_file(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="The program; archive.zip/path/name.src in an archive."
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
+    ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Write nothing while the checker finds an error.")
+    ] = False,
+) -> int:
+    """Compile a program with its whole project to bytecode, verify it, and write its image.
+
+    It can begin with any routine of the file that has no parameters, and has those of the submit
+    programs too. What ends the program when it is reached is told on stderr, with exit status 1: a
+    routine that no file has, a variable of no known type. The image is written all the same.
+    """
+    from interp.bytecode.compiler import compile_program
+    from interp.values.faults import LinkError
+
+    try:
+        program, left = load_program(file, strict=strict)
+        compiled = compile_program(program)
+    except LinkError as error:
+        raise Unusable(f"{file}: {error}") from error
+    target = output or file.with_suffix(".krlb")
+    write_image_of(compiled.program, file, target)
+    told = [f"left out: {why}" for why in left]
+    told += [f"{one.path}:{one.line}: {one.reason}" for one in compiled.refusals]
+    for line in told[:_MOST_TOLD]:
+        typer.echo(one_line(line), err=True)
+    if len(told) > _MOST_TOLD:
+        typer.echo(f"and {len(told) - _MOST_TOLD} more", err=True)
+    codes = compiled.program.codes
+    count = sum(len(code.instructions) for code in codes)
+    typer.echo(one_line(f"{target}: {len(codes):,} code objects, {count:,} instructions"))
+    return FINDINGS if compiled.refusals else FINE
+
+
+def assemble_file(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A program as text.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
+    ] = None,
+) -> None:
+    """Assemble a program of the bytecode machine, verify it, and write its image."""
+    from interp.bytecode.assembly.assembler import AssemblyError, assemble
+
+    try:
+        program = assemble(_read(file).decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        raise Unusable(f"{file}: not a text in UTF-8") from None
+    except AssemblyError as error:
+        raise Unusable(f"{file}: {error}") from error
+    write_image_of(program, file, output or file.with_suffix(".krlb"))
+
+
+def disassemble_image(
+    image: Annotated[Path, typer.Argument(metavar="IMAGE", help="An image.")],
+) -> None:
+    """Print an image as the text that `krl asm` makes it from."""
+    from interp.bytecode.assembly.disassembler import disassemble
+    from interp.bytecode.image.reader import ImageError, read_image
+    from interp.bytecode.verifier.verify import VerificationError, verify
+
+    try:
+        program = read_image(_read(image))
+        verify(program)
+    except (ImageError, VerificationError) as error:
+        raise Unusable(f"{image}: {error}") from error
+    typer.echo(disassemble(program), nl=False)
+
+
+def write_image_of(program: "Program", source: Path, target: Path) -> None:
+    """Verify a program and write its image, whole or not at all."""
+    from interp.bytecode.image.writer import write_image
+    from interp.bytecode.verifier.verify import VerificationError, verify
+
+    try:
+        verify(program)
+    except VerificationError as error:
+        raise Unusable(f"{source}: {error}") from error
+    check_files(target)
+    with whole(target) as image:
+        image.write_bytes(write_image(program))
+
+
+def _read(file: Path) -> bytes:
+    from support.files.untrusted import read_bytes
+
+    if file.is_dir():
+        raise Unusable(f"{file}: a folder, not a file")
+    return read_bytes(file, _LARGEST)

@@ -1,0 +1,99 @@
+"""What the commands about constructs share: where things lie, errors, and what they print."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from krl.errors import Unusable, one_line
+
+if TYPE_CHECKING:
+    from recovery.ledger.evaluation import Evaluation
+
+__all__ = [
+    "GENERATED",
+    "GRAMMAR",
+    "LEDGER",
+    "PRELIMINARY",
+    "expected_errors",
+    "print_evaluation",
+    "print_refusals",
+    "print_table",
+    "there",
+]
+
+# In the working folder: only a checkout's grammar grows.
+GRAMMAR = Path("grammar", "KRL.g4")
+PRELIMINARY = Path("grammar", "preliminary.g4")
+GENERATED = Path("grammar", "_generated")
+LEDGER = Path("grammar", "constructs")
+
+
+def there(path: Path) -> Path:
+    """One of these to be read: of the checkout we are in, else what came with the package."""
+    from grammar.notation.generate import GRAMMAR as OURS
+
+    return path if path.parent.is_dir() else OURS.parent / path.relative_to("grammar")
+
+
+@contextmanager
+def expected_errors() -> Iterator[None]:
+    """Turn what the rooms raise about input into what the door prints."""
+    from grammar import GrammarError
+    from grammar.notation.generate import GenerationError
+    from recovery.ledger.construct import LedgerError
+    from recovery.negatives.negatives import NegativeError
+    from support.files.discovery import IngestError
+    from support.parallel.executor import WorkersError
+
+    expected = (
+        GrammarError,
+        GenerationError,
+        LedgerError,
+        IngestError,
+        NegativeError,
+        WorkersError,
+    )
+    try:
+        yield
+    except expected as error:
+        raise Unusable(str(error)) from error
+
+
+def print_evaluation(found: "Evaluation") -> None:
+    """Print the figures of a construct that was weighed, and what speaks against it."""
+    from recovery.ledger.overview import counts_of
+
+    construct = found.construct
+    evidence, effect = construct.evidence, construct.effect
+    typer.echo(one_line(f"{construct.id}: {construct.title}"))
+    old = "" if found.is_counted else " (as written in the file: there is no corpus to count in)"
+    typer.echo(f"  evidence   {counts_of(evidence)}{old}")
+    typer.echo(f"  grounds    {', '.join(evidence.grounds) or 'none'}")
+    if effect is not None:
+        typer.echo(
+            f"  effect     {effect.parsed} of {effect.files} files parse, {effect.restores} of "
+            f"them newly; own {effect.own_parsed} of {effect.own_files}"
+        )
+        typer.echo(
+            f"  costs      negatives let in {effect.negatives}, ambiguities {effect.ambiguities}"
+        )
+    for why in found.refusals:
+        typer.echo(f"  refused    {one_line(why)}")
+
+
+def print_refusals(refusals: Iterable[tuple[str, str]]) -> None:
+    """Print where something is refused, and why."""
+    for where, why in refusals:
+        typer.echo(one_line(f"refused: {where}: {why}"))
+
+
+def print_table(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print in columns as wide as their text, so that pipes and logs get each row on one line."""
+    lines = [[one_line(cell) for cell in row] for row in ((heading, *rows) if heading else rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        typer.echo(f"  {'  '.join(cells)}".rstrip())

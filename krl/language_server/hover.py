@@ -1,0 +1,213 @@
+"""What stands at a place of a program: its meaning in words, and where it is declared."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from conformance.suite.registry import registry
+from grammar.diagnostics.diagnostic import Region
+from grammar.semantics.predefined import Function, System, Variable
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind, Symbol
+from grammar.syntax import ast
+from grammar.syntax.source import Source
+from krl.language_server.workspace import Looked, OpenProject
+
+__all__ = ["Definition", "Outline", "definition", "hover", "outline"]
+
+_WORD = re.compile(r"\$?[A-Za-z_][A-Za-z0-9_$]*")
+_MOST_RULES = 6
+_TIERS = {
+    "P": "manual or KUKA's own file",
+    "T": "transcription of a manual",
+    "F": "practitioners",
+    "D": "measured on controller files",
+    "R": "recollection, unconfirmed",
+    "X": "unknown origin, unconfirmed",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """Where something is declared."""
+
+    path: str
+    region: Region
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A routine or a declaration of a file, with what stands in it.
+
+    ``whole`` is the region of all of it, ``region`` that of its name.
+    """
+
+    name: str
+    kind: Kind
+    detail: str
+    whole: Region
+    region: Region
+    inner: tuple[Outline, ...] = ()
+
+
+def definition(project: OpenProject, looked: Looked, offset: int) -> Definition | None:
+    """Where the name at an offset is declared; ``None`` for what no file declares."""
+    found = _found_at(looked, offset)
+    if found is None or found.module is None:
+        return None
+    source = project.source(found.module.path)
+    if source is None:
+        return None
+    return Definition(source.path, Region.of(source, found.symbol.span))
+
+
+def hover(project: OpenProject, looked: Looked, offset: int) -> tuple[str, Region] | None:
+    """What to say of the word at an offset, as Markdown, and the region of that word."""
+    word = _word_at(looked.source, offset)
+    if word is None:
+        return None
+    text, region = word
+    found = _found_at(looked, offset)
+    if found is not None and found.module is not None:
+        return _declared(project, looked, found), region
+    said = _predefined(text.upper())
+    return None if said is None else (said, region)
+
+
+def outline(looked: Looked) -> tuple[Outline, ...]:
+    """The routines of a program with their data, or the data of a list."""
+    module, source = looked.module, looked.source
+    if module is None or module.table is None or module.syntax is None:
+        return ()
+    data = [_outlined(source, symbol) for _, symbol in module.table.table.symbols()]
+    content = module.syntax.content
+    if isinstance(content, ast.DataList):
+        return tuple(data)
+    pairs = zip(content.routines, module.table.routines, strict=True)
+    routines = []
+    for node, table in pairs:
+        inner = [
+            _outlined(source, symbol)
+            for _, symbol in table.table.symbols()
+            if symbol.kind is not Kind.LABEL
+        ]
+        whole, name = Region.of(source, node.span), Region.of(source, node.name.span)
+        detail = _signature(table.routine)
+        routines.append(Outline(node.name.text, Kind.ROUTINE, detail, whole, name, tuple(inner)))
+    return tuple(routines)
+
+
+def _outlined(source: Source, symbol: Symbol) -> Outline:
+    region = Region.of(source, symbol.span)
+    return Outline(symbol.name, symbol.kind, _type(symbol), region, region)
+
+
+def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
+    line, column = source.place(offset)
+    for found in _WORD.finditer(source.line(line)):
+        if found.start() <= column - 1 <= found.end():
+            return found.group(), Region(line, found.start() + 1, line, found.end() + 1)
+    return None
+
+
+def _found_at(looked: Looked, offset: int) -> Found | None:
+    """What the name at an offset means, its end included: that is where a cursor often stands."""
+    if looked.checked is None:
+        return None
+    for name, answer in looked.checked.resolution.answers.items():
+        if name.span[0] <= offset <= name.span[1] and isinstance(answer, Found):
+            return answer
+    return None
+
+
+def _declared(project: OpenProject, looked: Looked, found: Found) -> str:
+    assert found.module is not None, "asked only of what a file declares"
+    symbol = found.symbol
+    path = found.module.path
+    source = project.source(path)
+    place = path.rpartition("/")[2]
+    lines = [f"```krl\n{_signature(symbol)}\n```"]
+    if source is not None:
+        number = source.place(symbol.span[0])[0]
+        comment = source.comment(number)
+        place = f"{place}:{number}"
+        if comment is not None:
+            lines.append(comment.text.lstrip("; "))
+    lines.append(f"{symbol.kind.value}, {place}")
+    if looked.project is not None and symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
+        lines.append(f"seen from: {symbol.access.value}")
+    return "\n\n".join(lines)
+
+
+def _signature(symbol: Symbol) -> str:
+    parameters = getattr(symbol, "parameters", None)
+    if parameters is None:
+        return f"{_type(symbol)} {symbol.name}".strip()
+    listed = ", ".join(f"{one.name}:{one.mode}" for one in parameters)
+    head = f"DEFFCT {_type(symbol)}" if symbol.type or symbol.given else "DEF"
+    return f"{head} {symbol.name}({listed})"
+
+
+def _type(symbol: Symbol) -> str:
+    if symbol.type is not None:
+        return symbol.type.name
+    return "" if symbol.given is None else str(symbol.given)
+
+
+def _predefined(key: str) -> str | None:
+    """A system variable, a predefined routine or a keyword, with the rules that speak of it."""
+    system = System.load()
+    variable, function = system.variables.get(key), system.functions.get(key)
+    if variable is not None:
+        return "\n\n".join([*_variable(variable), *_cited(variable.source, key)])
+    if function is not None:
+        return "\n\n".join([*_function(function), *_cited(function.source, key)])
+    rules = _cited((), key)
+    return "\n\n".join([f"`{key}`", *rules]) if rules else None
+
+
+def _variable(variable: Variable) -> list[str]:
+    lines = [f"```krl\n{variable.type} {variable.name}\n```"]
+    if variable.meaning not in ("", "-"):
+        lines.append(variable.meaning)
+    if variable.access == "read":
+        lines.append("write-protected")
+    stops = {"read": variable.stops_on_read, "written": variable.stops_on_write}
+    for how, rules in stops.items():
+        if rules:
+            lines.append(f"stops the advance run when {how} [{', '.join(rules)}]")
+    if variable.twin:
+        lines.append(f"value in the main run: `{variable.twin}`")
+    return lines
+
+
+def _function(function: Function) -> list[str]:
+    listed = ", ".join(
+        f"{one.name}:{'OUT' if one.is_out else 'IN'} {one.type}" for one in function.parameters
+    )
+    result = f"{function.result} " if function.result is not None else ""
+    lines = [f"```krl\n{result}{function.name}({listed})\n```"]
+    if function.meaning not in ("", "-"):
+        lines.append(function.meaning)
+    if function.stops:
+        lines.append(f"stops the advance run [{', '.join(function.stops)}]")
+    return lines
+
+
+def _cited(source: Sequence[str], word: str) -> list[str]:
+    """The rules of a table's row, then those that name the word, each with how well it is known."""
+    rules = registry()
+    named = re.compile(rf"(?<![\w$]){re.escape(word)}(?!\w)")
+    wanted = [rules[key] for key in source if key in rules]
+    wanted += [
+        rule for rule in rules.values() if rule not in wanted and named.search(rule.statement)
+    ]
+    return [
+        f"**{rule.id}** {rule.statement} *({_tier(rule.tier)})*" for rule in wanted[:_MOST_RULES]
+    ]
+
+
+def _tier(tier: str) -> str:
+    return "; ".join(_TIERS.get(letter, letter) for letter in tier.split("+"))

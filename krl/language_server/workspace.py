@@ -1,0 +1,155 @@
+"""The files that an editor works on: those of its folder, and the open ones as they are typed.
+
+A file is read when its text changes; linking takes the tables of all files, and only files that are
+looked at are checked. Paths are absolute with ``/``, lines and columns count from 1 as everywhere
+in the project; what editors count otherwise is translated at the door, in
+`krl.language_server.server`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from grammar.check.framework import Checked, check_module, check_project
+from grammar.check.suppression_comments import silenced, silencers
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.scopes import Module
+from grammar.semantics.symbol_table import table_of
+from grammar.syntax import ast
+from grammar.syntax.build import SyntaxFailure, read_module
+from grammar.syntax.source import Source
+from support.files import discovery
+from support.files.decode import decode
+from support.files.untrusted import read_bytes
+
+__all__ = ["MOST_FILES", "Looked", "OpenProject"]
+
+#: More files than the largest backup has; a folder with more is somebody's whole disk.
+MOST_FILES = 5_000
+#: Findings that are no faults: why the robot stops. `krl check` tells them when asked.
+_SOUGHT = ("KSS", *(f"KRL{digit}" for digit in "01234579"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Read:
+    """A text and its tree, or the reasons why it has none."""
+
+    source: Source
+    syntax: ast.Module | None
+    failures: tuple[SyntaxFailure, ...]
+    file: File
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Looked:
+    """All that is known of one file.
+
+    ``module``, ``project`` and ``checked`` are ``None`` for a file that cannot be read.
+    """
+
+    source: Source
+    diagnostics: tuple[Diagnostic, ...]
+    module: Module | None = None
+    project: Project | None = None
+    checked: Checked | None = None
+
+
+class OpenProject:
+    """Files by path, and what is known of them today."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, _Read] = {}
+        self._linked: Mapping[str, tuple[Project, Module]] | None = None
+        self._looked: dict[str, Looked] = {}
+
+    def add_folder(self, folder: Path) -> int:
+        """Take in the KRL files below a folder; how many there are. A missing folder has none.
+
+        Files beyond `MOST_FILES` are left out, and so are files that are open already.
+        """
+        try:
+            found = [
+                one for one in discovery.discover([folder]) if isinstance(one, discovery.Found)
+            ]
+        except discovery.IngestError:
+            return 0
+        for one in found[:MOST_FILES]:
+            path = one.file.absolute().as_posix()
+            if one.member is None and path not in self._files:
+                self.reload(path)
+        return len(found)
+
+    def reload(self, path: str) -> None:
+        """Take a file as it is on the disk; forget it where it is gone or no KRL."""
+        try:
+            decoded = decode(read_bytes(Path(path)))
+        except OSError:
+            decoded = ""
+        if isinstance(decoded, str):
+            self.forget(path)
+        else:
+            self.change(path, decoded.text)
+
+    def change(self, path: str, text: str) -> None:
+        """A file has this text now."""
+        known = self._files.get(path)
+        if known is not None and known.source.text == text:
+            return
+        self._files[path] = _read(path, text)
+        self._linked = None
+        self._looked.clear()
+
+    def forget(self, path: str) -> None:
+        """A file is gone."""
+        if self._files.pop(path, None) is not None:
+            self._linked = None
+            self._looked.clear()
+
+    def source(self, path: str) -> Source | None:
+        """The text of a file as it is known."""
+        known = self._files.get(path)
+        return None if known is None else known.source
+
+    def look(self, path: str) -> Looked | None:
+        """What is known of a file; ``None`` for one that is not here."""
+        known = self._files.get(path)
+        if known is None:
+            return None
+        if path not in self._looked:
+            self._looked[path] = self._fresh(known)
+        return self._looked[path]
+
+    def _fresh(self, known: _Read) -> Looked:
+        source = known.source
+        place = self._projects().get(source.path)
+        if known.syntax is None or place is None:
+            found: Iterable[Diagnostic] = syntax_findings(known.failures, source)
+            return Looked(source, _kept(source, found))
+        project, module = place
+        checked = check_module(project, module, source)
+        found = check_project([checked.findings])
+        return Looked(source, _kept(source, found), module, project, checked)
+
+    def _projects(self) -> Mapping[str, tuple[Project, Module]]:
+        if self._linked is None:
+            workspace = link([one.file for one in self._files.values()])
+            self._linked = {module.path: (at, module) for at, module in workspace.modules()}
+        return self._linked
+
+
+def _read(path: str, text: str) -> _Read:
+    source = Source(text, path)
+    syntax = read_module(text, path)
+    if isinstance(syntax, ast.Module):
+        return _Read(source, syntax, (), File(path, syntax, table=table_of(syntax)))
+    return _Read(source, None, tuple(syntax), File(path, None))
+
+
+def _kept(source: Source, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Findings that are wanted and that no comment silences."""
+    wanted = [one for one in found if one.code.startswith(_SOUGHT)]
+    return tuple(silenced(source.path, wanted, silencers(source), _SOUGHT))

@@ -1,0 +1,58 @@
+"""Where a command writes: checked before the work, written whole or not at all."""
+
+import contextlib
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from krl.errors import Unusable
+
+__all__ = ["check_files", "check_targets", "whole", "write_json"]
+
+
+def check_targets(out: Path, json_file: Path | None) -> None:
+    """Raise `Unusable` where the folder is no folder or the file cannot be one."""
+    if out.exists() and not out.is_dir():
+        raise Unusable(f"{out}: not a folder")
+    check_files(json_file)
+
+
+def check_files(*targets: Path | None) -> None:
+    """Raise `Unusable` where something cannot be a file: it is a folder, or below a file."""
+    for target in targets:
+        if target is None:
+            continue
+        if target.is_dir():
+            raise Unusable(f"{target}: a folder, not a file")
+        above = next((folder for folder in target.parents if folder.exists()), None)
+        if above is not None and not above.is_dir():
+            raise Unusable(f"{target}: {above} is not a folder")
+
+
+@contextlib.contextmanager
+def whole(target: Path) -> Iterator[Path]:
+    """The file in which to write what ``target`` is to be, once the block has ended well.
+
+    It lies beside it. A device or a pipe, as /dev/stdout, is itself that file: it is not replaced.
+    Folders above are made. Raises `OSError`.
+    """
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(target.name + ".part")
+    try:
+        yield part
+        part.replace(target)
+    finally:
+        with contextlib.suppress(OSError):  # there may be none, or a folder of somebody else
+            part.unlink()
+
+
+def write_json(record: Mapping[str, Any], target: Path, indent: int | None = None) -> None:
+    """Write ``record`` whole or not at all, on one line or with so many blanks a level."""
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
+    with whole(target) as file:
+        # half of a character, which names of files may hold, is an escape of JSON then
+        file.write_text(text + "\n", encoding="utf-8", newline="\n", errors="backslashreplace")

@@ -1,0 +1,101 @@
+"""What a survey says in the terminal: figures, what holds back most, where the page is."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from krl.errors import one_line
+
+__all__ = ["print_survey", "share"]
+
+_ROWS = 15
+_WORDS = 12
+_SKIPPED = 5
+
+
+def print_survey(record: Mapping[str, Any], page: Path) -> None:
+    """Print the figures of `record`, its first clusters, and `page`."""
+    console = Console(highlight=False, markup=False, emoji=False)
+    files, parsed = record["files"], record["parsed"]
+    console.print(
+        f"{files:,} files, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
+        f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
+        f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s",
+        soft_wrap=True,
+    )
+    for skipped in record["skipped"][:_SKIPPED]:
+        console.print(
+            f"skipped {one_line(skipped['path'])}: {one_line(skipped['reason'])}", markup=False
+        )
+    clusters = record["clusters"]
+    if clusters:
+        console.print(_table(clusters[:_ROWS]))
+        if len(clusters) > _ROWS:
+            console.print(f"… and {len(clusters) - _ROWS} more clusters")
+        console.print(_advice(record))
+    elif files:
+        console.print("Nothing is missing: every file parses under this grammar.")
+    start = record.get("start")
+    if start is not None:
+        console.print(_story(start), soft_wrap=True)
+    if record["swallowed"]:
+        words = ", ".join(s["word"] for s in record["swallowed"][:_WORDS])
+        console.print(
+            f"Read as names everywhere and bound nowhere, perhaps keywords: {one_line(words)}"
+        )
+    console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
+
+
+def share(part: float, whole: float) -> str:
+    """Per cent, rounded down: all but one is not yet all."""
+    return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
+
+
+def _table(clusters: list[Mapping[str, Any]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, expand=True)
+    table.add_column("what fails", no_wrap=True, overflow="ellipsis", ratio=2)
+    for heading in ("unlocks", "files", "origins", "lines"):
+        table.add_column(heading, justify="right", no_wrap=True, min_width=len(heading))
+    table.add_column("for example", no_wrap=True, overflow="ellipsis", ratio=3)
+    table.add_column("cluster", no_wrap=True, min_width=10)
+    for c in clusters:
+        # Text, never markup, and nothing that could steer the terminal: source is other people's
+        table.add_row(
+            Text(one_line(c["title"])),
+            f"{c['unlocks']:,}",
+            f"{c['files']:,}",
+            f"{c['origins']:,}",
+            f"{c['failures']:,}",
+            Text(one_line(c["example"]["text"])),
+            c["id"],
+        )
+    return table
+
+
+def _advice(record: Mapping[str, Any]) -> str:
+    """How far mending goes: "mend these nine and 95 % of the files parse"."""
+    files = record["files"]
+    for number, step in enumerate(record["greedy"], 1):
+        if step["parsed"] >= 0.95 * files:
+            return (
+                f"Mending {number} of {len(record['clusters'])} clusters lets "
+                f"{share(step['parsed'], files)} of the files parse."
+            )
+    return ""
+
+
+def _story(start: Mapping[str, Any]) -> str:
+    """What the ledger made of the restrictive start."""
+    clusters, constructs = start["clusters"], start["constructs"]
+    answered = sum(cluster["answered_by"] is not None for cluster in clusters)
+    return (
+        f"Under the restrictive start {start['parsed']:,} of {start['files']:,} files parse; "
+        f"of its {len(clusters):,} clusters {answered:,} are answered by constructs "
+        f"({len(constructs):,})."
+    )

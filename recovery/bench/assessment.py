@@ -1,0 +1,374 @@
+"""How the survey does on a damaged grammar (`recovery.bench.mutation`), mutant by mutant."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Any
+
+from grammar.notation.edits import (
+    AddAlternative,
+    Address,
+    Edit,
+    Insert,
+    MakeOptional,
+    RemoveAlternative,
+    RemoveElement,
+    Widen,
+)
+from grammar.notation.model import Grammar, Reference, walk
+from grammar.parser.lexer import lexer_of
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sentences import Sentences, Speller
+from recovery.bench.mutation import Mutant
+from recovery.clustering.cause import Judge
+from recovery.clustering.cluster import Clusters, cluster
+from recovery.clustering.edit_merging import together
+from recovery.clustering.edit_trial import edited
+from recovery.clustering.negative_score import judge_of
+from recovery.negatives.negatives import Negative, NegativeSet
+from recovery.reproducer.reduce import Reducer
+from recovery.survey.survey import survey_texts
+from recovery.survey.unreserved_keywords import suspects
+from support.parallel.parent_watch import end_with_parent
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["Material", "Verdict", "assess", "covering", "examine", "figures"]
+
+_CLUSTERS_LOOKED_AT = 5
+_PROPOSALS_LOOKED_AT = 5
+# Failing texts by which the proposals of a cluster are compared: those that are left out are read
+# in the end.
+_TEXTS_COMPARED = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """How the tool did on one mutant; see `assess` for what each field means."""
+
+    mutant: Mutant
+    detected: bool
+    rule_rank: int | None
+    item_rank: int | None
+    repair_rank: int | None
+    clusters: int
+    false_accepts: int
+    reproducer_tokens: tuple[int, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What mutants are assessed on.
+
+    ``shown`` are programs (path, text) the tool sees, ``held_out`` texts it does not; all are read
+    by ``grammar``. ``negatives`` are programs that no grammar may accept.
+    """
+
+    grammar: Grammar
+    shown: tuple[tuple[str, str], ...]
+    held_out: tuple[str, ...]
+    negatives: tuple[Negative, ...]
+
+
+def assess(
+    mutant: Mutant,
+    whole: Grammar,
+    shown: Sequence[tuple[str, str]],
+    held_out: Sequence[str],
+    judge: Callable[[Grammar], Judge],
+    negatives: Callable[[Recognizer], int],
+) -> Verdict:
+    """Survey ``shown`` (path, text) under the mutant and see how the tool does.
+
+    - detected: some program that ``whole`` reads fails, or the lost keyword is suspected
+      (`recovery.survey.unreserved_keywords`) where it is read as a name.
+    - rule_rank, item_rank: the first of the proposals of all clusters, taken in the order of the
+      page, whose edit is in the right rule, or at the right place.
+    - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again.
+      Where several parts are missing no one proposal does that: it is 1 if the best proposals of
+      all clusters do so together; else the clusters are gone through in the order of the page, of
+      each the proposal is taken (the first of equals among five) after which most of the failing
+      texts can be read, of a cluster none whose lines can be read already, and the rank is that
+      of the deepest proposal taken: so far down a person has to look in each cluster.
+    - false_accepts: negatives the best proposal lets in that ``whole`` rejects.
+    - seconds: of processor time, for the survey and the search.
+    """
+    began = time.process_time()
+    found = survey_texts(shown, mutant.grammar)
+    failing = [f for f in found.files if f.failures]
+    if not failing:
+        swallowed = suspects((("", text) for _, text in shown), lexer_of(mutant.grammar))
+        noticed = any(s.word in mutant.keywords for s in swallowed)
+        seconds = time.process_time() - began
+        return Verdict(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
+    texts_of = dict(shown)
+    clusters = cluster(
+        found, judge=judge(mutant.grammar), text_of=lambda file: texts_of[file.digest]
+    )
+    seconds = time.process_time() - began
+    base = Recognizer(mutant.grammar)
+    ordered = list(_proposals(clusters))
+    reducer = Reducer(base)
+    tokens = []
+    for entry in clusters.ranked[:_CLUSTERS_LOOKED_AT]:
+        reproducer = reducer.reduce(entry.line, entry.example.failed.words)
+        if reproducer is not None:
+            tokens.append(reproducer.beyond)
+    texts = [text for _, text in shown] + list(held_out)
+    best = edited(base, ordered[0]) if ordered else None
+    return Verdict(
+        mutant,
+        True,
+        _rank(ordered, lambda edits: _names(edits, mutant, whole)),
+        _rank(ordered, lambda edits: _same_place(edits, mutant)),
+        _rank(ordered, lambda edits: _repairs(base, edits, texts))
+        if mutant.parts == 1
+        else _repaired_together(base, clusters, texts),
+        len(clusters.ranked),
+        0 if best is None else negatives(best),
+        tuple(tokens),
+        seconds,
+    )
+
+
+def _proposals(clusters: Clusters) -> Iterator[tuple[Edit, ...]]:
+    """Proposals in the order a person meets them on the page."""
+    for entry in clusters.ranked[:_CLUSTERS_LOOKED_AT]:
+        for proposal in entry.proposals:
+            yield proposal.edits
+
+
+def _rank(
+    ordered: Sequence[tuple[Edit, ...]], good: Callable[[Sequence[Edit]], bool]
+) -> int | None:
+    return next((i for i, edits in enumerate(ordered[:5], 1) if good(edits)), None)
+
+
+def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
+    """Whether an edit is in a rule that lost something, or calls a rule that is lost."""
+    damaged = {getattr(e, "rule", "") for e in mutant.edits} | mutant.rules
+    callers = {
+        r.name
+        for r in whole.rules
+        if not r.is_lexer
+        and any(
+            isinstance(e, Reference) and e.name in mutant.rules
+            for a in r.alternatives
+            for e in walk(a)
+        )
+    }
+    place = getattr(edits[-1], "rule", "")
+    return place in damaged or (mutant.kind in ("rule", "keyword") and place in callers)
+
+
+def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
+    """Whether an edit is where something was taken out: same rule, same place in it.
+
+    A taken alternative comes back as an alternative of that rule; a taken part between the
+    elements it stood between.
+    """
+    edit = edits[-1]
+    for removed in mutant.edits:
+        if isinstance(removed, RemoveAlternative):
+            if isinstance(edit, AddAlternative | Widen | Insert | MakeOptional) and (
+                edit.rule == removed.rule
+            ):
+                return True
+        elif (
+            isinstance(removed, RemoveElement)
+            and isinstance(edit, Insert | Widen)
+            and edit.rule == removed.rule
+            and _adjacent(edit.at, removed.at)
+        ):
+            return True
+    return False
+
+
+def _adjacent(here: Address, there: Address) -> bool:
+    """Whether two places are in the same sequence with at most one element between them."""
+    depth = len(there) - 1
+    return (
+        len(here) > depth and here[:depth] == there[:depth] and abs(here[depth] - there[depth]) <= 1
+    )
+
+
+def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str]) -> int | None:
+    """How far down a person has to look in each cluster; see `assess`."""
+    best = [entry.proposals[0].edits for entry in clusters.ranked if entry.proposals]
+    if _reads_all(_with_all(base, best), texts):
+        return 1
+    chosen: list[tuple[Edit, ...]] = []
+    deepest = 0
+    wider = base
+    failing = _telling([text for text in texts if not base.accepts(text)])
+    for entry in clusters.ranked:
+        failing = [text for text in failing if not wider.accepts(text)]
+        if not failing:
+            break
+        options = []
+        for depth, proposal in enumerate(entry.proposals[:_PROPOSALS_LOOKED_AT]):
+            made = _with_all(base, [*chosen, proposal.edits])
+            options.append((sum(map(made.accepts, failing)), -depth, made))
+        if not options or not (most := max(options, key=lambda option: option[:2]))[0]:
+            continue  # nothing that is still to be read is read by any of them
+        wider = most[2]
+        chosen.append(entry.proposals[-most[1]].edits)
+        deepest = max(deepest, 1 - most[1])
+    return deepest if deepest and _reads_all(wider, texts) else None
+
+
+def _telling(texts: Sequence[str]) -> list[str]:
+    """Texts to tell edits apart by: the short ones, which have few causes each to fail."""
+    return sorted(set(texts), key=lambda text: (len(text), text))[:_TEXTS_COMPARED]
+
+
+def _with_all(base: Recognizer, several: Sequence[Sequence[Edit]]) -> Recognizer:
+    """A recogniser with the edits of all, but for those that do not fit the ones before."""
+    found, edits = base, tuple[Edit, ...]()
+    for some in several:
+        more = together(edits, some)
+        wider = edited(base, more)
+        if wider is not None:
+            found, edits = wider, more
+    return found
+
+
+def _reads_all(recognizer: Recognizer, texts: Sequence[str]) -> bool:
+    return all(map(recognizer.accepts, texts))
+
+
+def _repairs(base: Recognizer, edits: Sequence[Edit], texts: Sequence[str]) -> bool:
+    """Whether every program can be read again."""
+    wider = edited(base, edits)
+    return wider is not None and _reads_all(wider, texts)
+
+
+def covering(grammar: Grammar) -> list[str]:
+    """The shortest programs through every alternative and every optional part of every rule."""
+    recognizer = Recognizer(grammar)
+    sentences, speller = Sentences(grammar), Speller(grammar)
+    texts = {
+        speller.text(sentence)
+        for rule in sentences.reachable
+        for sentence in sentences.through(rule)
+    }
+    return sorted(text for text in texts if recognizer.accepts(text))
+
+
+def examine(
+    material: Material,
+    chosen: Sequence[Mutant],
+    *,
+    jobs: int = 1,
+    on_done: Progress = unheard,
+) -> dict[str, Any]:
+    """Assess mutants in ``jobs`` processes and gather the figures; see `assess`."""
+    verdicts: list[Verdict] = []
+    if jobs == 1:
+        examiner = _Examiner(material)
+        for mutant in chosen:
+            verdicts.append(examiner(mutant))
+            on_done(1)
+    else:
+        with ProcessPoolExecutor(jobs, get_context("spawn"), _prepare, (material,)) as pool:
+            for verdict in pool.map(_examine, chosen, chunksize=4):
+                verdicts.append(verdict)
+                on_done(1)
+    count = len(NegativeSet(material.negatives))
+    return {
+        **figures(verdicts, count),
+        "by_kind": {
+            kind: figures([v for v in verdicts if v.mutant.kind == kind], count)
+            for kind in sorted({v.mutant.kind for v in verdicts})
+        },
+        "missed": [_missed(v, material.grammar) for v in verdicts if v.repair_rank != 1],
+    }
+
+
+class _Examiner:
+    """Assesses mutants of one grammar."""
+
+    def __init__(self, material: Material) -> None:
+        self.material = material
+        self.rejected = NegativeSet(material.negatives).rejected_by(Recognizer(material.grammar))
+
+    def __call__(self, mutant: Mutant) -> Verdict:
+        material = self.material
+        return assess(
+            mutant,
+            material.grammar,
+            material.shown,
+            material.held_out,
+            lambda damaged: judge_of(damaged, material.negatives),
+            lambda recognizer: len(self.rejected.accepted(recognizer)),
+        )
+
+
+_examiners: list[_Examiner] = []  # of a worker process
+
+
+def _prepare(material: Material) -> None:
+    end_with_parent()
+    _examiners[:] = [_Examiner(material)]
+
+
+def _examine(mutant: Mutant) -> Verdict:
+    return _examiners[0](mutant)
+
+
+def _missed(verdict: Verdict, whole: Grammar) -> dict[str, Any]:
+    return {
+        "mutant": verdict.mutant.title(whole),
+        "detected": verdict.detected,
+        "rule_rank": verdict.rule_rank,
+        "item_rank": verdict.item_rank,
+        "repair_rank": verdict.repair_rank,
+        "clusters": verdict.clusters,
+    }
+
+
+def figures(verdicts: Sequence[Verdict], negative_count: int) -> dict[str, Any]:
+    """The figures of a set of verdicts."""
+    total = len(verdicts)
+    seen = [v for v in verdicts if v.detected]
+    ranks: dict[str, list[int | None]] = defaultdict(list)
+    for v in verdicts:
+        ranks["rule"].append(v.rule_rank)
+        ranks["item"].append(v.item_rank)
+        ranks["repair"].append(v.repair_rank)
+
+    def share(name: str, within: int) -> float:
+        return round(sum(r is not None and r <= within for r in ranks[name]) / total, 4)
+
+    tokens = [t for v in seen for t in v.reproducer_tokens]
+    return {
+        "mutants": total,
+        "detected": round(len(seen) / total, 4) if total else None,
+        **(
+            {
+                f"{name}_top{n}": share(name, n)
+                for name in ("rule", "item", "repair")
+                for n in (1, 5)
+            }
+            if total
+            else {}
+        ),
+        "clusters_per_cause": round(statistics.mean(v.clusters / v.mutant.parts for v in seen), 3)
+        if seen
+        else None,
+        "false_accept": round(
+            statistics.mean(v.false_accepts / max(1, negative_count) for v in seen), 5
+        )
+        if seen
+        else None,
+        "reproducer_median_tokens": statistics.median(tokens) if tokens else None,
+        "seconds_per_mutant": round(statistics.mean(v.seconds for v in verdicts), 3)
+        if total
+        else None,
+    }

@@ -1,0 +1,201 @@
+"""How fast the check is: where its time goes, with nothing changed, and as there is more of it.
+
+One core. Every figure comes from a process of its own, so that nothing remembered from one
+measurement helps the next; importing modules is not counted. MB are 1,000,000 bytes.
+"""
+
+from __future__ import annotations
+
+import platform
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from grammar.check.batch import Wishes, checkup
+from grammar.check.context import Context
+from grammar.check.framework import CHECKS
+from grammar.generation.cells import write_cells
+from grammar.parser.tree import Tree
+from grammar.semantics.link import File, link
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import resolve
+from grammar.semantics.symbol_table import table_of
+from grammar.syntax.build import builder
+from grammar.syntax.source import Source
+from support.files.discovery import Found, IngestError, decode, discover, read
+from support.measure.isolated import apart
+from support.measure.peak_memory import peak_memory
+from support.parallel.gc_pause import uncollected
+
+__all__ = ["measure_check", "steps"]
+
+MB = 1_000_000
+ROUNDS = 3
+PHASES = (
+    "loading",
+    "decoding",
+    "parsing",
+    "building",
+    "tables",
+    "linking",
+    "resolving",
+    "checking",
+)
+
+
+def measure_check(
+    roots: Sequence[Path],
+    *,
+    sizes: Sequence[float] = (1, 10),
+    rounds: int = ROUNDS,
+    seed: int = 1,
+    on_step: Callable[[], object] = lambda: None,
+) -> dict[str, Any]:
+    """Measure on everything below ``roots``, and on synthetic corpora of ``sizes`` MB.
+
+    ``on_step`` is called `steps` times. In the record, ``s_per_mb`` is for a first check, the best
+    of ``rounds``, ``unchanged_s_per_mb`` for one that finds all results kept from the one before;
+    ``linear`` is the cost of a MB in the last of ``scaling`` over that in the first. The phase
+    "loading" is the grammar and the tables of the controller, which cost the same for any volume.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to measure on.
+    """
+    for _ in discover(roots):  # what cannot be checked is said before a process is started
+        pass
+    timed = []
+    for _ in range(rounds):
+        timed.append(apart(_timed, roots))
+        on_step()
+    best = min(timed, key=lambda one: float(one["seconds"]))
+    if not best["bytes"]:
+        raise IngestError("none of the files is KRL")
+    phases = min((apart(_phased, roots) for _ in range(rounds)), key=lambda p: sum(p.values()))
+    on_step()
+    unchanged = _unchanged(roots)
+    on_step()
+    scaling = []
+    for size in sizes:
+        scaling.append(_scaled(size, seed))
+        on_step()
+    total = sum(phases.values())
+    return {
+        "rounds": rounds,
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        **best,
+        "s_per_mb": best["seconds"] * MB / best["bytes"],
+        "unchanged_s_per_mb": unchanged * MB / best["bytes"],
+        "phases": [
+            {"name": name, "seconds": phases[name], "share": phases[name] / total}
+            for name in PHASES
+        ],
+        "scaling": scaling,
+        "linear": scaling[-1]["s_per_mb"] / scaling[0]["s_per_mb"] if scaling else None,
+        "memory_growth_mb": _growth(scaling),
+    }
+
+
+def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
+    """How often `measure_check` calls ``on_step``."""
+    return rounds + 2 + len(sizes)
+
+
+# -------------------------------------------------------------------------- in a fresh process
+
+
+def _timed(roots: Sequence[Path], cache: Path | None = None) -> dict[str, Any]:
+    """A check as `krl check` makes it."""
+    began = time.perf_counter()
+    found = checkup(roots, Wishes(), jobs=1, cache=cache)
+    seconds = time.perf_counter() - began
+    peak = peak_memory()
+    return {
+        "files": found.files,
+        "bytes": found.bytes,
+        "projects": found.projects,
+        "findings": dict(Counter(one.severity for one in found.diagnostics)),
+        "seconds": seconds,
+        "peak_mb": None if peak is None else peak / MB,
+    }
+
+
+def _unchanged(roots: Sequence[Path]) -> float:
+    """Seconds for a check of which all results are kept."""
+    with tempfile.TemporaryDirectory() as folder:
+        apart(_timed, roots, Path(folder))
+        return float(apart(_timed, roots, Path(folder))["seconds"])
+
+
+def _scaled(size: float, seed: int) -> dict[str, Any]:
+    """A check of a synthetic corpus of ``size`` MB, written for it and removed again."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_cells(Path(folder), round(size * MB), seed)
+        timed = apart(_timed, [Path(folder)])
+    return {"mb": size, **timed, "s_per_mb": timed["seconds"] * MB / timed["bytes"]}
+
+
+def _growth(scaling: Sequence[dict[str, Any]]) -> float | None:
+    """How much more memory the last took than the first."""
+    peaks = [entry["peak_mb"] for entry in scaling]
+    if not peaks or None in peaks:
+        return None
+    return float(peaks[-1] - peaks[0])
+
+
+class _Clock:
+    """Seconds by phase."""
+
+    def __init__(self) -> None:
+        self.seconds = dict.fromkeys(PHASES, 0.0)
+
+    @contextmanager
+    def during(self, phase: str) -> Iterator[None]:
+        began = time.perf_counter()
+        yield
+        self.seconds[phase] += time.perf_counter() - began
+
+
+def _phased(roots: Sequence[Path]) -> dict[str, float]:
+    """Seconds of each phase; all trees are kept at once, which a check of large corpora avoids."""
+    with uncollected(0):
+        return _phases(roots)
+
+
+def _phases(roots: Sequence[Path]) -> dict[str, float]:
+    clock = _Clock()
+    with clock.during("loading"):
+        ours, system = builder(), System.load()
+    files = []
+    sources: dict[str, Source] = {}
+    for found in discover(roots):
+        with clock.during("decoding"):
+            data = read(found) if isinstance(found, Found) else b""
+            decoded = decode(data) if isinstance(data, bytes) else ""
+        if isinstance(decoded, str):
+            continue
+        with clock.during("parsing"):
+            tree = ours.parser.parse(decoded.text)
+        syntax = table = None
+        if isinstance(tree, Tree):
+            with clock.during("building"):
+                syntax = ours.module(tree)
+            with clock.during("tables"):
+                table = table_of(syntax)
+        sources[found.path] = Source(decoded.text, found.path)
+        files.append(File(found.path, syntax, found.origin, table))
+    with clock.during("linking"):
+        workspace = link(files, system)
+    for project, module in workspace.modules():
+        if module.syntax is None:
+            continue
+        with clock.during("resolving"):
+            resolution = resolve(project, module)
+        with clock.during("checking"):
+            context = Context(project, module, sources[module.path], resolution, system)
+            for check in CHECKS:
+                list(check(context))
+    return clock.seconds

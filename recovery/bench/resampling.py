@@ -1,0 +1,149 @@
+"""Programs made from real ones: more of them, and valid ones. For benches, never as evidence.
+
+Benches need more text than there is, and text that parses long before the grammar is finished. A
+copy of a program keeps its layout, its comments and every kind of token, so that reading it is as
+much work as reading the program. Its names get a suffix and its numbers other digits, so that no
+two copies are the same and nothing remembered about one spares the reading of another. A valid
+program is a real one with other lines of the same corpus in place of those that cannot be read.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count, repeat
+from pathlib import Path
+
+from grammar.parser.failures import BLOCKS
+from grammar.parser.lexer import EOF, Lexer
+from grammar.parser.recognizer import Recognizer, State
+
+__all__ = ["Template", "Written", "readable", "spread", "templates", "write_corpus"]
+
+# What may hold digits or words that are no numbers and no names stands first, and stays as it is.
+_PIECE = re.compile(
+    r"""[;&][^\r\n]* | "[^"\r\n]*"? | '[^'\r\n]*'? | [$\#]\w+
+      | (?P<name>[A-Za-z_][\w$]*) | (?P<number>[0-9]+)""",
+    re.VERBOSE,
+)
+# In a template, characters that no text uses stand for what differs from copy to copy.
+_DIGIT = 0xE000  # to 0xE009
+_SUFFIX = 0xE00A
+_TO_PLACES = {ord("0") + digit: _DIGIT + digit for digit in range(10)}
+_BLOCK_WORDS = frozenset(BLOCKS).union(*BLOCKS.values())
+_FILES_A_FOLDER = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A program with places for what differs from copy to copy."""
+
+    text: str
+
+    def copy(self, digits: Sequence[str], suffix: str) -> str:
+        """The program with digit ``d`` of a number as ``digits[d]`` and ``suffix`` on its names."""
+        return self.text.translate(
+            {_SUFFIX: suffix, **{_DIGIT + digit: new for digit, new in enumerate(digits)}}
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """How much was written."""
+
+    files: int
+    bytes: int
+
+
+def templates(texts: Iterable[str], lexer: Lexer) -> Iterator[Template]:
+    """A template for each program that has a name; without one, copies could be the same.
+
+    Words that ``lexer`` or the language reserves keep their spelling.
+    """
+
+    def place(found: re.Match[str]) -> str:
+        piece = found[0]
+        if found["number"]:
+            return piece.translate(_TO_PLACES)
+        if not found["name"] or piece.upper() in _BLOCK_WORDS:
+            return piece
+        return piece if lexer.is_keyword(lexer.kinds[piece]) else piece + chr(_SUFFIX)
+
+    for text in texts:
+        template = _PIECE.sub(place, text)
+        if chr(_SUFFIX) in template:
+            yield Template(template)
+
+
+def readable(texts: Iterable[str], recognizer: Recognizer) -> Iterator[str]:
+    """Each text made a program, where that can be done.
+
+    In place of a line that cannot be read stands the last line of the corpus that could be read in
+    the same state, led back to it, and was about as long; where there is none, nothing.
+    """
+    fitting: dict[State, dict[int, str]] = defaultdict(dict)
+    for text in texts:
+        made = _made_readable(text, recognizer, fitting)
+        if made:
+            yield made
+
+
+def _made_readable(
+    text: str, recognizer: Recognizer, fitting: dict[State, dict[int, str]]
+) -> str | None:
+    state = recognizer.start
+    lines: list[str] = []
+    for line in text.replace("\r\n", "\n").replace("\r", "\n").splitlines(keepends=True):
+        kinds = recognizer.kinds(line)[:-1]
+        after, failed = recognizer.run(state, kinds)
+        if failed is None:
+            lines.append(line)
+            if after == state and len(kinds) > 1:
+                fitting[state][len(kinds)] = line
+            state = after
+        elif known := fitting[state]:
+            lines.append(known[min(known, key=lambda length: abs(length - len(kinds)))])
+    accepted = recognizer.run(state, [EOF])[1] is None
+    return "".join(lines) if accepted else None
+
+
+def spread(texts: Iterable[str]) -> list[str]:
+    """The texts in an order of which every beginning has small and large ones as the whole has."""
+    ordered = sorted(texts, key=lambda text: (len(text), text))
+    bits = len(ordered).bit_length()
+    # the bits of the places read backwards: halves first, then quarters, then eighths
+    places = sorted(range(len(ordered)), key=lambda place: int(f"{place:0{bits}b}"[::-1], 2))
+    return [ordered[place] for place in places]
+
+
+def write_corpus(chosen: Sequence[Template], folder: Path, size: int, seed: int = 1) -> Written:
+    """Write copies below ``folder`` until they have ``size`` bytes or a little more.
+
+    The same templates, size and seed give the same files. Raises ValueError without templates.
+    """
+    if not chosen:
+        raise ValueError("there is no name in them")
+    files = written = 0
+    for template, (digits, suffix) in _variants(chosen, seed):
+        data = template.copy(digits, suffix).encode("utf-8")
+        place = folder / f"{files // _FILES_A_FOLDER:04}" / f"p{files:06}.src"
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(data)
+        files += 1
+        written += len(data)
+        if written >= size:
+            break
+    return Written(files, written)
+
+
+def _variants(
+    chosen: Sequence[Template], seed: int
+) -> Iterator[tuple[Template, tuple[list[str], str]]]:
+    """Every template with the first digits and suffix, then with the next, without end."""
+    for number in count(1):
+        digits = list("0123456789")
+        random.Random(f"{seed} {number}").shuffle(digits)
+        yield from zip(chosen, repeat((digits, f"_{number}")), strict=False)

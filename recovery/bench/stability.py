@@ -1,0 +1,93 @@
+"""Is the ranking the same every time? The search asked again and again, under other conditions.
+
+What a person is shown must not hang on the order of a set or on which process came first. So the
+same damaged grammars are searched in several runs, each in new processes, with another seed for the
+hashes of Python, one process and two by turns, and the rankings are compared.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
+
+from recovery.bench.assessment import Material
+from recovery.bench.mutation import Mutant
+from recovery.clustering.cluster import Clusters, cluster
+from recovery.clustering.negative_score import judge_of
+from recovery.survey.survey import survey_texts
+from support.parallel.parent_watch import end_with_parent
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["rankings", "same_ranking"]
+
+_SEED = "PYTHONHASHSEED"
+_MOST_PROCESSES = 2
+
+
+def same_ranking(runs: Sequence[Sequence[str]]) -> float | None:
+    """The share of mutants with one ranking in all runs; nothing where none was searched."""
+    if not runs or not runs[0]:
+        return None
+    alike = [len(set(rankings)) == 1 for rankings in zip(*runs, strict=True)]
+    return round(sum(alike) / len(alike), 4)
+
+
+def rankings(
+    material: Material, chosen: Sequence[Mutant], runs: int, on_done: Progress = unheard
+) -> list[list[str]]:
+    """For each run, a digest of the ranking of each mutant.
+
+    A ranking is all clusters by their titles with all proposals, in the order of the page.
+    """
+    found = []
+    for run in range(runs):
+        processes = 1 + run % _MOST_PROCESSES
+        with (
+            _hash_seed(run),
+            ProcessPoolExecutor(processes, get_context("spawn"), _prepare, (material,)) as pool,
+        ):
+            found.append(list(pool.map(_ranking, chosen)))
+        on_done(1)
+    return found
+
+
+@contextmanager
+def _hash_seed(seed: int) -> Iterator[None]:
+    """Processes started within hash by this seed."""
+    before = os.environ.get(_SEED)
+    os.environ[_SEED] = str(seed)
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SEED]
+        else:
+            os.environ[_SEED] = before
+
+
+_materials: list[Material] = []  # of a worker process
+
+
+def _prepare(material: Material) -> None:
+    end_with_parent()
+    _materials[:] = [material]
+
+
+def _ranking(mutant: Mutant) -> str:
+    material = _materials[0]
+    texts = dict(material.shown)
+    clusters = cluster(
+        survey_texts(material.shown, mutant.grammar),
+        judge=judge_of(mutant.grammar, material.negatives),
+        text_of=lambda file: texts[file.digest],
+    )
+    return _digest(clusters)
+
+
+def _digest(clusters: Clusters) -> str:
+    told = [(c.id, c.title, [p.edits for p in c.proposals]) for c in clusters.ranked]
+    return hashlib.sha256(repr(told).encode()).hexdigest()

@@ -1,0 +1,350 @@
+"""How fast the survey reads: cold and warm, beside ANTLR, and as the corpus grows.
+
+Every figure comes from a process of its own, so that nothing remembered from one measurement helps
+the next. Importing modules is not counted; reading the grammar, building the recogniser and, where
+a survey is timed, finding, reading and decoding the files are. MB are 1,000,000 bytes.
+"""
+
+from __future__ import annotations
+
+import gc
+import platform
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from grammar.notation import g4
+from grammar.parser.failures import FailureFinder
+from grammar.parser.recognizer import Core, Recognizer
+from recovery.bench.resampling import readable, spread, templates, write_corpus
+from recovery.survey.survey import Survey, survey
+from support.files.discovery import Found, IngestError, Skipped, decode, digest, discover, read
+from support.measure.isolated import apart
+from support.measure.peak_memory import peak_memory
+
+__all__ = ["measure", "steps"]
+
+MB = 1_000_000
+ROUNDS = 3
+#: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
+#: with it beforehand, so that they are the same in every run and on every machine.
+ANTLR_BYTES_PER_S = 60_000
+
+
+def measure(
+    roots: Sequence[Path],
+    grammar: g4.Grammar,
+    *,
+    sizes: Sequence[float] = (1, 10, 100),
+    rounds: int = ROUNDS,
+    antlr_seconds: float = 60,
+    seed: int = 1,
+    on_step: Callable[[], object] = lambda: None,
+) -> dict[str, Any]:
+    """Measure on everything below ``roots``, each content once.
+
+    ``grammar`` has to be the one that the ANTLR parser was generated from. ``sizes`` are those of
+    the synthetic corpora in MB, ``antlr_seconds`` about how long ANTLR may read. ``on_step`` is
+    called `steps` times.
+
+    In the record, ``bytes_per_s`` and ``warm_bytes_per_s`` are for a first and a second survey, all
+    failures found, ``recognise_bytes_per_s`` for a yes or no to each file, the best of ``rounds``
+    each; ``unchanged_s_per_mb`` is for a survey in a new process that finds its results kept from
+    the one before. ``ratio_vs_antlr_python`` is how many times as long ANTLR takes for the same
+    valid texts, ``linear`` the speed on the last of ``scaling`` over that on the first, and
+    ``memory_growth_mb`` how much more memory the last took at most; ``None`` where not measured.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to measure on.
+    """
+    for _ in discover(roots):  # what cannot be surveyed is said before a process is started
+        pass
+    surveyed, phased = [], []
+    for _ in range(rounds):
+        surveyed.append(apart(_surveyed, roots, grammar.text))
+        if not surveyed[0].bytes:
+            raise IngestError("none of the files is KRL")
+        on_step()
+        phased.append(apart(_phased, roots, grammar.text))
+        on_step()
+    of = surveyed[0]
+    cold = min(s.cold for s in surveyed)
+    warm = min(s.warm for s in surveyed)
+    phases = min(phased, key=lambda phases: sum(phases.values()))
+    phases["recording"] = max(cold - sum(phases.values()), 0.0)
+    total = sum(phases.values())
+    recognising = sum(phases[name] for name in ("decoding", "building", "lexing", "recognising"))
+    beside = apart(_beside_antlr, roots, grammar.text, antlr_seconds)
+    on_step()
+    unchanged = _unchanged(roots, grammar, rounds)
+    on_step()
+    scaling = []
+    for size in sizes:
+        scaling.append(_scaled_to(size, roots, grammar, seed))
+        on_step()
+    return {
+        "grammar_sha256": grammar.sha256,
+        "files": of.files,
+        "parsed": of.parsed,
+        "bytes": of.bytes,
+        "failures": of.failures,
+        "rounds": rounds,
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "seconds": cold,
+        "bytes_per_s": of.bytes / cold,
+        "warm_bytes_per_s": of.bytes / warm,
+        "recognise_bytes_per_s": of.bytes / recognising,
+        "phases": [
+            {"name": name, "seconds": seconds, "share": seconds / total}
+            for name, seconds in phases.items()
+        ],
+        "ratio_vs_antlr_python": beside["valid"]["ratio"],
+        "antlr": beside,
+        "unchanged_s_per_mb": unchanged * MB / of.bytes,
+        "scaling": scaling,
+        "linear": scaling[-1]["bytes_per_s"] / scaling[0]["bytes_per_s"] if scaling else None,
+        "memory_growth_mb": _growth(scaling),
+    }
+
+
+def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
+    """How often `measure` calls ``on_step``."""
+    return 2 * rounds + 2 + len(sizes)
+
+
+def _contents(roots: Sequence[Path]) -> Iterator[bytes]:
+    """Each content below the roots once."""
+    known: set[str] = set()
+    for found in discover(roots):
+        data = read(found) if isinstance(found, Found) else found
+        if isinstance(data, Skipped):
+            continue
+        key = digest(data)
+        if key not in known:
+            known.add(key)
+            yield data
+
+
+def _decoded(contents: Iterable[bytes]) -> list[str]:
+    sources = map(decode, contents)
+    return [source.text for source in sources if not isinstance(source, str)]
+
+
+# -------------------------------------------------------------------------------- the survey
+
+
+@dataclass(frozen=True, slots=True)
+class _Surveyed:
+    """Seconds of a first and a second survey in one process; what the first of them found."""
+
+    cold: float
+    warm: float
+    files: int
+    parsed: int
+    bytes: int
+    failures: int
+
+
+def _surveyed(roots: Sequence[Path], grammar_text: str) -> _Surveyed:
+    grammar = g4.read(grammar_text)
+    cold, found = _timed_survey(roots, grammar)
+    files, failures = len(found.files), sum(len(f.failures) for f in found.files)
+    parsed = sum(not f.failures for f in found.files)
+    size = sum(f.size for f in found.files)
+    del found  # else the second survey would run beside the results of the first
+    warm, _ = _timed_survey(roots, grammar)
+    return _Surveyed(cold, warm, files, parsed, size, failures)
+
+
+def _timed_survey(
+    roots: Sequence[Path], grammar: g4.Grammar, cache: Path | None = None
+) -> tuple[float, Survey]:
+    gc.collect()
+    began = time.perf_counter()
+    found = survey(roots, grammar, jobs=1, cache=cache)
+    return time.perf_counter() - began, found
+
+
+def _unchanged(roots: Sequence[Path], grammar: g4.Grammar, rounds: int) -> float:
+    """Seconds for a survey whose results are all kept."""
+    with tempfile.TemporaryDirectory() as folder:
+        _, *again = (apart(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1))
+    return min(again)
+
+
+def _kept(roots: Sequence[Path], grammar_text: str, cache: Path) -> float:
+    return _timed_survey(roots, g4.read(grammar_text), cache)[0]
+
+
+def _phased(roots: Sequence[Path], grammar_text: str) -> dict[str, float]:
+    """Seconds of each phase, each done for all files before the next.
+
+    ``failures`` is what finding all of them costs beyond lexing and recognising once. The rest of
+    what a survey takes, ``recording``, is keeping what was found.
+    """
+    clock = time.perf_counter
+    gc.collect()
+    times = [clock()]
+    contents = list(_contents(roots))
+    times.append(clock())
+    texts = _decoded(contents)
+    times.append(clock())
+    recognizer = Recognizer(g4.read(grammar_text))
+    finder = FailureFinder(recognizer)
+    times.append(clock())
+    kinds = [recognizer.kinds(text) for text in texts]
+    times.append(clock())
+    for tokens in kinds:
+        recognizer.run(recognizer.start, tokens)
+    times.append(clock())
+    for text in texts:
+        recognizer.accepts(text)
+    times.append(clock())
+    for text in texts:
+        finder.find(text)
+    times.append(clock())
+    reading, decoding, building, lexing, recognising, warm, finding = (
+        after - before for before, after in pairwise(times)
+    )
+    return {
+        "reading": reading,
+        "decoding": decoding,
+        "building": building,
+        "lexing": lexing,
+        "recognising": recognising,
+        "failures": max(finding - warm, 0.0),
+    }
+
+
+# ------------------------------------------------------------------------------ beside ANTLR
+
+
+@dataclass(slots=True)
+class _Side:
+    """Both readers on the same texts, file by file in turn, so that a busy machine slows both."""
+
+    files: int = 0
+    bytes: int = 0
+    tokens: int = 0
+    antlr_seconds: float = 0.0
+    our_seconds: float = 0.0
+
+    def compare(
+        self, text: str, antlr: Callable[[str], object], ours: Callable[[str], object]
+    ) -> None:
+        began = time.perf_counter()
+        antlr(text)
+        between = time.perf_counter()
+        ours(text)
+        ended = time.perf_counter()
+        self.files += 1
+        self.bytes += len(text.encode())
+        self.antlr_seconds += between - began
+        self.our_seconds += ended - between
+
+    def record(self) -> dict[str, Any]:
+        known = bool(self.files)
+        return {
+            **asdict(self),
+            "antlr_bytes_per_s": self.bytes / self.antlr_seconds if known else None,
+            "our_bytes_per_s": self.bytes / self.our_seconds if known else None,
+            "ratio": self.antlr_seconds / self.our_seconds if known else None,
+        }
+
+
+def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> dict[str, Any]:
+    """Both readers on valid texts, accept or reject, and on failing ones, all errors reported.
+
+    Valid texts are files that parse, and others made to (`recovery.bench.resampling.readable`). The
+    tables of both readers are built before the clock runs, what they learn while reading is not.
+    """
+    from grammar.parser import antlr_reference
+
+    grammar = g4.read(grammar_text)
+    recognizer = Recognizer(grammar)
+    finder = FailureFinder(Recognizer(grammar))
+    recovering = _recovering_antlr()
+    antlr_reference.accepts("")
+    budget = seconds * ANTLR_BYTES_PER_S
+    texts = spread(_decoded(_contents(roots)))
+    valid, failing = _Side(), _Side()
+    for text in list(readable(texts, Recognizer(grammar))):
+        if valid.bytes + len(text) <= budget * 2 / 3:
+            valid.compare(text, antlr_reference.accepts, recognizer.accepts)
+            valid.tokens += len(recognizer.kinds(text))
+    for text in texts:
+        if failing.bytes + len(text) <= budget / 3 and not recognizer.accepts(text):
+            failing.compare(text, recovering, finder.find)
+            failing.tokens += len(recognizer.kinds(text))
+    return {"valid": valid.record(), "failing": failing.record()}
+
+
+def _recovering_antlr() -> Callable[[str], object]:
+    """ANTLR as it comes: it mends errors by its default strategy and reads to the end."""
+    from antlr4 import CommonTokenStream, InputStream
+
+    from grammar._generated.KRLLexer import KRLLexer
+    from grammar._generated.KRLParser import KRLParser
+
+    def read_on(text: str) -> None:
+        lexer = KRLLexer(InputStream(text))
+        lexer.removeErrorListeners()
+        parser = KRLParser(CommonTokenStream(lexer))
+        parser.removeErrorListeners()
+        parser.buildParseTrees = False
+        parser.module()
+
+    read_on("")
+    return read_on
+
+
+# ---------------------------------------------------------------------------------- scaling
+
+
+def _scaled_to(
+    size: float, roots: Sequence[Path], grammar: g4.Grammar, seed: int
+) -> dict[str, Any]:
+    """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
+    with tempfile.TemporaryDirectory() as folder:
+        apart(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
+        return {"mb": size, **apart(_scaled, Path(folder), grammar.text)}
+
+
+def _synthesise(
+    roots: Sequence[Path], grammar_text: str, folder: Path, size: int, seed: int
+) -> None:
+    texts = spread(_decoded(_contents(roots)))
+    lexer = Recognizer(g4.read(grammar_text)).lexer
+    try:
+        write_corpus(list(templates(texts, lexer)), folder, size, seed)
+    except ValueError as error:
+        raise IngestError(f"no larger corpus can be made of these files: {error}") from error
+
+
+def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:
+    grammar = g4.read(grammar_text)
+    seconds, found = _timed_survey([folder], grammar)
+    peak = peak_memory()
+    size = sum(file.size for file in found.files)
+    return {
+        "files": len(found.files),
+        "bytes": size,
+        "failures": sum(len(file.failures) for file in found.files),
+        "seconds": seconds,
+        "bytes_per_s": size / seconds,
+        "peak_mb": None if peak is None else peak / MB,
+        # whoever holds them: the automaton is the survey's own affair
+        "cores": sum(isinstance(each, Core) for each in gc.get_objects()),
+    }
+
+
+def _growth(scaling: Sequence[dict[str, Any]]) -> float | None:
+    """How much more memory the last took than the first."""
+    peaks = [entry["peak_mb"] for entry in scaling]
+    if not peaks or None in peaks:
+        return None
+    return float(peaks[-1] - peaks[0])

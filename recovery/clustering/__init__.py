@@ -1,0 +1,1 @@
+"""Failures grouped by the edit that mends them, and edits tried."""

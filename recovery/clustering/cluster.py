@@ -1,0 +1,295 @@
+"""Clusters: failures grouped by cause, ranked by what they hold back."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from grammar.parser.failures import Context, FailureFinder
+from grammar.parser.recognizer import Recognizer
+from recovery.clustering.cause import Cause, Judge, Proposal, no_judge
+from recovery.clustering.causes import find_causes
+from recovery.clustering.file_trial import FailingFile, WholeFiles
+from recovery.clustering.regression import Readable
+from recovery.proposals.candidates import Line
+from recovery.survey.signature import Shape, Shaper
+from recovery.survey.survey import Failed, Survey, SurveyedFile
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["Cluster", "Clusters", "Member", "cluster"]
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A failure and the file it is in."""
+
+    file: SurveyedFile
+    failed: Failed
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """Failures with one cause.
+
+    ``unlocks``: files that would parse if only it were mended. ``line`` is the failing line that
+    stands for it and ``example`` a failure of that line; ``restores`` has for each of the
+    ``proposals`` the files in which it mends every line that fails by itself.
+    """
+
+    id: str
+    title: str
+    context: Context
+    line: Line
+    example: Member
+    members: tuple[Member, ...]
+    unlocks: int
+    proposals: tuple[Proposal, ...]
+    restores: tuple[tuple[SurveyedFile, ...], ...]
+
+    @property
+    def files(self) -> tuple[SurveyedFile, ...]:
+        """Distinct contents with a failure of this cluster, in the order of the survey."""
+        return tuple({m.file.digest: m.file for m in self.members}.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Clusters:
+    """All clusters of a survey, what holds back most first, and the greedy order of mending.
+
+    ``order`` lists (cluster, files that parse once it and all before it are mended);
+    ``cluster_of`` maps (digest, index of a failure) to the cluster's id; ``contexts`` are those of
+    the survey's forms.
+    """
+
+    ranked: tuple[Cluster, ...]
+    order: tuple[tuple[Cluster, int], ...]
+    cluster_of: dict[tuple[str, int], str]
+    lines: tuple[Line, ...]
+    contexts: tuple[Context, ...]
+
+
+def text_on_disk(file: SurveyedFile) -> str:
+    """The text of a file, read again; empty where it has changed since the survey."""
+    return "\n".join(file.lines())
+
+
+def cluster(
+    found: Survey,
+    *,
+    judge: Judge = no_judge,
+    text_of: Callable[[SurveyedFile], str] = text_on_disk,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> Clusters:
+    """Group the failures of a survey by cause.
+
+    ``judge`` counts the negatives an edit lets in; ``text_of`` gives the text of a file again;
+    ``on_found`` and ``on_done`` report progress.
+    """
+    groups = _Lines(found)
+    causes: Sequence[Cause] = ()
+    if groups.lines:
+        on_found(len(groups.by_shape))
+        causes = find_causes(
+            groups.recognizer,
+            groups.lines,
+            groups.weights,
+            groups.by_shape,
+            judge,
+            on_done,
+            WholeFiles(groups.recognizer, groups.failing(found, text_of)),
+            Readable(
+                ((f.size, partial(text_of, f)) for f in found.files if not f.failures),
+                {word for line in groups.lines for _, word in line.keywords},
+            ),
+        )
+    cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
+    return _assembled(found, groups, causes, cause_of)
+
+
+class _Lines:
+    """The failing lines of a survey: distinct ones, and where each occurs."""
+
+    def __init__(self, found: Survey) -> None:
+        self.recognizer = Recognizer(found.grammar)
+        finder = FailureFinder(self.recognizer)
+        self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
+        direct = [
+            (file, index, failed)
+            for file in found.files
+            for index, failed in enumerate(file.failures)
+            if not failed.follows
+        ]
+        self.shaper = Shaper(
+            self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
+        )
+        numbers: dict[Line, int] = {}
+        shapes: list[Shape] = []
+        self.line_of: dict[tuple[str, int], int] = {}
+        self.specimens: list[Member] = []  # of each line the shortest
+        files: dict[int, dict[str, int]] = defaultdict(dict)
+        for file, index, failed in direct:
+            form = found.forms[failed.form]
+            line = Line(form, self.shaper.keywords(failed, form))
+            number = numbers.setdefault(line, len(numbers))
+            if number == len(shapes):
+                shapes.append(self.shaper.shape(failed, form, self.contexts[failed.form]))
+                self.specimens.append(Member(file, failed))
+            elif len(failed.source) < len(self.specimens[number].failed.source):
+                self.specimens[number] = Member(file, failed)
+            self.line_of[file.digest, index] = number
+            files[number][file.digest] = len(file.places)
+        self.lines = tuple(numbers)
+        self.shapes = shapes
+        self.weights = [sum(files[n].values()) for n in range(len(shapes))]
+        by_shape: dict[Shape, list[int]] = defaultdict(list)
+        for number, shape in enumerate(shapes):
+            by_shape[shape].append(number)
+        self.by_shape = sorted(
+            by_shape.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
+        )
+
+    def failing(
+        self, found: Survey, text_of: Callable[[SurveyedFile], str]
+    ) -> Iterator[FailingFile]:
+        """The files with failing lines, to be read when needed."""
+        for file in found.files:
+            lines = tuple(
+                (failed.line, self.line_of[file.digest, index])
+                for index, failed in enumerate(file.failures)
+                if not failed.follows
+            )
+            if lines:
+                yield FailingFile(file.digest, file.size, partial(text_of, file), lines)
+
+    def _context(
+        self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]
+    ) -> Context:
+        return finder.context(self.recognizer.run(self.recognizer.restore(before), kinds)[0])
+
+
+def _assembled(
+    found: Survey, groups: _Lines, causes: Sequence[Cause], cause_of: dict[int, int]
+) -> Clusters:
+    members: dict[int, list[Member]] = defaultdict(list)
+    needs: list[tuple[SurveyedFile, frozenset[int], frozenset[int]]] = []
+    by_failure: dict[tuple[str, int], int] = {}
+    for file in found.files:
+        direct: set[int] = set()
+        last = None
+        for index, failed in enumerate(file.failures):
+            line = groups.line_of.get((file.digest, index))
+            if line is not None:
+                direct.add(line)
+                last = cause_of[line]
+            assert last is not None  # nothing follows from nothing
+            members[last].append(Member(file, failed))
+            by_failure[file.digest, index] = last
+        if direct:
+            needs.append((file, frozenset(direct), frozenset(cause_of[n] for n in direct)))
+    alone: Counter[int] = Counter()
+    for file, _, wanted in needs:
+        if len(wanted) == 1:
+            alone[next(iter(wanted))] += len(file.places)
+    titles = _titles([_heaviest(cause, groups) for cause in causes], groups.shapes)
+    clusters = [
+        _cluster(cause, titles[number], members[number], alone[number], groups, needs)
+        for number, cause in enumerate(causes)
+    ]
+    order = _greedy(found.files, [(f, wanted) for f, _, wanted in needs], clusters)
+    ranked = sorted(clusters, key=lambda c: (-c.unlocks, -_places(c.files), -len(c.members), c.id))
+    return Clusters(
+        tuple(ranked),
+        tuple(order),
+        {key: clusters[number].id for key, number in by_failure.items()},
+        groups.lines,
+        tuple(groups.contexts),
+    )
+
+
+def _heaviest(cause: Cause, groups: _Lines) -> int:
+    """The line that stands for a cause: the heaviest of those that its best proposal mends."""
+    mended = cause.proposals[0].mended & set(cause.lines) if cause.proposals else ()
+    return max(
+        mended or cause.lines,
+        key=lambda n: (groups.weights[n], -len(groups.lines[n].form.kinds), -n),
+    )
+
+
+def _cluster(
+    cause: Cause,
+    title: str,
+    members: Sequence[Member],
+    unlocks: int,
+    groups: _Lines,
+    needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
+) -> Cluster:
+    heaviest = _heaviest(cause, groups)
+    example = groups.specimens[heaviest]
+    return Cluster(
+        id=_identity(title),
+        title=title,
+        context=groups.contexts[example.failed.form],
+        line=groups.lines[heaviest],
+        example=example,
+        members=tuple(members),
+        unlocks=unlocks,
+        proposals=cause.proposals,
+        restores=tuple(
+            tuple(file for file, direct, _ in needs if direct <= proposal.mended)
+            for proposal in cause.proposals
+        ),
+    )
+
+
+def _places(files: Iterable[SurveyedFile]) -> int:
+    return sum(len(file.places) for file in files)
+
+
+def _identity(title: str) -> str:
+    return "c-" + hashlib.sha256(title.encode()).hexdigest()[:8]
+
+
+def _titles(lines: Sequence[int], shapes: Sequence[Shape]) -> list[str]:
+    """Titles; where two clusters share one, the rule and then a number tell them apart."""
+    plain = Counter(shapes[n].title for n in lines)
+    out: list[str] = []
+    for n in lines:
+        shape = shapes[n]
+        title = shape.title if plain[shape.title] == 1 else f"{shape.title} (in {shape.rule})"
+        same = sum(t == title or t.startswith(f"{title} #") for t in out)
+        out.append(f"{title} #{same + 1}" if same else title)
+    return out
+
+
+def _greedy(
+    files: Sequence[SurveyedFile],
+    needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
+    clusters: Sequence[Cluster],
+) -> Iterator[tuple[Cluster, int]]:
+    """Mend next what lets most files parse, or brings most of them nearest to it."""
+    parsed = sum(len(f.places) for f in files if not f.failures)
+    waiting: Counter[frozenset[int]] = Counter()
+    for file, wanted in needs:
+        waiting[wanted] += len(file.places)
+    while waiting:
+        gain: Counter[int] = Counter()
+        near: dict[int, float] = defaultdict(float)
+        for wanted, count in waiting.items():
+            for number in wanted:
+                near[number] += count / len(wanted) ** 2
+                if len(wanted) == 1:
+                    gain[number] += count
+        best = max(near, key=lambda n: (gain[n], near[n], clusters[n].id))
+        left: Counter[frozenset[int]] = Counter()
+        for wanted, count in waiting.items():
+            rest = wanted - {best}
+            if rest:
+                left[rest] += count
+            else:
+                parsed += count
+        waiting = left
+        yield clusters[best], parsed

@@ -1,0 +1,206 @@
+"""Trying an edit: which failing lines can be read once the grammar has it?
+
+A line is tried where it failed: the shortest tokens that lead to the state it began in, then the
+line itself. No code is generated and no file is read again, so a candidate costs milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from grammar.notation.edits import AddRule, AddToken, Comment, Edit, Preamble, RemoveRule, apply
+from grammar.notation.g4 import GrammarError
+from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.network import is_left_recursive, network_of, with_rule
+from grammar.parser.recognizer import Frames, Recognizer, State
+from grammar.parser.shortest_paths import Paths
+from recovery.proposals.candidates import Line
+
+__all__ = ["Outcome", "Trial", "edited"]
+
+
+_MOST_REMEMBERED = 160
+# An edit can give a line exponentially many readings; what needs more than these is no good edit.
+_MOST_WAYS = 2_000
+# Lines that are looked at for a second reading.
+_MOST_READ_TWICE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Indices of the lines an edit lets be read whole, and of those it lets be read further."""
+
+    mended: frozenset[int]
+    advanced: frozenset[int]
+
+
+def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
+    """A recogniser of the edited grammar, or ``None`` where the edits do not fit it.
+
+    Token kinds keep their numbers; keywords the edits reserve are added behind them.
+    """
+    try:
+        grammar = apply(recognizer.grammar, edits)
+        lexer = recognizer.lexer
+        for edit in edits:
+            if isinstance(edit, AddToken):
+                lexer = lexer.with_keyword(edit.name)
+        changed = None
+        if any(isinstance(e, AddRule | RemoveRule) for e in edits):
+            network = network_of(grammar, lexer)
+        else:
+            network = recognizer.network
+            changed = changed_rules(edits)
+            for name in sorted(changed):
+                network = with_rule(network, grammar, grammar.by_name[name], lexer)
+            if network.lexer is not lexer:  # words reserved, and no rule has changed
+                network = replace(network, lexer=lexer)
+    except (GrammarError, KeyError):
+        return None
+    if is_left_recursive(network, changed, recognizer.empty_rules):
+        return None
+    found = Recognizer(grammar, network)
+    found.most_ways = _MOST_WAYS
+    return found
+
+
+def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
+    """The rules whose text the edits change."""
+    return frozenset(
+        e.rule
+        for e in edits
+        if not isinstance(e, AddToken | AddRule | RemoveRule | Comment | Preamble)
+    )
+
+
+class Trial:
+    """Tries edits on failing lines of one grammar."""
+
+    def __init__(self, recognizer: Recognizer, lines: Sequence[Line]) -> None:
+        self.recognizer = recognizer
+        self.lines = lines
+        paths = Paths(recognizer.network)
+        self._prefix: dict[Frames, list[int]] = {}
+        self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
+        self._by_rule: dict[str, list[int]] = defaultdict(list)
+        self._by_keyword: dict[str, set[int]] = defaultdict(set)
+        for number, line in enumerate(lines):
+            if line.is_enormous:
+                continue
+            before = line.form.before
+            if before not in self._prefix:
+                self._prefix[before] = self._way_to(paths, before)
+            for rule in self._rules_at_work(line):
+                self._by_rule[rule].append(number)
+            for _, keyword in line.keywords:
+                self._by_keyword[keyword].add(number)
+
+    def _way_to(self, paths: Paths, before: Frames) -> list[int]:
+        """The shortest tokens after which a line can begin in this state, its line end included.
+
+        A line that may begin in several ways may do so only behind some of the ways that lead to
+        one of them: a routine may follow a routine, but not a data list.
+        """
+        ways = sorted(map(self._ended, map(paths.prefix, before)), key=lambda way: (len(way), way))
+        wanted = frozenset(before)
+        return max(ways, key=lambda way: len(wanted & self._after(way)))  # the first of equals
+
+    def _ended(self, prefix: list[int]) -> list[int]:
+        """A way with a line end behind it, where one can be there."""
+        line_kind = self.recognizer.line_kind
+        if prefix and prefix[-1] != line_kind:
+            ended = [*prefix, line_kind]
+            if self.recognizer.run(self.recognizer.start, ended)[1] is None:
+                return ended
+        return prefix
+
+    def _after(self, way: Sequence[int]) -> frozenset[tuple[int, ...]]:
+        """The configurations that a way leads to."""
+        state, _ = self.recognizer.run(self.recognizer.start, way)
+        return frozenset(self.recognizer.frames(state))
+
+    def _rules_at_work(self, line: Line) -> set[str]:
+        """Rules in which an edit could change how this line is read."""
+        recognizer, form = self.recognizer, line.form
+        rule_of = recognizer.network.rule
+        state = recognizer.restore(form.before)
+        rules = {rule_of[p] for p, _ in recognizer.sites(state)}
+        if not form.index:  # the line end before it may be what would be read in another way
+            rules |= {rule_of[p] for frames in form.before for p in frames}
+        for kind in form.kinds[: form.index]:
+            following = recognizer.step(state, kind)
+            assert following is not None
+            state = following
+            rules |= {rule_of[p] for p, _ in recognizer.sites(state)}
+        return rules
+
+    def relevant(self, edits: Sequence[Edit]) -> list[int]:
+        """Lines that the edits might mend."""
+        keywords = [e.name for e in edits if isinstance(e, AddToken)]
+        if keywords and not any("|" in getattr(e, "text", "") for e in edits):
+            found = set.union(*(self._by_keyword.get(k, set()) for k in keywords))
+            return sorted(found)
+        if any(isinstance(e, AddRule) for e in edits):
+            return list(range(len(self.lines)))
+        found = {n for rule in changed_rules(edits) for n in self._by_rule.get(rule, ())}
+        return sorted(found.union(*(self._by_keyword.get(k, set()) for k in keywords)))
+
+    def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
+        """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
+        key = tuple(edits)
+        if key not in self._wider:
+            if len(self._wider) >= _MOST_REMEMBERED:
+                del self._wider[next(iter(self._wider))]
+            self._wider[key] = edited(self.recognizer, edits)
+        return self._wider[key]
+
+    def outcome(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> Outcome:
+        """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
+        wider = self.wider(edits)
+        if wider is None:
+            return Outcome(frozenset(), frozenset())
+        chosen = self.relevant(edits)
+        if among is not None:
+            wanted = frozenset(among)
+            chosen = [n for n in chosen if n in wanted]
+        mended, advanced = [], []
+        for number, start, kinds in self._read_by(wider, edits, chosen):
+            _, failed = wider.run(start, kinds)
+            if failed is None:
+                mended.append(number)
+            elif failed > self.lines[number].form.index:
+                advanced.append(number)
+        return Outcome(frozenset(mended), frozenset(advanced))
+
+    def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
+        """Whether one of the lines has two readings with the edits; the shortest few are read."""
+        wider = self.wider(edits)
+        if wider is None:
+            return False
+        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:_MOST_READ_TWICE]
+        return any(
+            is_ambiguous(wider, start, kinds)
+            for _, start, kinds in self._read_by(wider, edits, short)
+        )
+
+    def _read_by(
+        self, wider: Recognizer, edits: Sequence[Edit], numbers: Iterable[int]
+    ) -> Iterator[tuple[int, State, Sequence[int]]]:
+        """Lines with the states they begin in and their tokens, as ``wider`` has them."""
+        new = {e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)}
+        starts: dict[Frames, State | None] = {}
+        for number in numbers:
+            line = self.lines[number]
+            before = line.form.before
+            if before not in starts:
+                state, failed = wider.run(wider.start, self._prefix[before])
+                starts[before] = state if failed is None else None
+            start = starts[before]
+            if start is None:  # the edits took away what leads to this line
+                continue
+            kinds = list(line.form.kinds)
+            for place, keyword in line.keywords if new else ():
+                kinds[place] = new.get(keyword, kinds[place])
+            yield number, start, kinds

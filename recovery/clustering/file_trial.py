@@ -1,0 +1,130 @@
+"""Whole programs under an edit: how far can they be read, and which failures are gone?
+
+A line can be read and the file still not: the edit may have let it in at the wrong place, once
+where it comes again, or without what belongs to it on later lines. So the best edits for a line
+are tried on some of the files that fail there first. And a line that fails only because a line
+before it was not understood can be read once that one is: it has the same cause.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
+
+from grammar.parser.failures import FailureFinder
+from grammar.parser.recognizer import Recognizer
+
+__all__ = ["FailingFile", "WholeFiles"]
+
+_FILES_A_LINE = 4
+_MOST_FILES = 12
+_MOST_TOKENS = 6_000
+# Files read again for what a mended line entails, and their length in characters together.
+_MOST_REREAD = 40
+_MOST_REREAD_TEXT = 200_000
+
+
+@dataclass(frozen=True, slots=True)
+class FailingFile:
+    """A file with failing lines.
+
+    ``failing`` are the lines that fail by themselves, as (line in the file from 1, number of the
+    failing line), in order; ``text`` gives the text when it is needed.
+    """
+
+    digest: str
+    size: int
+    text: Callable[[], str]
+    failing: tuple[tuple[int, int], ...]
+
+
+class WholeFiles:
+    """Files by the lines that fail in them; read when they are first asked for."""
+
+    def __init__(self, recognizer: Recognizer, files: Iterable[FailingFile] = ()) -> None:
+        self._recognizer = recognizer
+        self._files = sorted(files, key=lambda file: (file.size, file.digest))
+        self._texts: dict[int, list[tuple[str, list[int], int]]] = {}
+        self._occurrences: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        self._starting: dict[int, list[int]] = defaultdict(list)
+        for place, file in enumerate(self._files):
+            self._starting[file.failing[0][1]].append(place)
+            for at, line in file.failing:
+                self._occurrences[line].append((place, at))
+
+    def texts(self, lines: Iterable[int]) -> list[str]:
+        """Some of the texts that fail first at one of the lines."""
+        return [text for text, _, _ in self._of(lines)]
+
+    def share(self, wider: Recognizer, lines: Iterable[int]) -> float:
+        """How much can be read of what lies behind first failures, on average; from 0 to 1.
+
+        1 where there are no files to be tried.
+        """
+        shares = []
+        for text, kinds, failed in self._of(lines):
+            same = wider.lexer is self._recognizer.lexer
+            _, index = wider.run(wider.start, kinds if same else wider.kinds(text))
+            read = len(kinds) if index is None else index
+            shares.append(max(0, read - failed) / (len(kinds) - failed))
+        return sum(shares) / len(shares) if shares else 1.0
+
+    def entailed(
+        self, wider: Recognizer, mended: Iterable[int], others: Collection[int]
+    ) -> frozenset[int]:
+        """Those of the ``others`` that only fail because of the lines that ``wider`` mends.
+
+        They stand behind such a line wherever they are met, and fail no more. Lines that stand in
+        files too many or too long to be read again are none of them.
+        """
+        first: dict[int, int] = {}
+        for line in mended:
+            for place, at in self._occurrences[line]:
+                first[place] = min(at, first.get(place, at))
+        wanted: dict[int, list[tuple[int, int]]] = {}
+        for place, began in first.items():
+            behind = [
+                (at, line)
+                for at, line in self._files[place].failing
+                if at > began
+                and line in others
+                and all(first.get(p, a) < a for p, a in self._occurrences[line])
+            ]
+            if behind:
+                wanted[place] = behind
+        gone: set[int] = set()
+        left: set[int] = set()
+        finder = FailureFinder(wider)
+        length = 0
+        for place in sorted(wanted)[:_MOST_REREAD]:
+            text = self._files[place].text()
+            length += len(text)
+            if length > _MOST_REREAD_TEXT:
+                break
+            if not text:  # it is gone since the survey
+                continue
+            failing = {failure.line for failure in finder.find(text)}
+            for at, line in wanted[place]:
+                (left if at in failing else gone).add(line)
+        return frozenset(gone - left)
+
+    def _of(self, lines: Iterable[int]) -> list[tuple[str, list[int], int]]:
+        out: list[tuple[str, list[int], int]] = []
+        for line in lines:
+            if line not in self._texts:
+                places = self._starting.get(line, ())[:_FILES_A_LINE]
+                texts = [self._files[place].text() for place in places]
+                self._texts[line] = [entry for text in texts for entry in self._read(text)]
+            out += self._texts[line]
+            if len(out) >= _MOST_FILES:
+                break
+        return out[:_MOST_FILES]
+
+    def _read(self, text: str) -> Sequence[tuple[str, list[int], int]]:
+        """The text with its kinds and where it fails; nothing where it is too long to be tried."""
+        kinds = self._recognizer.kinds(text)
+        if len(kinds) > _MOST_TOKENS:
+            return []
+        _, failed = self._recognizer.run(self._recognizer.start, kinds)
+        return [] if failed is None else [(text, kinds, failed)]

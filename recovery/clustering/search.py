@@ -1,0 +1,298 @@
+"""The search for the edit that mends most of a group of failing lines and lets in least.
+
+Candidate edits for some of the lines are tried on a sample first, then the best of them on all
+lines that have no cause yet; how they are ranked is told in docs/architecture.md.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Sequence
+from typing import TypeVar
+
+from grammar.notation.edits import AddToken, Edit
+from grammar.parser.recognizer import Recognizer
+from recovery.clustering.cause import SHOWN, Cause, Judge, Proposal
+from recovery.clustering.edit_merging import one_choice
+from recovery.clustering.edit_trial import Outcome, Trial
+from recovery.clustering.file_trial import WholeFiles
+from recovery.clustering.regression import Readable, nothing_readable
+from recovery.proposals.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
+from recovery.proposals.segmentation import Word
+
+__all__ = ["Search"]
+
+# Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
+# that a first trial looks at: what is kept after it is tried on everything.
+_SPECIMENS = 3
+_MOST_TRIED = 105
+# Where less is held back a quicker look has to do.
+_MOST_TRIED_LIGHT = 48
+_FIRST_TRIAL = 8
+# Candidates of each place that are tried before any other, and wider ones where these do most.
+_NARROW = 2
+_WIDER = 4
+# Lines whose openings are compared for what they have in common.
+_VARIED = 6
+_KEPT = 10
+_KEPT_LIGHT = 6
+_KEPT_OF_A_RULE = 3
+_MOST_JUDGED = 24
+_MOST_JUDGED_LIGHT = 12
+_ALIKE = 12
+# What the lines themselves count where whole files cannot be read on behind them.
+_LINE_COUNTS = 0.2
+# What a mended line counts that is of another group than the one a cause is sought for.
+_OTHERS_COUNT = 0.3
+# What an edit gains that mends every line which fails at the same token: it leaves none to explain.
+_ALL_ALIKE = 1.25
+# What an edit loses that reads a word as a name which all lines have as a keyword.
+_LEFT_A_NAME = 0.6
+# What an edit loses that reserves a word which is a name in files that can be read.
+_LOSES_FILES = 0.5
+# What an edit loses that gives some of its lines two readings.
+_TWO_READINGS = 0.97
+
+
+class Search:
+    """Searches edits for the lines of one grammar."""
+
+    def __init__(
+        self,
+        recognizer: Recognizer,
+        lines: Sequence[Line],
+        weights: Sequence[int],
+        judge: Judge,
+        whole: WholeFiles | None = None,
+        readable: Readable = nothing_readable,
+    ) -> None:
+        self.lines = lines
+        self.weights = weights
+        self.judge = judge
+        self.whole = whole or WholeFiles(recognizer)
+        self.readable = readable
+        self.finder = CandidateFinder(recognizer)
+        self.trial = Trial(recognizer, lines)
+        self.thorough = True
+        self._sought: frozenset[int] = frozenset()
+        self._has_words = False  # whether all lines sought for have words the grammar lacks
+        self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
+        self._meant = frozenset(word for line in lines for _, word in line.keywords)
+        self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
+        self.same_lead: dict[Word, list[int]] = defaultdict(list)
+        for number in sorted(self.open, key=lambda n: (-weights[n], n)):
+            self.same_token[self._token(number)].append(number)
+            self.same_lead[lines[number].words()[0]].append(number)
+
+    def best_for(self, group: Sequence[int]) -> Cause | None:
+        """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
+        members = self._sought = frozenset(group)
+        self._has_words = all(self.lines[n].keywords for n in group)
+        proposals = self._proposals(group)
+        for place, best in enumerate(proposals):
+            # what an edit lets be read further has its first cause here, and others behind it
+            taken = (best.mended & self.open) | (best.advanced & members)
+            if taken:
+                return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
+        return None
+
+    def best_afresh(self, lines: Sequence[int]) -> Cause | None:
+        """The cause of the heaviest of these lines as if none had one yet, others left aside."""
+        self.thorough = True
+        self.open = set(lines)
+        return self.best_for(lines)
+
+    def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
+        """The edits tried on all lines, whatever their cause."""
+        outcome = self.trial.outcome(edits)
+        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+
+    def with_entailed(self, cause: Cause) -> Cause:
+        """The cause with the lines that fail only because of its own."""
+        best = cause.proposals[0]
+        wider = self.trial.wider(best.edits)
+        others = self.open.difference(cause.lines)
+        if wider is None or not others:
+            return cause
+        mended = best.mended.intersection(cause.lines)
+        more = self.whole.entailed(wider, mended, others)
+        return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
+
+    def _proposals(self, group: Sequence[int]) -> list[Proposal]:
+        heavy = sorted(group, key=lambda n: (-self.weights[n], n))
+        specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
+        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
+        alike = self._alike(specimens[0])
+        led_alike = self._led_alike(specimens[0])
+        near = dict.fromkeys((*specimens, *_spread(heavy, _VARIED)))
+        varied = dict.fromkeys((*near, *_spread(alike, _VARIED), *_spread(led_alike, _VARIED)))
+        tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
+        sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
+        sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
+        first = self._tried(tried, most, sample)
+        first += [
+            (candidate, self.trial.outcome(candidate.edits, sample))
+            for candidate in one_choice([c for c, o in first if o.mended])
+        ]
+        proposals = []
+        for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
+            outcome = self.trial.outcome(candidate.edits, self.open)
+            edits, breadth = candidate.edits, candidate.breadth
+            proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
+        kept = [self._names_kept(proposal) for proposal in proposals]
+        useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
+        return self._ranked(list(useful.values()), heavy)[:SHOWN]
+
+    def _names_kept(self, proposal: Proposal) -> Proposal:
+        """The proposal; where files have a word as a name that it reserves, with that left one."""
+        if not self._loses(proposal.edits):
+            return proposal
+        layout, words = self.finder.layout, self.finder.layout.vocabulary
+        edits = words.still_names(proposal.edits)
+        if words.names is None or edits is None or self._loses(edits):
+            return proposal
+        outcome = self.trial.outcome(edits, self.open)
+        breadth = proposal.breadth + layout.width(words.names) // 2
+        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+
+    def _loses(self, edits: tuple[Edit, ...]) -> bool:
+        """Whether files that can be read cannot be any more."""
+        words = [edit.name for edit in edits if isinstance(edit, AddToken)]
+        wider = self.trial.wider(edits) if words else None
+        return wider is not None and self.readable.is_lost(wider, words)
+
+    def _tried(
+        self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
+    ) -> list[tuple[Candidate, Outcome]]:
+        """At most so many candidates with what they do to a sample of lines.
+
+        First the narrowest at each place; then the wider ones where these do most.
+        """
+        at: dict[object, list[Candidate]] = defaultdict(list)
+        for candidate in candidates:
+            at[candidate.place].append(candidate)
+        narrow = [c for c in candidates if c in at[c.place][:_NARROW]][: most - most // 3]
+        out = [(c, self.trial.outcome(c.edits, sample)) for c in narrow]
+        gains: dict[object, tuple[float, int]] = {}
+        for c, outcome in out:
+            gain = self._gain(outcome)
+            if gain:
+                gains[c.place] = max((gain, -c.breadth), gains.get(c.place, (0.0, 0)))
+        hopeful = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
+        wide = [c for place in hopeful for c in at[place][_NARROW : _NARROW + _WIDER]]
+        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // 3]]
+
+    def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
+        """The best of the blocks that a line may open, with the negatives they let in."""
+        line = self.lines[number]
+        opener = self.lead(line)
+        if not opener:
+            return []
+        texts = self.whole.texts(heavy)
+        found = [
+            (self.whole.share(wider, heavy), candidate)
+            for candidate in self.finder.find_blocks(line, opener, texts, self._meant)
+            if (wider := self.trial.wider(candidate.edits)) is not None
+        ]
+        found.sort(
+            key=lambda pair: (-pair[0] * BREADTH_COSTS ** pair[1].breadth, str(pair[1].edits))
+        )
+        return [
+            (candidate, self.judge(candidate.edits)) for _, candidate in found[:_KEPT_OF_A_RULE]
+        ]
+
+    def lead(self, line: Line) -> str:
+        """The keyword or would-be keyword that a line begins with."""
+        kind, keyword = line.words()[0]
+        lexer = self.finder.recognizer.lexer
+        return keyword or (lexer.display[kind] if lexer.is_keyword(kind) else "")
+
+    def _alike(self, number: int) -> list[int]:
+        """Other lines that fail at the same token, whatever else they look like."""
+        return [n for n in self.same_token[self._token(number)] if n in self.open]
+
+    def _led_alike(self, number: int) -> list[int]:
+        """Other lines that begin with the same kind of token or the same word."""
+        return [n for n in self.same_lead[self.lines[number].words()[0]] if n in self.open]
+
+    def _token(self, number: int) -> tuple[int, str | None]:
+        line = self.lines[number]
+        return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
+
+    def _gain(self, outcome: Outcome | Proposal) -> float:
+        """What the lines count that are mended; those a cause is sought for count most."""
+        sought = self._sought
+        whole = sum(self.weights[n] for n in outcome.mended & sought)
+        further = sum(self.weights[n] for n in outcome.advanced & sought)
+        if not whole and not further:
+            return 0.0
+        others = sum(self.weights[n] for n in outcome.mended - sought)
+        return whole + further / 4 + others * _OTHERS_COUNT
+
+    def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
+        """Gain, less a little for all that an edit lets in besides, and for a word left a name."""
+        worth = self._gain(outcome) * BREADTH_COSTS**candidate.breadth
+        reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
+        return worth * _LEFT_A_NAME if self._has_words and not reserves else worth
+
+    def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
+        """The most worthwhile candidates, first those that let in no negatives."""
+        useful = self._diverse(outcomes)
+        useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
+        clean: list[tuple[Candidate, int]] = []
+        costly: list[tuple[Candidate, int]] = []
+        in_rule: Counter[str] = Counter()
+        judged = 0
+        for candidate, _ in useful:
+            rule = getattr(candidate.edits[-1], "rule", "")
+            if in_rule[rule] >= _KEPT_OF_A_RULE:
+                continue
+            negatives = self.judge(candidate.edits)
+            judged += 1
+            in_rule[rule] += not negatives
+            (costly if negatives else clean).append((candidate, negatives))
+            if len(clean) == (_KEPT if self.thorough else _KEPT_LIGHT) or judged == (
+                _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
+            ):
+                break
+        return clean + costly[: _KEPT - len(clean)]
+
+    def _diverse(
+        self, outcomes: list[tuple[Candidate, Outcome]]
+    ) -> list[tuple[Candidate, Outcome]]:
+        """Candidates that do something; of those that do the same the most restrictive few."""
+        alike: dict[Outcome, list[tuple[Candidate, Outcome]]] = defaultdict(list)
+        for candidate, outcome in outcomes:
+            if outcome.mended or outcome.advanced:
+                alike[outcome].append((candidate, outcome))
+        return [
+            pair
+            for same in alike.values()
+            for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[:_ALIKE]
+        ]
+
+    def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
+        """No negatives first; then by worth, and by how much of whole files can be read."""
+        worth = {}
+        alike = self._alike(lines[0])
+        for p in proposals:
+            wider = self.trial.wider(p.edits)
+            share = 0.0 if wider is None else self.whole.share(wider, lines)
+            worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
+            if p.mended.issuperset(alike):
+                worth[p.edits] *= _ALL_ALIKE
+            if self._loses(p.edits):
+                worth[p.edits] *= _LOSES_FILES
+            if self.trial.is_ambiguous(p.edits, p.mended):
+                worth[p.edits] *= _TWO_READINGS
+        return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
+
+
+_T = TypeVar("_T")
+
+
+def _spread(items: Sequence[_T], count: int) -> list[_T]:
+    """The first of ``items``, and others evenly from the rest."""
+    if len(items) <= count:
+        return list(items)
+    return [items[i * len(items) // count] for i in range(count)]

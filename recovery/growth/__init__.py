@@ -1,0 +1,1 @@
+"""The ledger replayed over a corpus, step by step."""

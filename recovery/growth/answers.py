@@ -1,0 +1,83 @@
+"""Which construct of the ledger answered a cluster of the restrictive start.
+
+A cluster has example lines in real files. The ledger is replayed over these files, and a cluster
+is answered by the construct from which on most of its lines can be read in their places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from grammar.notation.g4 import Grammar
+from recovery.growth.growth import Steps
+from recovery.growth.timeline import Content, Timeline, read_through
+from recovery.ledger.construct_record import construct_record
+from recovery.survey.survey import Survey
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["answered"]
+
+
+def answered(
+    clusters: Sequence[Mapping[str, Any]],
+    found: Survey,
+    steps: Steps,
+    *,
+    jobs: int | None = None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> dict[str, Any]:
+    """Clusters with their answers, and the constructs that gave them.
+
+    ``clusters`` are those of the record of ``found``, the survey of the start. Returns them under
+    ``clusters``, each with ``answered_by``, the ID of a construct or ``None``; ``constructs`` has
+    the records of these constructs (`recovery.ledger.construct_record`) in the order of the ledger.
+    """
+    grammars = [found.grammar, *(grammar for _, grammar in steps)]
+    wanted = {path for cluster in clusters for path, _ in _lines(cluster)}
+    contents = [
+        Content(file.found, file.places, file.digest, file.size)
+        for file in found.files
+        if file.path in wanted
+    ]
+    read = read_through(
+        contents, grammars, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
+    )
+    by_path = {line.content.path: line for line in read}
+    told = []
+    answers: set[int] = set()
+    for cluster in clusters:
+        number = _answer(_lines(cluster), by_path, len(steps))
+        told.append({**cluster, "answered_by": steps[number - 1][0].id if number else None})
+        if number:
+            answers.add(number)
+    return {
+        "clusters": told,
+        "constructs": [_record(grammars, steps, number) for number in sorted(answers)],
+    }
+
+
+def _record(grammars: Sequence[Grammar], steps: Steps, number: int) -> dict[str, Any]:
+    return construct_record(steps[number - 1][0], grammars[number - 1], grammars[number])
+
+
+def _lines(cluster: Mapping[str, Any]) -> list[tuple[str, int]]:
+    """Path and number of the lines that stand for a cluster."""
+    return [(e["path"], e["line"]) for e in (cluster["example"], *cluster["examples"])]
+
+
+def _answer(
+    lines: Sequence[tuple[str, int]], by_path: Mapping[str, Timeline], steps: int
+) -> int | None:
+    """The first step from which on most of the lines can be read for good."""
+    failing = [by_path[path].failing.get(line, 0) for path, line in lines if path in by_path]
+    answer = None
+    for number in range(steps, 0, -1):
+        unread = sum(when >> number & 1 for when in failing)
+        if 2 * unread >= len(failing):
+            break
+        answer = number
+    return answer

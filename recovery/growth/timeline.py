@@ -1,0 +1,298 @@
+"""A corpus read under each of a row of grammars: which lines of which file fail when.
+
+The row is that of a growing grammar, so most of a corpus stays as it was from one grammar to the
+next. A file that parses is not read again while the grammar only adds
+(`recovery.growth.inclusion`); all others are read, so nothing is estimated. Files lie in blocks,
+grammars in runs, and each process takes a run over a block, so the cost grows with the corpus and
+memory does not.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from grammar.notation.g4 import Grammar
+from grammar.parser.failures import FailureFinder
+from grammar.parser.recognizer import Recognizer
+from recovery.growth.inclusion import fixed_texts_added, occurs
+from recovery.survey.result_cache import Memory, key_of
+from support.files.discovery import Found, Skipped, Source, decode, digest, discover, read
+from support.parallel.executor import in_order
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["Content", "Timeline", "contents_of", "read_through"]
+
+_BLOCK_BYTES = 8 << 20
+_RUNS = 16  # a block is read in so many pieces, so that progress shows
+_RUNS_A_PROCESS = 4  # or in more, so that the last processes to end end together
+_SMALL = 32 << 20  # bytes times grammars: less is not worth more processes
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """A distinct content: where it lies first, and (path, origin) of that place and each copy."""
+
+    found: Found
+    places: tuple[tuple[str, str], ...]
+    digest: str
+    size: int
+
+    @property
+    def path(self) -> str:
+        """The first of its places, as people are shown it."""
+        return self.found.path
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """Which lines of a content failed when.
+
+    ``failing`` has for each line that ever fails a number whose bit ``n`` is set where it fails
+    under grammar ``n``; ``reason`` says why the content is no KRL, and is empty where it is.
+    """
+
+    content: Content
+    failing: Mapping[int, int]
+    reason: str = ""
+
+    @property
+    def whenever(self) -> int:
+        """The bits of the grammars under which the content does not parse."""
+        bits = 0
+        for when in self.failing.values():
+            bits |= when
+        return bits
+
+    def parses(self, number: int) -> bool:
+        """Whether it parses under the grammar of that number."""
+        return not self.whenever >> number & 1
+
+    def lines(self, number: int) -> list[int]:
+        """The lines that fail under the grammar of that number."""
+        return [line for line, when in self.failing.items() if when >> number & 1]
+
+
+def contents_of(roots: Sequence[Path]) -> tuple[list[Content], list[Skipped]]:
+    """The distinct contents below ``roots`` in the order of discovery, and what cannot be read.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to read.
+    """
+    met: dict[str, tuple[Found, list[tuple[str, str]], int]] = {}
+    skipped = []
+    for candidate in discover(roots):
+        data = candidate if isinstance(candidate, Skipped) else read(candidate)
+        if isinstance(candidate, Skipped) or isinstance(data, Skipped):
+            skipped.append(data)
+            continue
+        entry = met.setdefault(digest(data), (candidate, [], len(data)))
+        entry[1].append((candidate.path, candidate.origin))
+    contents = [Content(f, tuple(places), key, size) for key, (f, places, size) in met.items()]
+    return contents, [entry for entry in skipped if isinstance(entry, Skipped)]
+
+
+def read_through(
+    contents: Sequence[Content],
+    grammars: Sequence[Grammar],
+    *,
+    jobs: int | None = None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> list[Timeline]:
+    """Read each content under each of the grammars; the timelines stand in the given order.
+
+    ``jobs`` is the number of processes, by default one a core, or one for little. ``cache`` is the
+    folder where results are kept by content and grammar. ``on_found`` is told how many readings
+    there are to do (a content under a grammar is one), ``on_done`` how many more are done.
+
+    A content that has changed since it was found is told as no KRL, with that reason.
+    """
+    if not grammars:
+        raise ValueError("there is no grammar to read under")
+    names = [grammar.sha256 for grammar in grammars]
+    with _memory(cache, grammars[0]) as memory:
+        known = [_recalled(memory, content, names) for content in contents]
+        blocks = list(_blocks(contents, known))
+        on_found(sum(len(block.members) * len(block.missing) for block in blocks))
+        jobs = jobs or _processes(blocks)
+        runs = [(block, run) for block in blocks for run in block.runs(jobs)]
+        tasks = (
+            (tuple((n, grammars[n]) for n in run), tuple(m.content for m in block.members))
+            for block, run in runs
+        )
+        read = in_order(_perform, tasks, jobs=jobs)
+        for (block, run), results in zip(runs, read, strict=True):
+            for member, result in zip(block.members, results, strict=True):
+                known[member.index].add(result, run)
+            if memory is not None:  # after each run, so that a killed growth goes on from there
+                memory.keep_records(
+                    (_key(member.content), known[member.index].record(names))
+                    for member in block.members
+                    if known[member.index].lasting
+                )
+            on_done(len(block.members) * len(run))
+    return [
+        Timeline(content, dict(sorted(entry.failing.items())), entry.reason)
+        for content, entry in zip(contents, known, strict=True)
+    ]
+
+
+def _memory(cache: Path | None, start: Grammar) -> AbstractContextManager[Memory | None]:
+    """Results hang on the first grammar of the row, which is the one that seldom changes."""
+    return nullcontext() if cache is None else Memory(cache, key_of(start))
+
+
+def _processes(blocks: Iterable[_Block]) -> int:
+    work = sum(m.content.size * len(block.missing) for block in blocks for m in block.members)
+    return 1 if work < _SMALL else os.cpu_count() or 1
+
+
+# ------------------------------------------------------------------------------ what is known
+
+
+@dataclass(slots=True)
+class _Known:
+    """What is known of a content; ``missing`` are the grammars it has not been read under.
+
+    What is not ``lasting`` is not a fact of the content.
+    """
+
+    failing: dict[int, int]
+    reason: str
+    missing: tuple[int, ...]
+    lasting: bool = True
+
+    def add(self, result: _Result, run: tuple[int, ...]) -> None:
+        if not isinstance(result, dict):
+            self.lasting = isinstance(result, str)
+            self.reason = result if isinstance(result, str) else result.reason
+            return
+        for line, when in result.items():
+            self.failing[line] = self.failing.get(line, 0) | when
+        self.missing = tuple(n for n in self.missing if n not in run)
+
+    def record(self, names: Sequence[str]) -> dict[str, Any]:
+        if self.reason:
+            return {"reason": self.reason}
+        missing = frozenset(self.missing)
+        read = [n for n in range(len(names)) if n not in missing]
+        failing = [
+            [line, hex(sum((when >> n & 1) << bit for bit, n in enumerate(read)))]
+            for line, when in self.failing.items()
+        ]
+        return {"grammars": [names[n] for n in read], "failing": failing}
+
+
+def _key(content: Content) -> str:
+    return f"timeline {content.digest}"
+
+
+def _recalled(memory: Memory | None, content: Content, names: Sequence[str]) -> _Known:
+    """What was found under these grammars before, in whatever row they stood."""
+    kept = memory.recall_record(_key(content)) if memory is not None else None
+    if kept is None:
+        return _Known({}, "", tuple(range(len(names))))
+    try:
+        if kept.get("reason"):
+            return _Known({}, str(kept["reason"]), ())
+        place = {str(name): bit for bit, name in enumerate(kept["grammars"])}
+        bits = [(n, place[name]) for n, name in enumerate(names) if name in place]
+        failing = {}
+        for line, written in kept["failing"]:
+            when = int(written, 16)
+            moved = sum((when >> bit & 1) << n for n, bit in bits)
+            if moved:
+                failing[int(line)] = moved
+        return _Known(failing, "", tuple(n for n, name in enumerate(names) if name not in place))
+    except (KeyError, TypeError, ValueError):  # not what was written: work it out again
+        return _Known({}, "", tuple(range(len(names))))
+
+
+# -------------------------------------------------------------------------------- the work
+
+
+@dataclass(frozen=True, slots=True)
+class _Member:
+    index: int
+    content: Content
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Contents that are read together under the grammars ``missing``."""
+
+    members: tuple[_Member, ...]
+    missing: tuple[int, ...]
+
+    def runs(self, jobs: int) -> Iterator[tuple[int, ...]]:
+        """The grammars, cut into pieces of neighbours."""
+        length = math.ceil(len(self.missing) / max(_RUNS, jobs * _RUNS_A_PROCESS))
+        for first in range(0, len(self.missing), length):
+            yield self.missing[first : first + length]
+
+
+def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_Block]:
+    """What has to be read; contents that miss the same grammars lie together."""
+    waiting: dict[tuple[int, ...], list[_Member]] = defaultdict(list)
+    sizes: dict[tuple[int, ...], int] = defaultdict(int)
+    for index, (content, entry) in enumerate(zip(contents, known, strict=True)):
+        if entry.missing:
+            waiting[entry.missing].append(_Member(index, content))
+            sizes[entry.missing] += content.size
+            if sizes[entry.missing] >= _BLOCK_BYTES:
+                yield _Block(tuple(waiting.pop(entry.missing)), entry.missing)
+                del sizes[entry.missing]
+    for missing, members in waiting.items():
+        yield _Block(tuple(members), missing)
+
+
+#: Failing lines of a content with the bits of the grammars; why it is no KRL; why it was not read.
+_Result = dict[int, int] | str | Skipped
+
+
+def _perform(run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]) -> list[_Result]:
+    """Read contents under a run of grammars."""
+    texts = [_text(content) for content in contents]
+    results: list[_Result] = [{} if isinstance(text, Source) else text for text in texts]
+    programs = {place: text.text for place, text in enumerate(texts) if isinstance(text, Source)}
+    folded = {place: text.upper() for place, text in programs.items()}
+    parsed: set[int] = set()
+    before: Recognizer | None = None
+    for number, grammar in run:
+        recognizer = Recognizer(grammar)
+        finder = FailureFinder(recognizer)
+        added = None if before is None else _added(before, recognizer)
+        for place, text in programs.items():
+            if place in parsed and added is not None and not occurs(added, folded[place]):
+                continue
+            found = {failure.line for failure in finder.find(text)}
+            parsed.discard(place)
+            if not found:
+                parsed.add(place)
+            failing = results[place]
+            assert isinstance(failing, dict)
+            for line in found:
+                failing[line] = failing.get(line, 0) | 1 << number
+        before = recognizer
+    return results
+
+
+def _added(before: Recognizer, after: Recognizer) -> frozenset[str] | None:
+    return fixed_texts_added(before.network, after.network, (before.grammar, after.grammar))
+
+
+def _text(content: Content) -> Source | str | Skipped:
+    """The text of a content, why it is no KRL, or why it cannot be read any more."""
+    data = read(content.found)
+    if isinstance(data, Skipped):
+        return data
+    if digest(data) != content.digest:
+        return Skipped(content.path, "changed while it was read", content.places[0][1])
+    return decode(data)

@@ -1,0 +1,1 @@
+"""Constructs: their evidence, their acceptance, and the ledger whose replay is the grammar."""

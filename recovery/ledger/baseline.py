@@ -1,0 +1,113 @@
+"""How a grammar stands: what it reads of the corpora, and which negatives it lets in.
+
+Two grammars that differ by one construct are compared by how they stand
+(`recovery.ledger.evaluation`), so a row of constructs costs one reading of the corpora each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grammar.notation.g4 import Grammar
+from grammar.parser.recognizer import Recognizer
+from recovery.negatives.generate import generate
+from recovery.negatives.language_facts import BLOCKS
+from recovery.negatives.negatives import Negative, NegativeSet
+from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, lines
+from recovery.survey.survey import Survey, survey
+from support.files.discovery import Found, Skipped, decode, discover, read
+
+__all__ = ["Corpora", "Standing"]
+
+# What `recovery.negatives.language_facts` takes for more than a name.
+_KEYWORDS = (
+    RESERVED
+    | RESERVED_FIRST
+    | BLOCKS.keys()
+    | frozenset(BLOCKS.values())
+    | frozenset("WAIT INTERRUPT TRIGGER PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
+    | frozenset("SPL SPTP SLIN SCIRC SPL_REL SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split())
+)
+_GENERATED = 3_000
+_SEED = 2010
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A grammar, the surveys under it, and the negatives that it accepts.
+
+    ``evidence`` is the survey of other people's files and ``own`` that of our programs; ``None``
+    where there are none here. ``let_in`` leaves out what the grammar cannot judge yet: a program
+    with a keyword that is still a name to it.
+    """
+
+    recognizer: Recognizer
+    evidence: Survey | None
+    own: Survey | None
+    let_in: frozenset[Negative]
+
+    @property
+    def grammar(self) -> Grammar:
+        """The grammar."""
+        return self.recognizer.grammar
+
+
+class Corpora:
+    """What grammars are tried on: other people's files, our programs, negatives."""
+
+    def __init__(
+        self,
+        evidence: Sequence[Path],
+        own: Path | None,
+        negatives: Iterable[Negative],
+        *,
+        generated: int = _GENERATED,
+        cache: Path | None = None,
+        jobs: int | None = None,
+    ) -> None:
+        """``evidence`` are roots of other people's files, ``own`` the folder of our programs.
+
+        What lies below ``own`` is no evidence, nor is a copy of it. ``generated`` is how many
+        negatives are made from pieces of our programs, besides those given; ``cache`` and ``jobs``
+        are those of `recovery.survey.survey`.
+
+        Raises `support.files.discovery.IngestError` where a folder holds nothing to read.
+        """
+        self._roots = tuple(evidence)
+        self._own = own
+        self._cache = cache
+        self._jobs = jobs
+        made = generate(list(_texts(own)), count=generated, seed=_SEED)
+        self._negatives = NegativeSet((*negatives, *made))
+
+    def standing(self, grammar: Grammar) -> Standing:
+        """Read everything under a grammar; raises `support.files.discovery.IngestError`."""
+        recognizer = Recognizer(grammar)
+        own = self._survey([self._own] if self._own else [], grammar)
+        evidence = self._survey(self._roots, grammar)
+        if own is not None and evidence is not None:
+            ours = {file.digest for file in own.files}
+            others = tuple(file for file in evidence.files if file.digest not in ours)
+            evidence = replace(evidence, files=others)
+        return Standing(recognizer, evidence, own, frozenset(self._let_in(recognizer)))
+
+    def _let_in(self, recognizer: Recognizer) -> Iterator[Negative]:
+        lexer = recognizer.lexer
+        names = {word for word in _KEYWORDS if not lexer.is_keyword(lexer.kinds[word])}
+        for negative in self._negatives.accepted(recognizer):
+            words = {token.word for line in lines(negative.text) for token in line.tokens}
+            if names.isdisjoint(words):
+                yield negative
+
+    def _survey(self, roots: Sequence[Path], grammar: Grammar) -> Survey | None:
+        return survey(roots, grammar, jobs=self._jobs, cache=self._cache) if roots else None
+
+
+def _texts(folder: Path | None) -> Iterator[str]:
+    for found in discover([folder]) if folder else ():
+        data = read(found) if isinstance(found, Found) else found
+        source = data.reason if isinstance(data, Skipped) else decode(data)
+        if not isinstance(source, str):
+            yield source.text

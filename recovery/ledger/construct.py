@@ -1,0 +1,139 @@
+"""One construct of the ledger as data: edits, evidence, examples, effect.
+
+The file format is in `recovery.ledger.construct_file`, the folder of all constructs in
+`recovery.ledger.ledger`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grammar.notation.edits import Edit
+
+__all__ = [
+    "ACCEPTED",
+    "GROUNDS",
+    "PROPOSED",
+    "REJECTED",
+    "STATES",
+    "Construct",
+    "Effect",
+    "Evidence",
+    "LedgerError",
+]
+
+PROPOSED, ACCEPTED, REJECTED = "proposed", "accepted", "rejected"
+#: Why a construct may enter the grammar, the weakest first.
+GROUNDS = ("recurring", "corroborated", "documented", "confirmed")
+STATES = (PROPOSED, *GROUNDS, ACCEPTED, REJECTED)
+_REFUSED = "refused:"
+
+
+class LedgerError(Exception):
+    """A construct, the ledger or a record is not as it must be; the message is one clear line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What speaks for a construct.
+
+    ``files``, ``origins`` and ``lines`` are counted in other people's files: what failed without
+    the edits and does not with them (`recovery.ledger.evidence`). ``rules`` are IDs of documented
+    rules, ``manual`` says in words where a manual has it, ``verdict`` is what an oracle said
+    (empty, ``accepted`` or ``refused: message``), ``oracle`` which one, asked by whom and when.
+    ``seen`` are places, ``ORIGIN/path:line``.
+    """
+
+    files: int = 0
+    origins: int = 0
+    lines: int = 0
+    rules: tuple[str, ...] = ()
+    manual: str = ""
+    verdict: str = ""
+    oracle: str = ""
+    seen: tuple[str, ...] = ()
+
+    @property
+    def objection(self) -> str:
+        """Why it does not let a construct into the grammar; empty where it does."""
+        if self.verdict.startswith(_REFUSED):
+            return f"the oracle refused it: {self.verdict.removeprefix(_REFUSED).strip()}"
+        if self.grounds:
+            return ""
+        shown = "only one file shows it" if self.origins else "no file shows it"
+        return f"no ground: {shown}, no rule or manual says it, no oracle accepted it"
+
+    @property
+    def grounds(self) -> tuple[str, ...]:
+        """The grounds it gives, the weakest first: what one file shows alone is none."""
+        shown = {place.rpartition(":")[0] for place in self.seen}
+        is_corroborated = self.origins >= 2
+        held = (
+            len(shown) >= 2 and not is_corroborated,
+            is_corroborated,
+            bool(self.rules or self.manual),
+            self.verdict == ACCEPTED,
+        )
+        return tuple(ground for ground, holds in zip(GROUNDS, held, strict=True) if holds)
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What the grammar did with the corpora when the construct was accepted, measured then.
+
+    ``files`` to ``parsed_bytes`` are of the evidence corpus, copies included, and ``restores`` the
+    files that parse with the construct and did not without; ``own_files`` and ``own_parsed`` are of
+    ``corpus/programs``. ``negatives`` is how many it let in, ``ambiguities`` how many of the texts
+    it lets be read have two readings. ``metrics`` are those of `recovery.ledger.metrics`.
+    """
+
+    files: int = 0
+    parsed: int = 0
+    bytes: int = 0
+    parsed_bytes: int = 0
+    restores: int = 0
+    own_files: int = 0
+    own_parsed: int = 0
+    negatives: int = 0
+    ambiguities: int = 0
+    metrics: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Construct:
+    """One file of the ledger.
+
+    ``number`` is its place in the ledger, ``None`` for a file from elsewhere. ``accept`` and
+    ``reject`` are whole programs. ``comment`` are the lines at the head of the file, ``file`` is
+    where it was read.
+    """
+
+    name: str
+    title: str
+    edits: tuple[Edit, ...]
+    number: int | None = None
+    state: str = PROPOSED
+    summary: str = ""
+    evidence: Evidence = Evidence()
+    accept: tuple[str, ...] = ()
+    reject: tuple[str, ...] = ()
+    effect: Effect | None = None
+    comment: str = ""
+    file: Path | None = field(default=None, compare=False)
+
+    @property
+    def id(self) -> str:
+        """Its file name without the suffix, such as ``0012-for-step``."""
+        return self.name if self.number is None else f"{self.number:04}-{self.name}"
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the grammar has it."""
+        return self.state == ACCEPTED
+
+    @property
+    def standing(self) -> str:
+        """The state that its evidence gives it while it is neither accepted nor rejected."""
+        return (PROPOSED, *self.evidence.grounds)[-1]

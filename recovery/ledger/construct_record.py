@@ -1,0 +1,60 @@
+"""A construct as the records of the pages have it: what it is, its evidence, its edit."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import fields
+from typing import Any
+
+from grammar.notation.edits import apply, describe
+from grammar.notation.g4 import Grammar
+from recovery.ledger.construct import Construct, Evidence
+
+__all__ = ["START_RECORD", "construct_record"]
+
+#: The restrictive start as a step of the growth, with the same fields.
+START_RECORD: dict[str, Any] = {
+    "number": 0,
+    "id": "preliminary",
+    "title": "The restrictive start",
+    "state": "start",
+    "summary": "",
+    "grounds": [],
+    "evidence": {},
+    "edits": [],
+    "diff": "",
+    "accept": [],
+    "reject": [],
+}
+
+
+def construct_record(construct: Construct, before: Grammar, after: Grammar) -> dict[str, Any]:
+    """The fields of a construct that makes ``after`` of ``before``; they are those of the ledger.
+
+    ``edits`` has a line for each typed edit, ``diff`` what they do to the text of the grammar.
+    """
+    edits, grammar = [], before
+    for edit in construct.edits:
+        edits.append(describe(grammar, edit))
+        grammar = apply(grammar, [edit])
+    lines = difflib.unified_diff(
+        before.text.splitlines(), after.text.splitlines(), lineterm="", n=1
+    )
+    return {
+        "number": construct.number or 0,
+        "id": construct.id,
+        "title": construct.title,
+        "state": construct.state,
+        "summary": construct.summary,
+        "grounds": list(construct.evidence.grounds),
+        "evidence": _plain(construct.evidence),
+        "edits": edits,
+        "diff": "\n".join(list(lines)[2:]),
+        "accept": list(construct.accept),
+        "reject": list(construct.reject),
+    }
+
+
+def _plain(evidence: Evidence) -> dict[str, Any]:
+    values = {field.name: getattr(evidence, field.name) for field in fields(evidence)}
+    return {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}

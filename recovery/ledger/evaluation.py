@@ -1,0 +1,173 @@
+"""A construct weighed: what it brings, what it costs, and why it may not enter the grammar."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.shortest_paths import Paths
+from recovery.ledger.baseline import Standing
+from recovery.ledger.construct import ACCEPTED, REJECTED, Construct, Effect
+from recovery.ledger.derivation import reading
+from recovery.ledger.evidence import Mended, broken, counted, mended, place, restored
+from recovery.ledger.ledger import broken_examples, is_wording
+from recovery.ledger.metrics import metrics
+from recovery.negatives.negatives import Negative
+from recovery.survey.failing_line import Failed
+from recovery.survey.survey import Survey, SurveyedFile
+
+__all__ = ["Evaluation", "evaluate", "losses"]
+
+# Mended lines looked at for second readings, the shortest first, and the longest of them in tokens.
+_LINES_READ = 60
+_LONGEST_READ = 200
+_NAMED = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """A construct with its evidence and effect as measured, and what speaks against it.
+
+    ``refusals`` has a line for each reason; a construct without one may be accepted. ``is_counted``
+    says whether there was a corpus to count the evidence in; without one the counts are old ones.
+    """
+
+    construct: Construct
+    refusals: tuple[str, ...]
+    is_counted: bool
+
+    @property
+    def kept(self) -> Construct:
+        """The construct with its new evidence and the state that this gives it; no effect yet."""
+        construct = self.construct
+        if construct.state in (ACCEPTED, REJECTED):
+            return construct
+        return replace(construct, state=construct.standing, effect=None)
+
+
+def evaluate(construct: Construct, before: Standing, after: Standing) -> Evaluation:
+    """Weigh a construct by how the grammars without and with it stand."""
+    lines: list[Mended] = []
+    evidence = construct.evidence
+    if before.evidence is not None and after.evidence is not None:
+        lines = mended(before.evidence, after.evidence)
+        evidence = counted(evidence, lines)
+    if before.own is not None and after.own is not None:
+        lines = lines + mended(before.own, after.own)
+    effect = _effect(construct, before, after, _ambiguities(construct, before, after, lines))
+    measured = replace(construct, evidence=evidence, effect=effect)
+    return Evaluation(
+        measured, tuple(_refusals(measured, before, after)), before.evidence is not None
+    )
+
+
+# ----------------------------------------------------------------------------------- refusals
+
+
+def _refusals(construct: Construct, before: Standing, after: Standing) -> Iterator[str]:
+    if construct.state == REJECTED:
+        yield "the ledger rejects it; its summary says why"
+    yield from losses(before, after)
+    yield from broken_examples(construct, after.recognizer)
+    if is_wording(before.grammar, after.grammar):
+        return
+    if construct.evidence.objection:
+        yield construct.evidence.objection
+    if not construct.accept:
+        yield "examples.accept: there is no program that shows it"
+    for number, text in enumerate(construct.accept, 1):
+        known = reading(before.recognizer, text)
+        if known is not None and known == reading(after.recognizer, text):
+            yield f"examples.accept: number {number} is read the same way without the construct"
+
+
+def losses(before: Standing, after: Standing) -> Iterator[str]:
+    """What the first grammar did rightly and the second does not: a line each."""
+    for survey, other in ((before.evidence, after.evidence), (before.own, after.own)):
+        if survey is not None and other is not None:
+            yield from _breaks(broken(survey, other))
+    yield from _let_in(after.let_in - before.let_in)
+
+
+def _breaks(found: Sequence[tuple[SurveyedFile, Failed]]) -> Iterator[str]:
+    for file, failed in found[:_NAMED]:
+        yield f"no longer parses: {place(*file.places[0])}:{failed.line}, at {failed.token!r}"
+    if len(found) > _NAMED:
+        yield f"no longer parse: {len(found) - _NAMED} more files"
+
+
+def _let_in(negatives: Iterable[Negative]) -> Iterator[str]:
+    written = sorted((n for n in negatives if n.path), key=lambda n: str(n.path))
+    made = sorted((n for n in negatives if not n.path), key=lambda n: (len(n.text), n.text))
+    for negative in written:
+        assert negative.path is not None
+        yield f"lets in a negative: {negative.path.as_posix()}: {negative.reason}"
+    for fact in sorted({n.reason for n in made}):
+        breaking = [n for n in made if n.reason == fact]
+        more = f" (and {len(breaking) - 1} more)" if len(breaking) > 1 else ""
+        shortest = breaking[0].text.rstrip("\n").replace("\n", " ⏎ ")
+        yield f"lets in what breaks a fact{more}: {fact}: {shortest}"
+
+
+# ------------------------------------------------------------------------------------- effect
+
+
+def _effect(construct: Construct, before: Standing, after: Standing, ambiguities: int) -> Effect:
+    old = construct.effect or Effect()
+    if before.evidence is not None and after.evidence is not None:
+        old = replace(
+            old,
+            files=_places(after.evidence.files),
+            parsed=_places(_parsed(after.evidence)),
+            bytes=_bytes(after.evidence.files),
+            parsed_bytes=_bytes(_parsed(after.evidence)),
+            restores=_places(restored(before.evidence, after.evidence)),
+        )
+    own = after.own
+    return replace(
+        old,
+        own_files=0 if own is None else _places(own.files),
+        own_parsed=0 if own is None else _places(_parsed(own)),
+        negatives=len(after.let_in - before.let_in),
+        ambiguities=ambiguities,
+        metrics=dict(metrics(after.grammar)),
+    )
+
+
+def _parsed(survey: Survey) -> list[SurveyedFile]:
+    return [file for file in survey.files if not file.failures]
+
+
+def _places(files: Iterable[SurveyedFile]) -> int:
+    return sum(len(file.places) for file in files)
+
+
+def _bytes(files: Iterable[SurveyedFile]) -> int:
+    return sum(file.size * len(file.places) for file in files)
+
+
+# -------------------------------------------------------------------------------- ambiguities
+
+
+def _ambiguities(
+    construct: Construct, before: Standing, after: Standing, lines: Sequence[Mended]
+) -> int:
+    """Of the accept examples and the lines that can now be read, those with two readings."""
+    wider = after.recognizer
+    programs = map(wider.kinds, construct.accept)
+    count = sum(is_ambiguous(wider, wider.start, kinds) for kinds in programs)
+    paths = Paths(before.recognizer.network)
+    names, kind_of = before.recognizer.lexer.names, wider.lexer.kind_of
+    distinct = {line.form: line.failed.source for line in lines}
+    for form in sorted(distinct, key=lambda form: len(form.kinds))[:_LINES_READ]:
+        if len(form.kinds) > _LONGEST_READ:
+            break
+        way = [names[kind] for kind in min(map(paths.prefix, form.before), key=len)]
+        if not kind_of.keys() >= set(way):  # the edits took away what leads to this line
+            continue
+        start, failed = wider.run(wider.start, [kind_of[name] for name in way])
+        if failed is None:
+            kinds = [*wider.kinds(distinct[form])[:-1], wider.line_kind]
+            count += is_ambiguous(wider, start, kinds)
+    return count

@@ -1,0 +1,105 @@
+"""Evidence: the lines of real files that a construct lets be read.
+
+A line counts where it failed by itself under the grammar before the construct and does not fail
+under the grammar after it. A construct that lies behind others on the same line is so counted when
+the last of them arrives, and nothing is counted twice. A content that lies in several places is
+one witness: its lines count once, and there are never more origins than different contents.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice, zip_longest
+
+from grammar.parser.failures import Form
+from recovery.ledger.construct import Evidence
+from recovery.survey.failing_line import Failed
+from recovery.survey.survey import Survey, SurveyedFile
+
+__all__ = ["Mended", "broken", "counted", "mended", "place", "restored"]
+
+_PLACES_SEEN = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Mended:
+    """A line that failed by itself and no longer fails: its file, and how it failed."""
+
+    file: SurveyedFile
+    failed: Failed
+    form: Form
+
+
+def mended(before: Survey, after: Survey) -> list[Mended]:
+    """The lines that fail in the survey ``before`` and not in that ``after``, each content once."""
+    return [
+        Mended(old, failed, before.forms[failed.form])
+        for old, new in _pairs(before, after)
+        if old.failures
+        for still in ({failed.line for failed in new.failures},)
+        for failed in old.failures
+        if not failed.follows and failed.line not in still
+    ]
+
+
+def restored(before: Survey, after: Survey) -> list[SurveyedFile]:
+    """The files that parse only in the survey ``after``."""
+    return [new for old, new in _pairs(before, after) if old.failures and not new.failures]
+
+
+def broken(before: Survey, after: Survey) -> list[tuple[SurveyedFile, Failed]]:
+    """The files that parse only in the survey ``before``, each with its first failure after it."""
+    return [
+        (new, new.failures[0])
+        for old, new in _pairs(before, after)
+        if new.failures and not old.failures
+    ]
+
+
+def _pairs(before: Survey, after: Survey) -> Iterator[tuple[SurveyedFile, SurveyedFile]]:
+    """The same contents in two surveys of one corpus."""
+    known = {file.digest: file for file in after.files}
+    return ((old, known[old.digest]) for old in before.files if old.digest in known)
+
+
+def counted(evidence: Evidence, lines: Sequence[Mended]) -> Evidence:
+    """The evidence with its counts and places replaced by those of mended lines."""
+    files = {line.file.digest: line.file for line in lines}
+    origins = {origin for file in files.values() for _, origin in file.places}
+    return replace(
+        evidence,
+        files=sum(len(file.places) for file in files.values()),
+        origins=min(len(origins), len(files)),
+        lines=len(lines),
+        seen=tuple(_seen(lines)),
+    )
+
+
+def _seen(lines: Iterable[Mended]) -> list[str]:
+    """The first places, spread over the origins first, then over the files of each."""
+    by_file: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for line in lines:
+        path, origin = line.file.places[0]
+        by_file[origin][path].append(f"{place(path, origin)}:{line.failed.line}")
+    by_origin = [list(_in_turns(files.values())) for files in by_file.values()]
+    return sorted(islice(_in_turns(by_origin), _PLACES_SEEN))
+
+
+def _in_turns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """The first of each row, then the second of each that has one, and so on."""
+    return (text for turn in zip_longest(*rows) for text in turn if text is not None)
+
+
+def place(path: str, origin: str) -> str:
+    """Where a file lies within its origin, the origin's folder first.
+
+    Nothing of the folders around the origin is told: they are one person's machine.
+    """
+    folders = path.split("/")
+    for index, folder in enumerate(folders[:-1]):
+        names = (folder, folder.replace("__", "/", 1), folder.rpartition(".")[0])
+        if origin in names:
+            return "/".join(folders[index:])
+    return f"{origin}/{folders[-1]}"

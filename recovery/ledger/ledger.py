@@ -1,0 +1,201 @@
+"""The ledger: a folder of constructs whose edits, replayed in order, make the grammar in force.
+
+The restrictive start and every accepted construct, in the order of their numbers, give ``KRL.g4``
+byte for byte. Numbers run from 1 without a gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from grammar.notation.edits import apply
+from grammar.notation.g4 import Grammar, GrammarError, read_file
+from grammar.notation.wellformed import problem
+from grammar.parser.recognizer import Recognizer
+from recovery.ledger.construct import Construct, LedgerError
+from recovery.ledger.construct_file import read
+from support.files.transaction import JournalError, finish
+
+__all__ = [
+    "UNFINISHED",
+    "Ledger",
+    "broken_examples",
+    "findings",
+    "grown",
+    "in_force",
+    "is_wording",
+    "preliminary_of",
+    "replay",
+]
+
+#: In the folder of the ledger: what an acceptance was about to write when it was killed.
+UNFINISHED = ".unfinished.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Ledger:
+    """A folder of constructs, in the order of their numbers."""
+
+    folder: Path
+    constructs: tuple[Construct, ...]
+
+    @classmethod
+    def read(cls, folder: Path) -> Ledger:
+        """Read the folder; one that is not there is a ledger without constructs.
+
+        What an acceptance that was killed had laid ready is put in place first.
+
+        Raises `LedgerError` for the first file that is not as it must be, for a number given twice
+        and for a gap.
+        """
+        try:
+            finish(folder / UNFINISHED)
+        except JournalError as error:
+            raise LedgerError(str(error)) from None
+        files = sorted(folder.glob("*.toml")) if folder.is_dir() else []
+        constructs = []
+        for number, file in enumerate(files, 1):
+            construct = read(file)
+            if construct.number is None:
+                raise LedgerError(f"{file}: the name has no number, such as 0001-{file.name}")
+            if construct.number != number:
+                twice = construct.number < number
+                what = "is given twice" if twice else f"stands here, and there is no {number}"
+                raise LedgerError(f"{file}: number {construct.number} {what}")
+            constructs.append(construct)
+        return cls(folder, tuple(constructs))
+
+    @property
+    def accepted(self) -> tuple[Construct, ...]:
+        """The constructs that the grammar has."""
+        return tuple(c for c in self.constructs if c.is_accepted)
+
+    def ahead_of(self, construct: Construct) -> tuple[Construct, ...]:
+        """The accepted constructs before its place: where it was accepted, or behind all."""
+        accepted = self.accepted
+        files = [c.file for c in accepted]
+        return accepted[: files.index(construct.file)] if construct.file in files else accepted
+
+    def take(self, file: Path) -> Construct:
+        """The construct of a file, which may lie in the ledger or elsewhere.
+
+        Raises `LedgerError`.
+        """
+        if file.resolve().parent == self.folder.resolve():
+            file = self.folder / file.name
+        return next((c for c in self.constructs if c.file == file), None) or read(file)
+
+    def find(self, wanted: str) -> Construct:
+        """The construct of a number, an ID or the beginning of one; raises `LedgerError`."""
+        if wanted.isdecimal():
+            found = [c for c in self.constructs if c.number == int(wanted)]
+        else:
+            found = [c for c in self.constructs if wanted in (c.id, c.name)]
+            found = found or [c for c in self.constructs if c.id.startswith(wanted)]
+        if len(found) != 1 or not wanted:
+            what = "more than one construct" if found else "no construct"
+            raise LedgerError(f"{wanted!r} is {what} of {self.folder.as_posix()}")
+        return found[0]
+
+
+def grown(grammar: Grammar, construct: Construct) -> Grammar:
+    """The grammar with one more construct; raises `LedgerError` where its edits do not fit."""
+    where = construct.file or construct.id
+    try:
+        after = apply(grammar, construct.edits)
+    except GrammarError as error:
+        raise LedgerError(f"{where}: edit: {error}") from None
+    wrong = problem(after)
+    if wrong:
+        raise LedgerError(f"{where}: edit: the grammar after it is ill formed: line {wrong}")
+    return after
+
+
+def replay(
+    preliminary: Grammar, constructs: Sequence[Construct]
+) -> list[tuple[Construct, Grammar]]:
+    """Each construct with the grammar after it, whose text is exact to the byte.
+
+    Raises `LedgerError` where an edit does not fit or leaves no well-formed grammar.
+    """
+    out = []
+    grammar = preliminary
+    for construct in constructs:
+        grammar = grown(grammar, construct)
+        out.append((construct, grammar))
+    return out
+
+
+def in_force(preliminary: Grammar, constructs: Sequence[Construct]) -> Grammar:
+    """The grammar after constructs, which all count; raises `LedgerError` as `replay` does."""
+    steps = replay(preliminary, constructs)
+    return steps[-1][1] if steps else preliminary
+
+
+def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[str]:
+    """What does not hold of an accepted ledger, a line each; nothing where all is well.
+
+    The replay is compared with the file ``grammar`` byte for byte. Every accept example has to be
+    accepted under the grammar at the end, every reject example refused, and every accepted
+    construct has to have grounds.
+    """
+    try:
+        steps = replay(preliminary, ledger.accepted)
+    except LedgerError as error:
+        yield str(error)
+        return
+    grammars = [preliminary, *(after for _, after in steps)]
+    difference = _difference(grammars[-1].text, grammar)
+    if difference:
+        yield difference
+    recognizer = Recognizer(grammars[-1])
+    for before, (construct, after) in zip(grammars, steps, strict=False):
+        where = construct.file or construct.id
+        if not is_wording(before, after):
+            if construct.evidence.objection:
+                yield f"{where}: evidence: {construct.evidence.objection}"
+            if not construct.accept:
+                yield f"{where}: examples.accept: there is no program that shows it"
+        if construct.effect is None:
+            yield f"{where}: effect: is missing; krl construct accept measures it"
+        yield from (f"{where}: {wrong}" for wrong in broken_examples(construct, recognizer))
+
+
+def is_wording(before: Grammar, after: Grammar) -> bool:
+    """Whether two grammars differ in comments and layout at most, which need no evidence."""
+    return before.rules == after.rules
+
+
+def broken_examples(construct: Construct, recognizer: Recognizer) -> Iterator[str]:
+    """Examples that a grammar with the construct does not treat as they ask for."""
+    for number, text in enumerate(construct.accept, 1):
+        if not recognizer.accepts(text):
+            yield f"examples.accept: number {number} is not accepted"
+    for number, text in enumerate(construct.reject, 1):
+        if recognizer.accepts(text):
+            yield f"examples.reject: number {number} is accepted"
+
+
+def _difference(text: str, file: Path) -> str:
+    """Where a file differs from a text, in one line; empty where it does not."""
+    try:
+        found = file.read_bytes()
+    except OSError as error:
+        return f"{file}: {error.strerror or error}"
+    wanted = text.encode()
+    if found == wanted:
+        return ""
+    lines = enumerate(zip(found.splitlines(True), wanted.splitlines(True), strict=False), 1)
+    first = next((n for n, (old, new) in lines if old != new), None)
+    where = f"from line {first} on" if first else "in length"
+    return f"{file}: differs from the replay of the ledger {where}"
+
+
+def preliminary_of(path: Path) -> Grammar:
+    """The restrictive start; raises `LedgerError`."""
+    try:
+        return read_file(path)
+    except GrammarError as error:
+        raise LedgerError(str(error)) from None

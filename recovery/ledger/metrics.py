@@ -1,0 +1,161 @@
+"""Metrics of a grammar: how big it is and how it hangs together.
+
+They are those of Power and Malloy, "A metrics suite for grammar-based software" (Journal of
+Software Maintenance and Evolution, 2004), read for rules with ``|``, ``?``, ``*`` and ``+``, and
+what a parser needs to look ahead (`recovery.ledger.lookahead`). Only parser rules count: a token is
+a
+terminal here, however its own rule is written. ``EOF`` is no symbol.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from math import log2
+
+from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
+from recovery.ledger.lookahead import decisions, share_decided
+
+__all__ = ["MEANINGS", "metrics"]
+
+#: What each metric says, in a line.
+MEANINGS: Mapping[str, str] = {
+    "TERM": "tokens that the rules use",
+    "VAR": "rules",
+    "MCC": "decisions: alternatives beyond the first, optional and repeated parts",
+    "AVS": "average size of a rule, in names of tokens and rules",
+    "HAL": "Halstead effort, in thousands",
+    "TIMP": "tree impurity in per cent: 0 for a tree, 100 where each rule reaches all",
+    "CLEV": "levels (rules that reach one another are one level) for 100 rules",
+    "NSLEV": "levels of more than one rule",
+    "DEP": "rules in the largest level",
+    "HEI": "levels on the longest way down",
+    "DEC": "decisions that a parser has to take",
+    "LL1": "decisions that one token decides, in per cent",
+    "LL2": "decisions that at most two tokens decide, in per cent",
+}
+_PLACES = 3
+
+
+def metrics(grammar: Grammar) -> Mapping[str, float]:
+    """All metrics by name, in the order of `MEANINGS`, rounded to three decimals.
+
+    Size, where a *symbol* is a name of a token or a rule on a right-hand side:
+
+    - TERM: distinct tokens; VAR: rules.
+    - MCC, after McCabe: one for each alternative beyond the first of a rule or a group, and for
+      each ``?``, ``*`` and ``+``. As published: without the one for each rule that came later.
+    - AVS: symbols divided by VAR.
+    - HAL, Halstead's effort D × V / 1000. Operands are the symbols and the names of the rules they
+      define; operators are choice, sequence (one between two neighbours), ``?``, ``*``, ``+`` and
+      the empty alternative. With n1, n2 distinct and N1, N2 all operators and operands
+      D = n1 / 2 × N2 / n2 and V = (N1 + N2) × log2(n1 + n2). Parentheses are neither.
+
+    Structure, where a rule *reaches* another when a way through calls leads to it:
+
+    - TIMP: with e pairs of two different rules of which the first reaches the second,
+      100 × (e − VAR + 1) / (VAR − 1)²; 0 for a single rule.
+    - A *level* is a largest set of rules that all reach one another, or one rule. CLEV: levels for
+      100 rules; NSLEV: levels of two rules or more; DEP: rules in the largest level; HEI: levels on
+      the longest chain of calls.
+
+    Lookahead: DEC decisions, LL1 and LL2 the shares of them that one token, or at most two, decide.
+    """
+    uses = {r.name: r.alternatives for r in grammar.rules if not r.is_lexer}
+    operators: Counter[str] = Counter()
+    symbols: Counter[str] = Counter()
+    calls: dict[str, set[str]] = {}
+    for name, alternatives in uses.items():
+        written = Counter(_symbols(grammar, alternatives))
+        symbols += written
+        calls[name] = {symbol for symbol in written if symbol in uses}
+        operators += Counter(_operators(alternatives))
+    choices = decisions(grammar)
+    values = {
+        "TERM": sum(symbol not in uses for symbol in symbols),
+        "VAR": len(uses),
+        "MCC": sum(count for operator, count in operators.items() if operator in "|?*+"),
+        "AVS": symbols.total() / len(uses),
+        "HAL": _effort(operators, symbols + Counter(uses.keys())) / 1000,
+        **_structure(calls),
+        "DEC": len(choices),
+        "LL1": share_decided(choices, 1),
+        "LL2": share_decided(choices, 2),
+    }
+    return {name: round(float(values[name]), _PLACES) for name in MEANINGS}
+
+
+def _symbols(grammar: Grammar, alternatives: Sequence[Alternative]) -> Iterator[str]:
+    """Every symbol of a right-hand side, as often as it is written."""
+    for alternative in alternatives:
+        for element in alternative.elements:
+            inner: Element = element
+            while isinstance(inner, Repeat):
+                inner = inner.item
+            if isinstance(inner, Group):
+                yield from _symbols(grammar, inner.alternatives)
+            elif isinstance(inner, Reference | Literal) and not _is_end(inner):
+                yield grammar.token_of(inner)
+
+
+def _operators(alternatives: Sequence[Alternative]) -> Iterator[str]:
+    """Every operator of a right-hand side: ``|``, ``?``, ``*``, ``+``, ``sequence``, ``empty``."""
+    yield from "|" * (len(alternatives) - 1)
+    for alternative in alternatives:
+        elements = [e for e in alternative.elements if not _is_end(e)]
+        yield from ["sequence"] * (len(elements) - 1) if elements else ["empty"]
+        for element in elements:
+            inner: Element = element
+            while isinstance(inner, Repeat):
+                yield inner.operator
+                inner = inner.item
+            if isinstance(inner, Group):
+                yield from _operators(inner.alternatives)
+
+
+def _is_end(element: Element) -> bool:
+    return isinstance(element, Reference) and element.name == "EOF"
+
+
+def _effort(operators: Counter[str], operands: Counter[str]) -> float:
+    """Halstead's effort."""
+    volume = (operators.total() + operands.total()) * log2(len(operators) + len(operands))
+    return len(operators) / 2 * operands.total() / len(operands) * volume
+
+
+def _structure(calls: Mapping[str, set[str]]) -> Mapping[str, float]:
+    """What the calls between the rules say."""
+    reached = {name: _reached(calls, name) for name in calls}
+    level = {  # a level is named by the first of its rules
+        name: next(m for m in calls if m == name or (m in reached[name] and name in reached[m]))
+        for name in calls
+    }
+    sizes = Counter(level.values())
+    below: dict[str, set[str]] = defaultdict(set)
+    for name, called in calls.items():
+        below[level[name]] |= {level[other] for other in called} - {level[name]}
+
+    @cache
+    def height(of: str) -> int:
+        return 1 + max(map(height, below[of]), default=0)
+
+    rules = len(calls)
+    pairs = sum(len(others - {name}) for name, others in reached.items())
+    return {
+        "TIMP": 100 * (pairs - rules + 1) / (rules - 1) ** 2 if rules > 1 else 0.0,
+        "CLEV": 100 * len(sizes) / rules,
+        "NSLEV": sum(size > 1 for size in sizes.values()),
+        "DEP": max(sizes.values()),
+        "HEI": max(map(height, sizes)),
+    }
+
+
+def _reached(calls: Mapping[str, set[str]], name: str) -> set[str]:
+    seen: set[str] = set()
+    todo = [name]
+    while todo:
+        for called in calls[todo.pop()] - seen:
+            seen.add(called)
+            todo.append(called)
+    return seen

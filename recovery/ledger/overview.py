@@ -1,0 +1,91 @@
+"""What there is to see of a construct: a row of a list, a page of text, the difference it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from grammar.notation.g4 import Grammar
+from recovery.ledger.construct import Construct, Evidence, LedgerError
+from recovery.ledger.construct_record import construct_record
+from recovery.ledger.ledger import Ledger, grown, in_force
+from recovery.ledger.oracle import reason_to_ask
+
+__all__ = ["counts_of", "difference", "page_of", "row_of"]
+
+
+def row_of(construct: Construct) -> dict[str, Any]:
+    """A construct as plain data; ``waits`` says why an oracle should be asked, if it should."""
+    evidence = construct.evidence
+    return {
+        "number": construct.number,
+        "id": construct.id,
+        "title": construct.title,
+        "state": construct.state,
+        "grounds": list(evidence.grounds),
+        "files": evidence.files,
+        "origins": evidence.origins,
+        "lines": evidence.lines,
+        "rules": list(evidence.rules),
+        "manual": evidence.manual,
+        "verdict": evidence.verdict,
+        "waits": reason_to_ask(construct),
+    }
+
+
+def page_of(construct: Construct) -> Iterator[str]:
+    """Everything a file of the ledger says, but for its edits, a line each."""
+    evidence = construct.evidence
+    yield f"{construct.id}: {construct.title}"
+    yield f"{construct.state}; grounds: {', '.join(evidence.grounds) or 'none'}"
+    if construct.summary:
+        yield from ("", *construct.summary.splitlines())
+    yield from ("", f"Evidence: {counts_of(evidence)}")
+    told = {
+        "rules": ", ".join(evidence.rules),
+        "manual": evidence.manual,
+        "verdict": evidence.verdict,
+        "oracle": evidence.oracle,
+    }
+    yield from (f"  {key}: {value}" for key, value in told.items() if value)
+    yield from (f"  seen: {place}" for place in evidence.seen)
+    for heading, texts in (("Accepts", construct.accept), ("Rejects", construct.reject)):
+        for text in texts:
+            yield from ("", f"{heading}:")
+            yield from (f"  {line}" for line in text.strip("\r\n").splitlines())
+    effect = construct.effect
+    if effect is not None:
+        yield from ("", "Effect, measured when it was accepted:")
+        yield (
+            f"  {effect.parsed} of {effect.files} files parse ({effect.parsed_bytes} of "
+            f"{effect.bytes} bytes), {effect.restores} of them newly"
+        )
+        yield f"  {effect.own_parsed} of {effect.own_files} own programs parse"
+        yield f"  {effect.negatives} negatives let in, {effect.ambiguities} ambiguities"
+        metrics = (f"{name} {value:g}" for name, value in effect.metrics.items())
+        yield f"  metrics: {', '.join(metrics)}"
+
+
+def counts_of(evidence: Evidence) -> str:
+    """How much was found, in words."""
+    counts = (evidence.files, "file"), (evidence.origins, "origin"), (evidence.lines, "line")
+    files, origins, lines = (f"{n} {what}" if n == 1 else f"{n} {what}s" for n, what in counts)
+    return f"{files} of {origins}, {lines}"
+
+
+def difference(construct: Construct, preliminary: Grammar, ledger: Ledger) -> Iterator[str]:
+    """The edits and the change to the grammar, a line each.
+
+    An accepted construct is shown at its place, another one on the grammar in force. Raises
+    `LedgerError` where the ledger cannot be replayed.
+    """
+    before = in_force(preliminary, ledger.ahead_of(construct))
+    try:
+        record = construct_record(construct, before, grown(before, construct))
+    except LedgerError as error:
+        yield from ("", str(error))
+        return
+    yield from ("", "Edits:")
+    yield from (f"  {edit}" for edit in record["edits"])
+    yield ""
+    yield from record["diff"].splitlines()

@@ -1,0 +1,317 @@
+"""Programs that are invalid KRL whatever grammar is in force, by the thousand.
+
+A short program is put together from valid pieces, one thing in it is spoilt, and it is kept if it
+then breaks a fact of the language (`recovery.negatives.language_facts`): the fact is the proof and
+becomes the reason. So the ways of spoiling need no proof of their own. Half of the programs get two
+tokens that cannot be neighbours, the other half a line, block, bracket or word that is gone,
+doubled, moved or exchanged.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Container, Iterator, Sequence
+from itertools import cycle
+
+from recovery.negatives.fragments import stock_of
+from recovery.negatives.language_facts import BLOCKS, CLOSER_OF, adjacent, violation
+from recovery.negatives.negatives import Negative
+from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, Token, line
+
+__all__ = ["generate"]
+
+#: One spoilt version of a program, or nothing where the way does not fit.
+_Way = Callable[[list[str], random.Random], list[str] | None]
+
+# So many failures in a row mean that what can be made of the pieces has been made.
+_PATIENCE = 2_000
+
+
+def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator[Negative]:
+    """``count`` distinct programs of at most 15 lines that break a fact of KRL.
+
+    They are made from pieces of ``programs``, texts of valid KRL, and of a few built-in ones. The
+    same arguments give the same programs in the same order. Ends early when nothing new comes of
+    the pieces.
+    """
+    chance = random.Random(seed)
+    stock = stock_of(programs)
+    neighbours = _Neighbours(chance)
+    seen: set[tuple[tuple[str, ...], ...]] = set()
+    failures = 0
+    for way in cycle([w for mutation in _MUTATIONS for w in (neighbours, mutation)]):
+        if len(seen) == count or failures == _PATIENCE:
+            return
+        failures += 1
+        spoilt = way(stock.program(chance), chance)
+        if spoilt is None:
+            continue
+        text = "\n".join(spoilt) + "\n"
+        found = violation(text)
+        tokens = tuple(tuple(token.word for token in line(each).tokens) for each in spoilt)
+        if found and tokens not in seen:
+            failures = 0
+            seen.add(tokens)
+            yield Negative(None, text, found.fact, "parse", line=found.line)
+
+
+# ------------------------------------------------------------------------------------ neighbours
+
+#: Texts for the kinds of tokens that do not read as their kind says.
+_SPELLINGS = {
+    "name": ("COUNT", "$VEL.CP", "PART_OK"),
+    "number": ("7", "0.5", "1E3"),
+    "string": ('"A"', '"READY"'),
+    "bits": ("'B101'", "'HFF'"),
+    "enum": ("#ON", "#T1"),
+    "truth": ("TRUE", "FALSE"),
+    "type": ("INT", "BOOL"),
+}
+_ANY = ("name", "number", "string", "truth", "type", "(", ")", "=", "==", "+", ",", "THEN", "NOT")
+
+
+def _spell(kind: str, chance: random.Random) -> str:
+    if kind == "any":
+        kind = chance.choice(_ANY)
+    return chance.choice(_SPELLINGS.get(kind, (kind,)))
+
+
+class _Neighbours:
+    """Puts tokens side by side that cannot stand so; every pair of kinds in its turn."""
+
+    def __init__(self, chance: random.Random) -> None:
+        pairs = sorted(adjacent())
+        chance.shuffle(pairs)
+        self._pairs = cycle(pairs)
+
+    def __call__(self, program: list[str], chance: random.Random) -> list[str] | None:
+        left, right = next(self._pairs)
+        sites = [
+            (number, token, token.kind == left)
+            for number, token in _tokens(program)
+            if token.kind in (left, right)
+        ]
+        if sites:
+            number, token, is_left = chance.choice(sites)
+        else:
+            number, token = chance.choice(list(_tokens(program)))
+            is_left = True
+        text = program[number]
+        before, after = text[: token.end], text[token.end :]
+        if left == "start":
+            before, after = "", text
+        elif not sites:
+            before = f"{before} {_spell(left, chance)}"
+        elif not is_left:
+            before, after = f"{text[: token.start]}{_spell(left, chance)}", text[token.start :]
+            return _replaced(program, number, f"{before} {after}")
+        if right == "end":
+            return _replaced(program, number, before)
+        return _replaced(program, number, f"{before} {_spell(right, chance)} {after.lstrip()}")
+
+
+def _tokens(program: list[str]) -> Iterator[tuple[int, Token]]:
+    """Every token with the index of its line."""
+    for number, text in enumerate(program):
+        for token in line(text).tokens:
+            yield number, token
+
+
+def _replaced(program: list[str], number: int, *texts: str) -> list[str]:
+    return [*program[:number], *(text.rstrip() for text in texts), *program[number + 1 :]]
+
+
+# --------------------------------------------------------------------------- lines and blocks
+
+_CLOSERS = tuple(dict.fromkeys(BLOCKS.values()))
+_OPENERS = (
+    "IF $IN[4] THEN",
+    "FOR I = 1 TO 3",
+    "WHILE $IN[5]",
+    "REPEAT",
+    "LOOP",
+    "SWITCH I",
+    "SPLINE",
+    "DEF NEXT()",
+    "DEFFCT INT NEXT()",
+    "DEFDAT NEXT",
+)
+_STRAYS = (*_OPENERS, *_CLOSERS[:-1], "UNTIL $IN[6]", "ELSE", "CASE 9", "DEFAULT")
+_STRUCTURE = frozenset({*BLOCKS, *_CLOSERS, "ELSE", "CASE", "DEFAULT"})
+
+
+def _structural(program: list[str], chance: random.Random) -> int:
+    """Index of a line that opens, divides or closes a block; a program has at least two."""
+    return chance.choice([i for i, text in enumerate(program) if line(text).lead in _STRUCTURE])
+
+
+def _without_line(program: list[str], chance: random.Random) -> list[str] | None:
+    return _replaced(program, _structural(program, chance))
+
+
+def _doubled_line(program: list[str], chance: random.Random) -> list[str] | None:
+    at = _structural(program, chance)
+    return _replaced(program, at, program[at], program[at])
+
+
+def _other_closer(program: list[str], chance: random.Random) -> list[str] | None:
+    closers = [i for i, text in enumerate(program) if line(text).lead in _CLOSERS]
+    return _replaced(program, chance.choice(closers), chance.choice(_CLOSERS))
+
+
+def _moved_line(program: list[str], chance: random.Random) -> list[str] | None:
+    rest = list(program)
+    moved = rest.pop(_structural(program, chance))
+    rest.insert(chance.randrange(len(rest) + 1), moved)
+    return rest
+
+
+def _crossed_lines(program: list[str], chance: random.Random) -> list[str] | None:
+    """Two structural lines change places."""
+    one, other = _structural(program, chance), _structural(program, chance)
+    crossed = list(program)
+    crossed[one], crossed[other] = crossed[other], crossed[one]
+    return crossed
+
+
+def _stray_line(program: list[str], chance: random.Random) -> list[str] | None:
+    at = chance.randrange(len(program) + 1)
+    return [*program[:at], chance.choice(_STRAYS), *program[at:]]
+
+
+def _line_behind_end(program: list[str], chance: random.Random) -> list[str] | None:
+    return [*program, chance.choice(program[1:])]
+
+
+def _joined_lines(program: list[str], chance: random.Random) -> list[str] | None:
+    at = chance.randrange(len(program) - 1)
+    joined = f"{program[at]} {program[at + 1].lstrip()}"
+    return [*program[:at], joined, *program[at + 2 :]]
+
+
+def _split_line(program: list[str], chance: random.Random) -> list[str] | None:
+    number, token = chance.choice(list(_tokens(program)))
+    text = program[number]
+    return _replaced(program, number, text[: token.start], text[token.start :])
+
+
+# --------------------------------------------------------------------------- tokens of a line
+
+#: Words and signs without which a line is not what it was.
+_NEEDED = frozenset("IF THEN FOR TO SEC WHEN DO DECL INTERRUPT =".split())
+_BRACKETS = (*CLOSER_OF, *CLOSER_OF.values())
+_OPENER_OF = {closer: opener for opener, closer in CLOSER_OF.items()}
+_SWAPPED = {"=": "==", "==": "=", **CLOSER_OF, **_OPENER_OF}
+_SIGNS = (*"+ - * / = == <> < >= . , :".split(), *_BRACKETS)
+_WORDS = sorted(
+    RESERVED | RESERVED_FIRST | set("TRUE INT CHAR DO TO STEP WHEN WAIT LIN INTERRUPT".split())
+)
+
+
+def _site(
+    program: list[str], chance: random.Random, wanted: Container[str] | None = None
+) -> tuple[int, Token] | None:
+    """A token with the index of its line; of the ``wanted`` words and signs each as likely."""
+    sites: dict[str, list[tuple[int, Token]]] = {}
+    for number, token in _tokens(program):
+        if wanted is None or token.word in wanted:
+            sites.setdefault("" if wanted is None else token.word, []).append((number, token))
+    return chance.choice(sites[chance.choice(list(sites))]) if sites else None
+
+
+def _changed(program: list[str], site: tuple[int, Token], new: str) -> list[str]:
+    number, token = site
+    text = program[number]
+    return _replaced(program, number, f"{text[: token.start]}{new}{text[token.end :]}")
+
+
+def _without_needed(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance, _NEEDED)
+    return site and _changed(program, site, "")
+
+
+def _without_bracket(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance, _BRACKETS)
+    return site and _changed(program, site, "")
+
+
+def _without_token(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance)
+    return site and _changed(program, site, "")
+
+
+def _swapped_sign(program: list[str], chance: random.Random) -> list[str] | None:
+    """``=`` for ``==``, an opening bracket for a closing one, and the other way round."""
+    site = _site(program, chance, _SWAPPED)
+    return site and _changed(program, site, f" {_SWAPPED[site[1].text]} ")
+
+
+def _other_bracket(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance, _BRACKETS)
+    return site and _changed(program, site, chance.choice(_BRACKETS))
+
+
+def _doubled_token(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance)
+    return site and _changed(program, site, f"{site[1].text} {site[1].text}")
+
+
+def _second_equals(program: list[str], chance: random.Random) -> list[str] | None:
+    """An equals sign before a value, as in ``A = B = 1``, ``STEP = 2`` and ``IF A = 1 THEN``."""
+    values = [(n, t) for n, t in _tokens(program) if t.kind in ("name", "number", "truth")]
+    site = chance.choice(values) if values else None
+    return site and _changed(program, site, f"{chance.choice(('', 'COUNT '))}= {site[1].text}")
+
+
+def _inserted_sign(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance)
+    return site and _changed(program, site, f"{site[1].text} {chance.choice(_SIGNS)} ")
+
+
+def _inserted_word(program: list[str], chance: random.Random) -> list[str] | None:
+    site = _site(program, chance)
+    return site and _changed(program, site, f"{site[1].text} {chance.choice(_WORDS)} ")
+
+
+def _tail(program: list[str], chance: random.Random) -> list[str] | None:
+    """Something more at the end of a line: a value, a second value or another statement."""
+    number = chance.randrange(len(program))
+    tail = chance.choice(("COUNT", "7", "= 7", "== 7", "+ 7", ", 7", "COUNT = 7", "WORK()", "HALT"))
+    return _replaced(program, number, f"{program[number]} {tail}")
+
+
+def _word_as_name(program: list[str], chance: random.Random) -> list[str] | None:
+    names = [(n, t) for n, t in _tokens(program) if t.kind == "name"]
+    return _changed(program, chance.choice(names), chance.choice(_WORDS)) if names else None
+
+
+def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | None:
+    number = chance.randrange(len(program))
+    text, tokens = program[number], line(program[number]).tokens
+    if len(tokens) < 2:
+        return None
+    at = chance.randrange(len(tokens) - 1)
+    one, other = tokens[at], tokens[at + 1]
+    turned = f"{text[: one.start]}{other.text} {one.text} {text[other.end :]}"
+    return _replaced(program, number, turned)
+
+
+# The ways that tell most about a grammar come more often.
+_MUTATIONS: tuple[_Way, ...] = (
+    *[_without_needed] * 8,
+    *[_joined_lines, _other_closer, _stray_line, _swapped_sign, _second_equals, _tail] * 2,
+    _without_line,
+    _doubled_line,
+    _moved_line,
+    _crossed_lines,
+    _line_behind_end,
+    _split_line,
+    _without_bracket,
+    _other_bracket,
+    _without_token,
+    _doubled_token,
+    _inserted_sign,
+    _inserted_word,
+    _word_as_name,
+    _swapped_tokens,
+)

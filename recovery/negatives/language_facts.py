@@ -1,0 +1,351 @@
+"""Facts of KRL that no program breaks, whatever grammar is in force.
+
+A grammar says what it lets in today. These few facts say what KRL never has: tokens that cannot be
+neighbours (``adjacent.tsv``), brackets and blocks that do not match, lines without the word that
+makes them what they are. They claim far less than a grammar does, so they hold for the programs of
+every dialect, and a text that breaks one is invalid for a reason that can be named.
+
+Sources: the rules of control flow, declarations, interrupts and triggers (CTL, TYP, SCO, INT, TRG),
+and the own and the open corpus, whose valid files break none of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib import resources
+from itertools import pairwise
+
+from recovery.negatives.tokens import RESERVED, Line, lines
+
+__all__ = ["BLOCKS", "CLOSER_OF", "Violation", "adjacent", "violation"]
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A broken fact, and the line, from 1, at which it is noticed."""
+
+    line: int
+    fact: str
+
+
+def violation(text: str) -> Violation | None:
+    """The first fact that a text breaks; ``None`` does not say that it is valid."""
+    program = lines(text)
+    for number, line in enumerate(program, 1):
+        fact = _broken(line)
+        if fact:
+            return Violation(number, fact)
+    return _blocks(program)
+
+
+@lru_cache(maxsize=1 << 15)
+def _broken(line: Line) -> str | None:
+    """The fact that a line breaks by itself."""
+    if not line.tokens:
+        return None
+    return _strings(line) or _brackets(line) or _neighbours(line) or _shape(line)
+
+
+# ------------------------------------------------------------------------- tokens of a line
+
+
+@cache
+def adjacent() -> Mapping[tuple[str, str], str]:
+    """Why by pairs of kinds (`recovery.negatives.tokens.Token`) that no line has side by side.
+
+    ``start`` and ``end`` stand for the ends of a line, ``any`` for every kind.
+    """
+    table = resources.files(__package__).joinpath("adjacent.tsv").read_text(encoding="utf-8")
+    found: dict[tuple[str, str], str] = {}
+    for row in table.splitlines()[1:]:
+        left, right, reason = row.split("\t")
+        found |= {(a, b): reason for a in left.split() for b in right.split()}
+    return found
+
+
+def _neighbours(line: Line) -> str | None:
+    table = adjacent()
+    for left, right in pairwise(("start", *line.kinds, "end")):
+        reason = table.get((left, right)) or (right != "end" and table.get((left, "any")))
+        if reason:
+            return reason
+    return None
+
+
+#: What closes a bracket.
+CLOSER_OF: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
+_CLOSING = frozenset(CLOSER_OF.values())
+
+
+def _strings(line: Line) -> str | None:
+    is_open = any(token.text == '"' for token in line.tokens)
+    return "a string is closed on its line" if is_open else None
+
+
+def _brackets(line: Line) -> str | None:
+    expected: list[str] = []
+    for kind in line.kinds:
+        if kind in CLOSER_OF:
+            expected.append(CLOSER_OF[kind])
+        elif kind in _CLOSING and (not expected or expected.pop() != kind):
+            return "a closing bracket belongs to an opening one of its form on the same line"
+    return "a bracket is closed on its line" if expected else None
+
+
+def _behind_closer(kinds: Sequence[str]) -> int:
+    """Index behind the bracket that closes the first one."""
+    depth = 0
+    for index, kind in enumerate(kinds):
+        depth += (kind in CLOSER_OF) - (kind in _CLOSING)
+        if not depth:
+            return index + 1
+    return len(kinds)
+
+
+# ----------------------------------------------------------------------------- expressions
+
+_RELATIONS = frozenset("== <> < > <= >= => =<".split())
+_OPERATORS = _RELATIONS | frozenset("+ - * / : . , AND OR EXOR B_AND B_OR B_EXOR".split())
+_PREFIXES = frozenset({"NOT", "B_NOT"})
+_NO_OPERANDS = (RESERVED | {"type"}) - _OPERATORS - _PREFIXES
+_OPERAND_ENDS = frozenset("name number string bits enum truth ) ] }".split())
+
+
+def _operands(kinds: Sequence[str]) -> str | None:
+    """What is wrong with expressions parted by commas; what braces hold is passed over."""
+    braces = 0
+    before = ""
+    for kind in kinds:
+        if kind in ("{", "}"):
+            braces += 1 if kind == "{" else -1
+        elif not braces:
+            if kind == "other":  # not ours to judge
+                return None
+            if kind == "=":
+                return "an expression has no equals sign"
+            if before in _OPERAND_ENDS and not _can_follow(before, kind):
+                return "two operands have an operator between them"
+            if kind in _NO_OPERANDS:
+                return "a reserved word is no operand"
+        before = kind
+    return None
+
+
+def _can_follow(operand: str, kind: str) -> bool:
+    if kind in ("(", "["):  # arguments and indices
+        return operand in ("name", "]") or (operand, kind) == (")", "[")
+    return kind in _OPERATORS or kind in _CLOSING
+
+
+# ---------------------------------------------------------------------------- forms of lines
+
+
+def _words(line: Line) -> list[str]:
+    return [token.word for token in line.tokens]
+
+
+def _if(line: Line) -> str | None:
+    if line.kinds[-1] != "THEN":
+        return "THEN ends the line of IF"
+    return _operands(line.kinds[1:-1])
+
+
+def _for(line: Line) -> str | None:
+    words, kinds = _words(line), line.kinds
+    if "=" not in kinds:
+        return "an equals sign gives the counter of FOR its start"
+    equals = kinds.index("=")
+    if "TO" not in words[equals:]:
+        return "FOR has TO"
+    to = words.index("TO", equals)
+    # STEP may be a name, but not behind an operand
+    steps = [i for i in range(to + 2, len(kinds)) if words[i] == "STEP"]
+    step = next((i for i in steps if kinds[i - 1] in _OPERAND_ENDS), len(kinds))
+    parts = (kinds[1:equals], kinds[equals + 1 : to], kinds[to + 1 : step], kinds[step + 1 :])
+    return next(filter(None, map(_operands, parts)), None)
+
+
+def _expressions(line: Line) -> str | None:
+    return _operands(line.kinds[1:])
+
+
+def _wait(line: Line) -> str | None:
+    if _words(line)[1:2] not in (["FOR"], ["SEC"]):
+        return "FOR or SEC follows WAIT"
+    return _operands(line.kinds[2:]) if len(line.tokens) > 2 else "WAIT waits for something"
+
+
+def _interrupt(line: Line) -> str | None:
+    words = _words(line)
+    action = words[words.index("INTERRUPT") + 1 :][:1]
+    if action in (["ON"], ["OFF"], ["ENABLE"], ["DISABLE"]):
+        return "an equals sign has no place behind INTERRUPT ON" if "=" in words else None
+    if action != ["DECL"]:
+        return "INTERRUPT is followed by DECL, ON, OFF, ENABLE or DISABLE"
+    if "WHEN" not in words or "DO" not in words[words.index("WHEN") :]:
+        return "INTERRUPT DECL has WHEN and then DO"
+    return None
+
+
+def _trigger(line: Line) -> str | None:
+    words = _words(line)
+    if words[1:2] != ["WHEN"]:
+        return "WHEN follows TRIGGER"
+    return None if "DO" in words else "TRIGGER has DO"
+
+
+def _routine(line: Line) -> str | None:
+    is_whole = "(" in line.kinds and line.kinds[-1] == ")"
+    return None if is_whole else "the head of a routine ends with its parentheses"
+
+
+def _goto(line: Line) -> str | None:
+    return None if line.kinds[1:] == ("name",) else "GOTO names one label"
+
+
+def _motion(line: Line) -> str | None:
+    if line.lead not in _OLD_MOTIONS and line.kinds[1:2] in (("=",), ("[",), (".",)):
+        return _assignment_or_call(line)  # a name before there were splines
+    is_bare = "=" in line.kinds and "WITH" not in _words(line)
+    return "a motion gives values only behind WITH" if is_bare else None
+
+
+_OLD_MOTIONS = frozenset("PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
+_MOTIONS = _OLD_MOTIONS | frozenset(
+    "SPL SPL_REL SPTP SLIN SCIRC SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split()
+)
+_FORMS: Mapping[str, Callable[[Line], str | None]] = {
+    "IF": _if,
+    "FOR": _for,
+    "WHILE": _expressions,
+    "UNTIL": _expressions,
+    "SWITCH": _expressions,
+    "CASE": _expressions,
+    "RETURN": _expressions,
+    "WAIT": _wait,
+    "INTERRUPT": _interrupt,
+    "TRIGGER": _trigger,
+    "DEF": _routine,
+    "DEFFCT": _routine,
+    "GOTO": _goto,
+} | dict.fromkeys(_MOTIONS, _motion)
+
+
+def _shape(line: Line) -> str | None:
+    """What is wrong with a line as a whole."""
+    if "THEN" in line.kinds and line.lead != "IF":
+        return "THEN ends the line of IF"
+    form = _FORMS.get(line.lead)
+    if form:
+        return form(line)
+    return _assignment_or_call(line) if line.kinds[0] == "name" else None
+
+
+def _assignment_or_call(line: Line) -> str | None:
+    kinds, end = line.kinds, _behind_variable(line.kinds)
+    following = kinds[end] if end < len(kinds) else "end"
+    if following == "=":
+        return _operands(kinds[end + 1 :])
+    if end > 1 or (line.lead.startswith("$") and following != "name"):
+        return "a line that begins with a variable gives it a value"
+    if following in _RELATIONS or following in ("*", "/", "AND", "OR"):
+        return "an expression is no statement"
+    if following == "(":
+        end += _behind_closer(kinds[end:])
+        if kinds[end : end + 1] in (("name",), ("number",), ("=",)):
+            return "a call is followed by nothing"
+    return None
+
+
+def _behind_variable(kinds: Sequence[str]) -> int:
+    """Index behind the variable a line begins with: a name with its indices and members."""
+    at = 1
+    while at < len(kinds):
+        if kinds[at] == "[":
+            at += _behind_closer(kinds[at:])
+        elif kinds[at] == "." and kinds[at + 1 : at + 2] == ("name",):
+            at += 2
+        else:
+            break
+    return at
+
+
+# -------------------------------------------------------------------------------------- blocks
+
+#: What closes the block that a line opens.
+BLOCKS: Mapping[str, str] = {
+    "DEF": "END",
+    "DEFFCT": "ENDFCT",
+    "DEFDAT": "ENDDAT",
+    "IF": "ENDIF",
+    "FOR": "ENDFOR",
+    "WHILE": "ENDWHILE",
+    "REPEAT": "UNTIL",
+    "LOOP": "ENDLOOP",
+    "SWITCH": "ENDSWITCH",
+    "SPLINE": "ENDSPLINE",
+    "PTP_SPLINE": "ENDSPLINE",
+}
+_MODULES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
+_CLOSERS = frozenset(BLOCKS.values())
+
+
+@dataclass(slots=True)
+class _Block:
+    """An open block; ``branched`` once its ELSE or its first CASE was met."""
+
+    opener: str
+    branched: bool = False
+
+
+def _blocks(program: Sequence[Line]) -> Violation | None:
+    """The first line at which blocks do not match."""
+    open_blocks: list[_Block] = []
+    for number, line in enumerate(program, 1):
+        fact = _enter(_block_word(line), open_blocks) if line.tokens else None
+        if fact:
+            return Violation(number, fact)
+    if open_blocks:
+        return Violation(len(program), f"{BLOCKS[open_blocks[-1].opener]} closes its block")
+    return None
+
+
+def _block_word(line: Line) -> str:
+    """The lead, unless it is a name that reads like the word of a spline block."""
+    is_name = "SPLINE" in line.lead and line.kinds[1:2] in (("=",), ("[",), (".",), ("(",))
+    return "" if is_name else line.lead
+
+
+def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
+    """Take one line into account."""
+    if not open_blocks and lead not in _MODULES:
+        return "nothing stands outside of routines and data lists"
+    block = open_blocks[-1] if open_blocks else _Block("")
+    if block.opener == "SWITCH" and not block.branched and lead not in ("CASE", "DEFAULT"):
+        return "SWITCH is followed by its first CASE"
+    if lead in BLOCKS:
+        return _open(lead, block, open_blocks)
+    if lead in _CLOSERS:
+        del open_blocks[-1]
+        if BLOCKS[block.opener] != lead:
+            return f"{BLOCKS[block.opener]} closes its block before any other closer"
+    elif lead == "ELSE":
+        if block.opener != "IF" or block.branched:
+            return "ELSE stands once, in an IF"
+        block.branched = True
+    elif lead in ("CASE", "DEFAULT"):
+        if block.opener != "SWITCH":
+            return f"{lead} stands in a SWITCH"
+        block.branched = True
+    return None
+
+
+def _open(lead: str, block: _Block, open_blocks: list[_Block]) -> str | None:
+    if block.opener and lead in _MODULES:
+        return f"{BLOCKS[block.opener]} closes its block before the next {lead}"
+    if block.opener == "DEFDAT":
+        return "a data list has no statements"
+    open_blocks.append(_Block(lead))
+    return None

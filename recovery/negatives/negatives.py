@@ -1,0 +1,208 @@
+"""Negatives: programs that must stay rejected, and whether a grammar does reject them.
+
+The written ones lie in ``corpus/negatives`` with their reason in front; the others are generated
+(`recovery.negatives.generate`). An edit to the grammar that accepts one of them is too wide.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, cast, get_args
+
+from grammar.parser.lexer import EOF, SKIPPED, Lexer
+from grammar.parser.recognizer import Core, Recognizer, State, Tail
+from support.files.untrusted import read_bytes
+
+__all__ = ["Negative", "NegativeError", "NegativeSet", "Phase", "load"]
+
+#: What has to reject the program: the grammar, the static checker, or the run.
+Phase = Literal["parse", "check", "run"]
+
+_SUFFIXES = frozenset({".src", ".dat", ".sub"})
+_KEYS = frozenset({"reason", "phase", "rule", "line"})
+_ENTRY = re.compile(r";@\s*(?P<key>\w+):\s*(?P<value>.*?)\s*")
+# A grammar with another keyword has another lexer; some are kept, for candidates take turns.
+_MOST_LEXERS = 4
+_LINE_ENDS = frozenset({"\n", "\r\n"})
+
+
+class NegativeError(Exception):
+    """A file of negatives does not say what it must; the message names the file and its line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """A program that must be rejected.
+
+    ``text`` is the whole file, its front matter included, so that ``line``, from 1 and where a
+    rejecting front end points at, counts in it. ``rules`` are IDs of semantics rules. ``path`` is
+    missing for generated programs.
+    """
+
+    path: Path | None
+    text: str
+    reason: str
+    phase: Phase
+    rules: tuple[str, ...] = ()
+    line: int | None = None
+
+
+def load(folder: Path) -> tuple[Negative, ...]:
+    """The negatives below a folder, sorted by path.
+
+    Raises `NegativeError` for a folder that is not there and for a malformed file.
+    """
+    if not folder.is_dir():
+        raise NegativeError(f"{folder}: no such folder")
+    paths = (p for p in folder.rglob("*") if p.suffix.lower() in _SUFFIXES and p.is_file())
+    return tuple(_read(path) for path in sorted(paths))
+
+
+def _read(path: Path) -> Negative:
+    try:
+        text = read_bytes(path).decode("utf-8")
+    except OSError as error:
+        raise NegativeError(f"{path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise NegativeError(f"{path}: not UTF-8 text") from None
+    matter, size = _front_matter(path, text)
+    for key in ("reason", "phase"):
+        if key not in matter:
+            raise NegativeError(f"{path}:1: the front matter has no {key}")
+    if matter["phase"] not in get_args(Phase):
+        raise NegativeError(f"{path}: phase {matter['phase']!r} is none of parse, check and run")
+    number = matter.get("line")
+    if number is not None and not (
+        number.isdecimal() and size < int(number) <= len(text.splitlines())
+    ):
+        raise NegativeError(f"{path}: line {number!r} is no line of the program")
+    return Negative(
+        path=path,
+        text=text,
+        reason=matter["reason"],
+        phase=cast(Phase, matter["phase"]),
+        rules=tuple(filter(None, re.split(r"[,\s]+", matter.get("rule", "")))),
+        line=None if number is None else int(number),
+    )
+
+
+def _front_matter(path: Path, text: str) -> tuple[dict[str, str], int]:
+    """The entries before the program, and on how many lines they stand."""
+    matter: dict[str, str] = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.startswith(";@"):
+            return matter, number - 1
+        found = _ENTRY.fullmatch(line)
+        if not found or not found["value"]:
+            raise NegativeError(f"{path}:{number}: not `;@ key: value`")
+        key = found["key"]
+        if key not in _KEYS or key in matter:
+            problem = "given twice" if key in matter else "unknown"
+            raise NegativeError(f"{path}:{number}: key {key} is {problem}")
+        matter[key] = found["value"]
+    raise NegativeError(f"{path}: no program")
+
+
+class NegativeSet:
+    """Negatives of phase ``parse`` (the others are left out), ready to be tried on many grammars.
+
+    Many programs share their lines. So each line is cut into tokens once a lexer, and read once
+    from each state it is met in.
+    """
+
+    def __init__(self, negatives: Iterable[Negative]) -> None:
+        self.negatives = tuple(n for n in negatives if n.phase == "parse")
+        numbers: dict[str, int] = {}
+        self._programs = [
+            [numbers.setdefault(line, len(numbers)) for line in _lines(negative.text)]
+            for negative in self.negatives
+        ]
+        self._lines = list(numbers)
+        self._kinds: dict[Lexer, list[list[int]] | None] = {}
+        self._met: dict[Lexer, list[frozenset[int]]] = {}  # the tokens of each program
+
+    def __len__(self) -> int:
+        return len(self.negatives)
+
+    def rejected_by(self, recognizer: Recognizer) -> NegativeSet:
+        """Those that this recogniser does reject, against which its successors are judged.
+
+        A grammar without a keyword takes the keyword for a name and may accept programs that misuse
+        it; it is not to be blamed on an edit that they stay accepted.
+        """
+        accepted = {negative.text for negative in self.accepted(recognizer)}
+        return NegativeSet(n for n in self.negatives if n.text not in accepted)
+
+    def accepted(
+        self, recognizer: Recognizer, having: Sequence[frozenset[int]] = (frozenset(),)
+    ) -> list[Negative]:
+        """Those that the recogniser takes for programs, in the order of the set.
+
+        Only those are looked at that have all tokens of one of the sets ``having``.
+        """
+        kinds = self._cut(recognizer.lexer)
+        if kinds is None:
+            return [n for n in self.negatives if recognizer.accepts(n.text)]
+        met = self._met[recognizer.lexer]
+        end = len(kinds)
+        kinds = [*kinds, [EOF]]
+        known: dict[tuple[Core, Tail, int], State | None] = {}
+        found = []
+        for place, (negative, program) in enumerate(
+            zip(self.negatives, self._programs, strict=True)
+        ):
+            if not any(tokens <= met[place] for tokens in having):
+                continue
+            state = recognizer.start
+            for number in (*program, end):
+                key = (state.core, state.tail, number)
+                try:
+                    after = known[key]
+                except KeyError:
+                    reached, failed = recognizer.run(state, kinds[number])
+                    after = known[key] = reached if failed is None else None
+                if after is None:
+                    break
+                state = after
+            else:
+                found.append(negative)
+        return found
+
+    def _cut(self, lexer: Lexer) -> list[list[int]] | None:
+        """Token kinds of each line; ``None`` where a token goes on behind its line."""
+        if lexer not in self._kinds:
+            if len(self._kinds) >= _MOST_LEXERS:
+                oldest = next(iter(self._kinds))
+                del self._kinds[oldest], self._met[oldest]
+            cut = self._kinds[lexer] = _kinds(lexer, self._lines)
+            lines = [frozenset(line) for line in cut or ()]
+            self._met[lexer] = [
+                frozenset[int]().union(*(lines[number] for number in program))
+                for program in (self._programs if cut else ())
+            ]
+        return self._kinds[lexer]
+
+
+def _lines(text: str) -> list[str]:
+    """The lines of a text, each with its end."""
+    return re.findall(r"[^\n]*\n|[^\n]+\Z", text)
+
+
+def _kinds(lexer: Lexer, lines: Sequence[str]) -> list[list[int]] | None:
+    """Token kinds of each line, cut in one go; a last line without an end is given one for that."""
+    ended = ["" if line.endswith("\n") else "\n" for line in lines]
+    lexemes = lexer.lexemes("".join(map(str.__add__, lines, ended)))
+    kinds = list(map(lexer.kinds.__getitem__, lexemes))
+    ends = [index for index, lexeme in enumerate(lexemes) if lexeme in _LINE_ENDS]
+    if len(ends) != len(lines):  # some of them are inside of tokens
+        return None
+    out = []
+    start = 0
+    for end, added in zip(ends, ended, strict=True):
+        line = kinds[start : end if added else end + 1]
+        out.append([kind for kind in line if kind != SKIPPED] if SKIPPED in line else line)
+        start = end + 1
+    return out

@@ -1,0 +1,247 @@
+"""What several phrases have in common: one phrase that reads all of them.
+
+Lines of one construct differ in their operands and in the parts that may be left out. Laid beside
+one another by their keywords and signs, each column of operands is read by a rule that reads all of
+them, what only some have becomes optional, and where some have one thing and the others another,
+a choice: from ``LIN A`` and ``LIN {X 1} C_DIS`` comes ``LIN target C_DIS?``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from recovery.proposals.collocations import last_two
+from recovery.proposals.phrases import Phraser
+from recovery.proposals.segmentation import Word
+
+__all__ = ["common_phrases"]
+
+_MOST_ROWS = 16
+_MOST_COLUMNS = 14
+_MOST_RULES = 3
+_MOST_SHAPES = 6
+
+_Span = tuple[Word, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A keyword or sign (``key`` is its text), or an operand, or a list of operands."""
+
+    key: str
+    spans: tuple[_Span, ...]
+
+    @property
+    def is_operand(self) -> bool:
+        return not self.key
+
+
+@dataclass(slots=True)
+class _Column:
+    """Parts of the same kind, by the row they are in."""
+
+    key: str
+    cells: dict[int, _Part] = field(default_factory=dict)
+
+
+def common_phrases(
+    phraser: Phraser, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
+) -> Iterator[tuple[str, ...]]:
+    """Phrases as symbols, some of them in brackets, that read all of ``phrases``.
+
+    The most restrictive first; none where the phrases have too little in common to be one.
+    """
+    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:_MOST_ROWS]
+    if not rows:
+        return
+    columns = _columns(phraser, rows)
+    if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):
+        return
+    seen = set()
+    for level in range(3):
+        narrow = [_written(phraser, column, level, near) for column in columns]
+        if not all(narrow):
+            continue
+        for written in (_as_usual(phraser, columns, narrow, len(rows)), narrow):
+            symbols = tuple(_grouped(columns, written, len(rows)))
+            if symbols not in seen:
+                seen.add(symbols)
+                yield symbols
+
+
+def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
+    """Whether most columns are in all rows, or the rows are few forms of what one word begins."""
+    in_all = [len(column.cells) == rows for column in columns]
+    if 2 * sum(in_all) >= len(columns):
+        return True
+    forms = {frozenset(column.cells) for column in columns}
+    return bool(columns[0].key and in_all[0]) and len(forms) <= _MOST_SHAPES
+
+
+def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
+    return -len(row), str([(p.key, p.spans) for p in row])
+
+
+def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
+    """A phrase cut into parts; ``a , a , a`` is one part."""
+    out: list[_Part] = []
+    spans = phraser.cutter.parts(words) or []
+    signs = [phraser.sign(span) for span in spans]
+    for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
+        # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty
+        is_listed = "','" in signs[max(0, place - 1) : place + 2]
+        is_word = bool(out) and sign is not None and sign[0] != "'"
+        if is_word and phraser.stands_for_a_rule(span, is_listed=is_listed):
+            part = _Part("", (span,))
+        else:
+            part = _Part(sign or "", () if sign else (span,))
+        if part.is_operand and len(out) > 1 and out[-1].key == "','" and out[-2].is_operand:
+            out[-2:] = [_Part("", (*out[-2].spans, span))]
+        else:
+            out.append(part)
+    return out
+
+
+def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
+    """The rows beside one another; the longest gives the order."""
+
+    def fits(column: _Column, part: _Part) -> bool:
+        """Whether a part may stand in a column: the same sign, or operands that one rule reads."""
+        if column.key or part.key:
+            return column.key == part.key
+        spans = {span for cell in column.cells.values() for span in cell.spans}
+        return bool(phraser.rules_for_all(sorted({*spans, *part.spans}, key=str)))
+
+    columns: list[_Column] = []
+    for number, row in enumerate(rows):
+        merged: list[_Column] = []
+        place = used = 0
+        for here, there in _matches(columns, row, fits):
+            merged += columns[used:here]
+            merged += [_Column(p.key, {number: p}) for p in row[place:there]]
+            columns[here].cells[number] = row[there]
+            merged.append(columns[here])
+            used, place = here + 1, there + 1
+        merged += columns[used:]
+        merged += [_Column(p.key, {number: p}) for p in row[place:]]
+        columns = merged
+    return columns
+
+
+def _matches(
+    columns: Sequence[_Column], row: Sequence[_Part], fits: Callable[[_Column, _Part], bool]
+) -> list[tuple[int, int]]:
+    """Indices of a longest common subsequence."""
+    same = [[fits(column, part) for part in row] for column in columns]
+    best = [[0] * (len(row) + 1) for _ in range(len(columns) + 1)]
+    for i in range(len(columns) - 1, -1, -1):
+        for j in range(len(row) - 1, -1, -1):
+            best[i][j] = max(best[i + 1][j], best[i][j + 1], same[i][j] + best[i + 1][j + 1])
+    out = []
+    i = j = 0
+    while i < len(columns) and j < len(row):
+        if same[i][j] and best[i][j] == 1 + best[i + 1][j + 1]:
+            out.append((i, j))
+            i, j = i + 1, j + 1
+        elif best[i][j] == best[i + 1][j]:
+            i += 1
+        else:
+            j += 1
+    return out
+
+
+def _written(
+    phraser: Phraser, column: _Column, level: int, near: frozenset[str]
+) -> tuple[str, ...]:
+    """A column as symbols: a sign, a rule that reads every cell, or a choice of few; or nothing."""
+    if column.key:
+        return (column.key,)
+    spans = _spans(column)
+    chosen = phraser.rules_for_all(spans, near)
+    if chosen:
+        symbol = chosen[min(level, len(chosen) - 1)]
+    else:
+        several = _cover(phraser, spans)
+        if several is None:
+            return ()
+        symbol = f"({' | '.join(several)})" if len(several) > 1 else several[0]
+    return _listed(symbol, listed=any(len(part.spans) > 1 for part in column.cells.values()))
+
+
+def _as_usual(
+    phraser: Phraser,
+    columns: Sequence[_Column],
+    written: Sequence[tuple[str, ...]],
+    rows: int,
+) -> list[tuple[str, ...]]:
+    """The columns with the rules that the grammar usually has in such places, where they fit."""
+    out: list[tuple[str, ...]] = []
+    always: list[str] = []  # what is written so far, but for what may be left out
+    for column, symbols in zip(columns, written, strict=True):
+        before = last_two(always)
+        usual = None if column.key else phraser.usual_for(_spans(column), before)
+        listed = any(len(part.spans) > 1 for part in column.cells.values())
+        out.append(_listed(usual, listed=listed) if usual else symbols)
+        if len(column.cells) == rows:
+            always += out[-1]
+    return out
+
+
+def _spans(column: _Column) -> list[_Span]:
+    return sorted({span for part in column.cells.values() for span in part.spans}, key=str)
+
+
+def _listed(symbol: str, *, listed: bool) -> tuple[str, ...]:
+    return (symbol, f"(',' {symbol})*") if listed else (symbol,)
+
+
+def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
+    """A few rules or tokens that read all the spans between them."""
+    left = list(spans)
+    out: list[str] = []
+    while left and len(out) < _MOST_RULES:
+        reads: dict[str, list[_Span]] = {}
+        for span in left:
+            for rule in phraser.rules_for_all([span]):
+                reads.setdefault(rule, []).append(span)
+        if not reads:
+            return None
+        best = min(reads, key=lambda rule: (-len(reads[rule]), phraser.breadth([rule]), rule))
+        out.append(best)
+        left = [span for span in left if span not in reads[best]]
+    return None if left else sorted(out)
+
+
+def _grouped(
+    columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
+) -> Iterator[str]:
+    """The symbols of all columns, those not in every row made optional or a choice."""
+    runs: list[tuple[frozenset[int], list[str]]] = []
+    for column, symbols in zip(columns, written, strict=True):
+        present = frozenset(column.cells)
+        if not runs or runs[-1][0] != present:
+            runs.append((present, []))
+        runs[-1][1].extend(symbols)
+    place = 0
+    while place < len(runs):
+        present, body = runs[place]
+        place += 1
+        if len(present) == rows:
+            yield from body
+            continue
+        choice = [" ".join(body)]
+        while place < len(runs) and not present & runs[place][0]:
+            present |= runs[place][0]
+            choice.append(" ".join(runs[place][1]))
+            place += 1
+        text = " | ".join(choice)
+        if len(present) == rows:
+            yield f"({text})"
+        else:
+            yield f"{text}?" if len(choice) == 1 and _is_one(body) else f"({text})?"
+
+
+def _is_one(symbols: Sequence[str]) -> bool:
+    """Whether the symbols are one that a suffix can be put behind."""
+    return len(symbols) == 1 and symbols[0][-1] not in "?*+"

@@ -1,0 +1,153 @@
+"""Habits of a grammar: which rule it writes behind a word or sign.
+
+Of a few examples the narrowest rule that reads them all is often too narrow: a grammar that has
+``CA expression`` in one place hardly means ``CA number`` in another, and where every ``word =`` has
+an expression behind it, a new one will. And a token that one rule alone writes, being a sentence of
+that rule by itself, is written by the name of that rule: ``name``, not ``NAME``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+from functools import cached_property
+
+from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
+from grammar.parser.recognizer import Recognizer
+
+__all__ = ["Before", "Habits", "last_two", "symbols_in"]
+
+#: The two symbols before a place, the nearer one last; empty where a rule begins.
+Before = tuple[str, str]
+
+_BEGINNING: Before = ("", "")
+_A_WORD = "a word"
+_SYMBOLS = re.compile(r"('(?:[^'\\]|\\.)*'|\w+)([?*]?)")
+# So many different things may be usual in places of a kind.
+_FEW = 3
+
+
+def symbols_in(texts: Iterable[str]) -> list[tuple[Before, str]]:
+    """The tokens and rules of texts that follow one another, each with what is before it."""
+    out = []
+    before = _BEGINNING
+    for symbol, suffix in _SYMBOLS.findall(" ".join(texts)):
+        out.append((before, symbol))
+        if not suffix:  # what may be left out is passed over
+            before = (before[1], symbol)
+    return out
+
+
+def last_two(texts: Iterable[str]) -> Before:
+    """What is before whatever follows the texts."""
+    return symbols_in((*texts, "NEXT"))[-1][0]
+
+
+class Habits:
+    """Knows what one grammar writes where."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.grammar = recognizer.grammar
+        self._lexer = recognizer.lexer
+        self._behind: dict[Before, Counter[str]] = defaultdict(Counter)
+        self._seen: set[tuple[Before, int, str, int]] = set()
+        for number, rule in enumerate(self.grammar.rules):
+            if not rule.is_lexer:
+                for alternative in rule.alternatives:
+                    self._sequence(number, alternative, frozenset([_BEGINNING]))
+
+    def usual(self, before: Before) -> dict[str, int]:
+        """The rules, and tokens with a value, that stand in many places like this: how many."""
+        for place in self._places(before):
+            found = self._behind.get(place)
+            if found:
+                many = found.total() / _FEW
+                return {symbol: count for symbol, count in found.items() if count >= many}
+        return {}
+
+    def _places(self, before: Before) -> list[Before]:
+        """Kinds of place, the nearest first: behind this word, or behind this sign and a word."""
+        further, nearer = before
+        if self._is_word(nearer):
+            return [("", nearer)]
+        if self._is_word(further):
+            return [before, (_A_WORD, nearer)]
+        return [before] if further else []
+
+    def _is_word(self, symbol: str) -> bool:
+        """Whether a symbol is a reserved word, or one that is to be."""
+        kind = self._lexer.kind_of.get(symbol)
+        is_word = kind is None or self._lexer.is_keyword(kind)
+        return symbol[:1].isupper() and is_word
+
+    # ---------------------------------------------------------------------- reading the grammar
+
+    def _sequence(
+        self, rule: int, sequence: Alternative, before: frozenset[Before]
+    ) -> frozenset[Before]:
+        for element in sequence.elements:
+            before = self._element(rule, element, before)
+        return before
+
+    def _element(self, rule: int, element: Element, before: frozenset[Before]) -> frozenset[Before]:
+        """What may be before whatever follows the element."""
+        match element:
+            case Repeat(item=item, operator=operator):
+                after = self._element(rule, item, before)
+                if operator != "?":
+                    after |= self._element(rule, item, before | after)
+                return after if operator == "+" else before | after
+            case Group(alternatives=alternatives):
+                return frozenset[Before]().union(
+                    *(self._sequence(rule, a, before) for a in alternatives)
+                )
+            case Reference(name=name, span=span):
+                return self._noted(rule, name, span[0], before)
+            case Literal(text=text, span=span):
+                return self._noted(rule, f"'{text}'", span[0], before)
+            case _:
+                return before
+
+    def _noted(
+        self, rule: int, symbol: str, offset: int, before: frozenset[Before]
+    ) -> frozenset[Before]:
+        places = {place for pair in before for place in self._places(pair)}
+        for place in () if symbol[0] == "'" or self._is_word(symbol) else places:
+            if (place, rule, symbol, offset) not in self._seen:
+                self._seen.add((place, rule, symbol, offset))
+                self._behind[place][symbol] += 1
+        return frozenset((nearer, symbol) for _, nearer in before)
+
+    # ------------------------------------------------------------------------------- tokens
+
+    @cached_property
+    def written_by(self) -> dict[str, str]:
+        """For tokens that are a rule by themselves and that no other rule writes: that rule.
+
+        A rule that lists reserved words writes none of them, and of several words in one rule one
+        alone may be meant.
+        """
+        users: dict[str, set[str]] = defaultdict(set)
+        alone: set[tuple[str, str]] = set()
+        words = sum(map(self._lexer.is_keyword, self._lexer.kind_of.values()))
+        for rule in self.grammar.rules:
+            if rule.is_lexer or 4 * len(rule.alternatives) > words:
+                continue
+            for alternative in rule.alternatives:
+                tokens = [e for e in walk(alternative) if isinstance(e, Reference) and e.is_token]
+                for token in tokens:
+                    users[token.name].add(rule.name)
+                first, *others = alternative.elements or (None,)
+                left_out = all(isinstance(e, Repeat) and e.operator != "+" for e in others)
+                if (
+                    isinstance(first, Reference)
+                    and (first in tokens and left_out)
+                    and (len(rule.alternatives) == 1 or not self._is_word(first.name))
+                ):
+                    alone.add((first.name, rule.name))
+        return {
+            token: next(iter(rules))
+            for token, rules in users.items()
+            if len(rules) == 1 and (token, *rules) in alone
+        }

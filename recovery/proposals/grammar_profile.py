@@ -1,0 +1,371 @@
+"""How the rules of a grammar look to somebody who is about to change one.
+
+How many rules lead to a rule, which rules gather kinds of statement or operand, what an alternative
+is like beside those that are there: what decides how restrictive and how fitting an edit is.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import pairwise
+
+from grammar.notation.edits import (
+    AddAlternative,
+    Address,
+    Edit,
+    Insert,
+    MakeOptional,
+    Widen,
+    sequences,
+)
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
+from grammar.parser.recognizer import Recognizer
+from recovery.proposals.keywords import Vocabulary
+
+__all__ = ["HUB", "Layout"]
+
+#: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
+HUB = 4
+_NAMES = re.compile(r"\w+")
+# Steps in breadth that are saved where something is written as elsewhere.
+_SAID_SO = 6
+# Twice as many rules around a rule are so many steps in breadth.
+_WIDENS = 5
+
+
+class Layout:
+    """Knows the rules of one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self.grammar = recognizer.grammar
+        self.vocabulary = Vocabulary(recognizer)
+        self._sequences: dict[str, dict[Address, Alternative]] = {}
+
+    def sequence(self, rule: str, address: Address) -> Alternative:
+        """The alternative at an address of a rule."""
+        known = self._sequences.get(rule)
+        if known is None:
+            known = self._sequences[rule] = dict(sequences(self.grammar.by_name[rule]))
+        return known[address]
+
+    def alternatives(self, rule: str) -> frozenset[str]:
+        """The alternatives a rule has, as written."""
+        found = self.grammar.by_name[rule]
+        return frozenset(" ".join(found.source_of(a).split()) for a in found.alternatives)
+
+    def closing(self, rule: str) -> str | None:
+        """What every alternative of a rule ends with, where that is a line end.
+
+        An alternative that is a rule which ends so ends so too.
+        """
+        return self.line_end if rule in self._closed else None
+
+    @cached_property
+    def _closed(self) -> frozenset[str]:
+        """Rules that end with a line end, and write it themselves."""
+        found: set[str] = set()
+        for _ in range(2):  # that a rule is another rule goes no deeper
+            for rule in self.grammar.rules:
+                ends = [] if rule.is_lexer else [self._last(rule, a) for a in rule.alternatives]
+                if self.line_end in ends and all(e == self.line_end or e in found for e in ends):
+                    found.add(rule.name)
+        return frozenset(found)
+
+    def _last(self, rule: Rule, alternative: Alternative) -> str:
+        """What an alternative ends with: a line end, or the one rule that it is."""
+        elements = alternative.elements
+        text = rule.source_of(elements[-1]) if elements else ""
+        return text if text == self.line_end or len(elements) == 1 else ""
+
+    @cached_property
+    def of_lines(self) -> frozenset[str]:
+        """Rules whose alternatives end with a line end, or are all blocks."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and rule.name not in self.line_ends
+            and (
+                self.closing(rule.name)
+                or all(
+                    len(a.elements) == 1
+                    and isinstance(e := a.elements[0], Reference)
+                    and e.name in self.blocks
+                    for a in rule.alternatives
+                )
+            )
+        )
+
+    def unused_in(self, text: str) -> frozenset[str]:
+        """Rules of a text that nothing in the grammar calls."""
+        return self._unused.intersection(_NAMES.findall(text))
+
+    def is_free(self, name: str) -> bool:
+        """Whether a name is that of a rule which nothing calls, or of no rule."""
+        return name in self._unused or name not in self.recognizer.network.entry
+
+    def said_so(self, text: str) -> int:
+        """What speaks for a text that some rule has already, as what is optional or repeated."""
+        return _SAID_SO if "".join(text.split()) in self._said else 0
+
+    def place_as_elsewhere(self, rule: str, at: Address, text: str) -> Address | None:
+        """Where a part goes that other sequences have beside what is also found here.
+
+        Behind parts that may be left out a line tells nothing of the order; where the part stands
+        elsewhere does. ``None`` where that speaks for no place before ``at``.
+        """
+        elements = self.sequence(rule, at[:-1]).elements
+        source = self.grammar.by_name[rule].source_of
+        said = ["", *("".join(source(e).split()) for e in elements), ""]
+        new = "".join(text.split())
+
+        def alike(place: int) -> int:
+            return ((said[place - 1], new) in self._beside) + ((new, said[place]) in self._beside)
+
+        first = at[-1]
+        while first > 1 and isinstance(e := elements[first - 2], Repeat) and e.operator != "+":
+            first -= 1
+        best = max(range(first, at[-1] + 1), key=lambda place: (alike(place), place))
+        return (*at[:-1], best) if best < at[-1] else None
+
+    @cached_property
+    def _beside(self) -> frozenset[tuple[str, str]]:
+        """Texts of elements that stand beside one another in some sequence."""
+        found: set[tuple[str, str]] = set()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                said = ["", *("".join(rule.source_of(e).split()) for e in sequence.elements), ""]
+                found |= set(pairwise(said))
+        return frozenset(found)
+
+    @cached_property
+    def _said(self) -> frozenset[str]:
+        return frozenset(
+            "".join(rule.source_of(element).split())
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            for a in rule.alternatives
+            for element in walk(a)
+            if isinstance(element, Repeat)
+        )
+
+    @cached_property
+    def _unused(self) -> frozenset[str]:
+        network = self.recognizer.network
+        used = {network.rule[entry] for calls in network.calls for entry, _ in calls}
+        return frozenset(network.entry) - used - {self.grammar.start}
+
+    def operands(self, text: str) -> frozenset[str]:
+        """The names in a text that has no keyword, none in one that has."""
+        names = frozenset(_NAMES.findall(text))
+        lexer = self.recognizer.lexer
+        known = self.grammar.by_name
+        words = (n for n in names if n not in known or lexer.is_keyword(lexer.kind_of.get(n, 0)))
+        return frozenset() if any(words) else names & known.keys()
+
+    def only_passes_on(self, rule: str) -> bool:
+        """Whether a rule is nothing but another rule: it waits for something."""
+        alternatives = self.grammar.by_name[rule].alternatives
+        elements = [e for a in alternatives for e in a.elements]
+        return (
+            len(elements) == 1 and isinstance(elements[0], Reference) and not (elements[0].is_token)
+        )
+
+    def is_hub(self, rule: str) -> bool:
+        """Whether a rule gathers kinds of something."""
+        return len(self.grammar.by_name[rule].alternatives) >= HUB
+
+    def has_choice(self, rule: str) -> bool:
+        """Whether a rule has more than one alternative."""
+        return len(self.grammar.by_name[rule].alternatives) > 1
+
+    def near(self, rule: str) -> frozenset[str]:
+        """Rules that a rule refers to."""
+        return frozenset(
+            e.name
+            for a in self.grammar.by_name[rule].alternatives
+            for e in walk(a)
+            if isinstance(e, Reference) and not e.is_token
+        )
+
+    def width(self, rule: str) -> int:
+        """How far an edit reaches: the more, the more rules lead to this one."""
+        return self._ancestors[rule]
+
+    @cached_property
+    def _ancestors(self) -> dict[str, int]:
+        out = {}
+        for name in self.callers:
+            seen: set[str] = set()
+            todo = [name]
+            while todo:
+                for caller in self.callers[todo.pop()] - seen:
+                    seen.add(caller)
+                    todo.append(caller)
+            out[name] = round(_WIDENS * math.log2(1 + len(seen)))
+        return out
+
+    @cached_property
+    def callers(self) -> dict[str, set[str]]:
+        """For each rule those that call it."""
+        network = self.recognizer.network
+        callers: dict[str, set[str]] = {name: set() for name in network.entry}
+        for position, calls in enumerate(network.calls):
+            for entry, _ in calls:
+                callers[network.rule[entry]].add(network.rule[position])
+        return callers
+
+    @cached_property
+    def blocks(self) -> frozenset[str]:
+        """Rules of several lines: with a line end that is not their last element."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and any(
+                isinstance(e, Reference) and (e.name in self.line_ends or e.name == "NEWLINE")
+                for a in rule.alternatives
+                for e in a.elements[:-1]
+            )
+        )
+
+    @cached_property
+    def line_ends(self) -> frozenset[str]:
+        """Rules that only say where a line ends: nothing of a line belongs there."""
+        return frozenset(
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and all(
+                isinstance(e, Reference) and e.name == "NEWLINE"
+                for a in rule.alternatives
+                for e in walk(a)
+                if not isinstance(e, Repeat | Group)
+            )
+        )
+
+    @cached_property
+    def line_end(self) -> str:
+        """What a rule writes where a line ends."""
+        return min(self.line_ends, default="NEWLINE")
+
+    @cached_property
+    def loops(self) -> frozenset[str]:
+        """Rules that stand in a loop somewhere."""
+        return frozenset(
+            e.item.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            for a in rule.alternatives
+            for e in walk(a)
+            if isinstance(e, Repeat) and e.operator != "?" and isinstance(e.item, Reference)
+        )
+
+    @cached_property
+    def bodies(self) -> list[tuple[str, ...]]:
+        """What stands between the first line of a block and its last, in the blocks there are."""
+        found: Counter[tuple[str, ...]] = Counter()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                body: list[str] = []
+                within = False
+                for element in sequence.elements:
+                    text = rule.source_of(element)
+                    if text == self.line_end:
+                        within, body = True, []
+                    elif within and isinstance(element, Repeat) and text in self._line_loops:
+                        body.append(text)
+                    elif within and body:
+                        found[tuple(body)] += 1
+                        within = False
+                if within and body:
+                    found[tuple(body)] += 1
+        return sorted(found, key=lambda body: (-found[body], body))
+
+    @cached_property
+    def _line_loops(self) -> frozenset[str]:
+        return frozenset(f"{name}*" for name in self.loops - self.line_ends)
+
+    # ------------------------------------------------------------------------------- elements
+
+    def first(self, sequence: Alternative, number: int) -> frozenset[int]:
+        """The tokens with which the element at a place itself begins.
+
+        Rules are left aside, but for those that are nothing but a choice of reserved words.
+        """
+        if number > len(sequence.elements):
+            return frozenset()
+        return frozenset(self._tokens(sequence.elements[number - 1]))
+
+    def _tokens(self, element: Element) -> Iterator[int]:
+        lexer = self.recognizer.lexer
+        if isinstance(element, Repeat):
+            yield from self._tokens(element.item)
+        elif isinstance(element, Group):
+            for alternative in element.alternatives:
+                if alternative.elements:
+                    yield from self._tokens(alternative.elements[0])
+        elif isinstance(element, Literal) or (isinstance(element, Reference) and element.is_token):
+            yield lexer.kind_of[self.grammar.token_of(element)]
+        elif isinstance(element, Reference):
+            kinds = {lexer.kind_of[word] for word in self.vocabulary.words_of(element.name)}
+            if all(map(lexer.is_keyword, kinds)):
+                yield from kinds
+
+    # ------------------------------------------------------------------------- left recursion
+
+    def is_left_recursive(self, edit: Edit) -> bool:
+        """Whether an edit lets a rule begin with itself, so that no reading of it would end."""
+        match edit:
+            case AddAlternative(rule=rule, text=text):
+                return rule in self._leading(text)
+            case Insert(rule=rule, at=at, text=text) | Widen(rule=rule, at=at, text=text):
+                return rule in self._leading(text) and self.is_at_start(rule, at)
+            case MakeOptional(rule=rule, at=at, count=count):
+                behind = self.sequence(rule, at[:-1]).elements[at[-1] - 1 + count :]
+                text = " ".join(map(self.grammar.by_name[rule].source_of, behind))
+                return rule in self._leading(text) and self.is_at_start(rule, at)
+            case _:
+                return False
+
+    def _leading(self, text: str) -> frozenset[str]:
+        """Rules that may come before the first token of a text, the optional ones passed over."""
+        network = self.recognizer.network
+        found: frozenset[str] = frozenset()
+        for symbol in text.replace("(", " ").replace(")", " ").split():
+            name = symbol.rstrip("?*+")
+            entry = network.entry.get(name)
+            if entry is None:
+                if symbol[-1] in "?*" and name:
+                    continue
+                break
+            reach = network.reach(entry)
+            found |= reach.rules
+            if not reach.ends and symbol[-1] not in "?*":
+                break
+        return found
+
+    def is_at_start(self, rule: str, at: Address) -> bool:
+        """Whether a place may be reached before the rule has read anything."""
+        network = self.recognizer.network
+        entry = network.entry[rule]
+        places = network.automata[rule].places
+        return any(
+            not returns and at in places[position - entry]
+            for position, returns in network.reach(entry).sites
+            if network.rule[position] == rule
+        )

@@ -1,0 +1,274 @@
+"""Phrases: from the tokens a grammar did not expect to the words of a rule that would.
+
+The same tokens can be written into a rule as they are (``STEP 2``), or with rules in place of
+operands (``STEP literal``, ``STEP expression``). The first is the most restrictive; which is right
+is for the corpus and the negatives to tell, so all are proposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import islice, product
+
+from grammar.parser.recognizer import Recognizer
+from recovery.proposals.collocations import Before, Habits, symbols_in
+from recovery.proposals.grammar_profile import HUB
+from recovery.proposals.rule_matcher import Readers
+from recovery.proposals.segmentation import Cutter, Word
+
+__all__ = ["Phraser"]
+
+_LONGEST_PHRASE = 24
+_MOST_SYMBOLS = 8
+# Rules that are tried for an operand that stands alone.
+_MOST_READERS = 6
+_MOST_SPELLINGS = 12
+# What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
+_USUAL = 2
+_UNUSUAL = 5
+
+
+class Phraser:
+    """Writes phrases with the rules of one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self.habits = Habits(recognizer)
+        self.readers = Readers(recognizer)
+        self.cutter = Cutter(self.readers)
+
+    @cached_property
+    def _callers(self) -> dict[str, frozenset[str]]:
+        """For each rule the other rules that call it."""
+        network = self.recognizer.network
+        callers: dict[str, set[str]] = {name: set() for name in network.entry}
+        for position, calls in enumerate(network.calls):
+            for entry, _ in calls:
+                callers[network.rule[entry]].add(network.rule[position])
+        return {name: frozenset(found - {name}) for name, found in callers.items()}
+
+    def _is_one_level(self, rule: str) -> bool:
+        """Whether a rule is only a step within another that stands for it alone.
+
+        One of many kinds that a rule gathers is no step.
+        """
+        known = self.recognizer.grammar.by_name
+        return len(self._callers[rule]) == 1 and all(
+            rule in self._wider[caller] and len(known[caller].alternatives) < HUB
+            for caller in self._callers[rule]
+        )
+
+    @cached_property
+    def _uses(self) -> dict[str, int]:
+        """How often each rule is called: the more, the more general its role."""
+        network = self.recognizer.network
+        counts = dict.fromkeys(network.entry, 0)
+        for calls in network.calls:
+            for entry, _ in calls:
+                counts[network.rule[entry]] += 1
+        return counts
+
+    @cached_property
+    def _wider(self) -> dict[str, frozenset[str]]:
+        """For each rule the rules it stands for alone (``expression`` for ``literal``)."""
+        network = self.recognizer.network
+        direct = {
+            rule: {
+                network.rule[callee] for callee, back in network.calls[entry] if network.final[back]
+            }
+            for rule, entry in network.entry.items()
+        }
+        out: dict[str, frozenset[str]] = {}
+
+        def closed(rule: str) -> frozenset[str]:
+            if rule not in out:
+                out[rule] = frozenset(direct[rule]).union(*(closed(r) for r in direct[rule]))
+            return out[rule]
+
+        for rule in direct:
+            closed(rule)
+        return out
+
+    def would_be_read_twice(self, rule: str, symbol: str) -> bool:
+        """Whether what stands for a rule alone reads a keyword that the rule would read too.
+
+        That a list of almost all keywords has it says nothing.
+        """
+        kind = self.recognizer.lexer.kind_of.get(symbol)
+        if kind is None:
+            return False
+        found = self.readers.rules_for((kind,)) - self.readers.careless
+        return any(rule in self._wider[reader] for reader in found)
+
+    def is_unused(self, rule: str) -> bool:
+        """Whether nothing calls a rule."""
+        return not self._uses[rule]
+
+    def breadth(self, symbols: Sequence[str]) -> int:
+        """How much a phrase lets in: nothing for tokens, more for rules that stand for more.
+
+        What the grammar usually writes in such a place (`recovery.proposals.collocations`) counts
+        little; what is narrower than that counts as unlikely to be all that is meant.
+        """
+        return sum(self._cost(before, symbol) for before, symbol in symbols_in(symbols))
+
+    def _cost(self, before: Before, symbol: str) -> int:
+        rule = self.habits.written_by.get(symbol, symbol)
+        if rule not in self._wider:
+            return 0
+        cost = 1 + len(self._wider[rule]) + (rule != symbol)
+        usual = self.habits.usual(before)
+        if 2 * usual.get(symbol, 0) > sum(usual.values()):
+            return min(cost, _USUAL)
+        is_narrower = symbol not in usual and any(
+            rule == u or rule in self._wider.get(u, ()) for u in usual
+        )
+        return cost + (_UNUSUAL if is_narrower else 0)
+
+    def sign(self, span: Sequence[Word]) -> str | None:
+        """The text of a keyword or sign; ``None`` for what carries a value."""
+        if len(span) != 1 or (span[0][1] is None and self.readers.is_operand(span[0][0])):
+            return None
+        return self._token(span[0])
+
+    def stands_for_a_rule(self, span: Sequence[Word], *, is_listed: bool) -> bool:
+        """Whether some rule reads the span by itself (``TRUE`` is a literal too).
+
+        That a rule which reads almost any keyword reads this one says nothing, unless the keyword
+        is an item of a list.
+        """
+        if any(keyword is not None for _, keyword in span):
+            return False
+        kinds = tuple(kind for kind, _ in span)
+        return bool(self.readers.rules_for(kinds)) if is_listed else self.readers.means_more(kinds)
+
+    def rules_for_all(
+        self, spans: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
+    ) -> tuple[str, ...]:
+        """What can stand for each of the spans, from the narrowest to the widest."""
+        if any(keyword is not None or kind < 0 for span in spans for kind, keyword in span):
+            return ()
+        kinds = {tuple(kind for kind, _ in span) for span in spans}
+        rules = frozenset.intersection(*map(self.readers.rules_for, kinds))
+        token = self._token(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
+        if not rules:
+            return (token,) if token else ()
+        return self._levels_of(rules, near)
+
+    def phrases(
+        self, words: Sequence[Word], near: frozenset[str] = frozenset()
+    ) -> Iterator[tuple[str, ...]]:
+        """Symbols for the words, the most restrictive first; none where they are too many.
+
+        ``near`` names rules that stand close by in the grammar: they are tried for operands too.
+        """
+        if not words or len(words) > _LONGEST_PHRASE:
+            return
+        seen: set[tuple[str, ...]] = set()
+        for symbols in self._spellings(words, near):
+            for shape in (symbols, _as_list(symbols)):
+                if len(shape) <= _MOST_SYMBOLS and shape not in seen:
+                    seen.add(shape)
+                    yield shape
+
+    def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
+        """The words as they are, then with rules for their operands, narrow ones first."""
+        parts = self.cutter.parts(words)
+        if parts is None:
+            return
+        plain = [self._token(word) for word in words]
+        if all(plain):
+            tokens = tuple(token for token in plain if token)
+            yield tokens
+            yield tuple(self.habits.written_by.get(token, token) for token in tokens)
+        choices = [self._levels(part, near) for part in parts]
+        if all(choices):
+            for level in (0, -1):
+                yield self._as_usual(parts, [levels[level] for levels in choices])
+            yield from islice(product(*choices), _MOST_SPELLINGS)
+        if len(parts) == 1 and not any(keyword for _, keyword in words):
+            # an operand that is all of a phrase may be whatever reads it, the most used ones first
+            rules = self.readers.rules_for(tuple(kind for kind, _ in words))
+            ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
+            yield from ((rule,) for rule in ordered[:_MOST_READERS])
+
+    def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
+        """The symbols, with what the grammar usually writes where that reads the parts."""
+        before = ("", "")
+        for place, part in enumerate(parts):
+            symbols[place] = self.usual_for([part], before) or symbols[place]
+            before = (before[1], symbols[place])
+        return tuple(symbols)
+
+    def usual_for(self, spans: Sequence[tuple[Word, ...]], before: Before) -> str | None:
+        """The rule that usually stands in such a place, where it reads all the spans."""
+        if any(keyword is not None for span in spans for _, keyword in span):
+            return None
+        kinds = {tuple(kind for kind, _ in span) for span in spans}
+        usual = self.habits.usual(before)
+        fitting = [
+            rule
+            for rule in usual
+            if rule in self._wider and all(rule in self.readers.rules_for(k) for k in kinds)
+        ]
+        return min(fitting, key=lambda r: (-usual[r], len(self._wider[r]), r), default=None)
+
+    def _levels(
+        self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
+    ) -> tuple[str, ...]:
+        """What can stand for a part: its token, or rules from the narrowest to the widest."""
+        if len(part) == 1:
+            token = self._token(part[0])
+            if token is None or part[0][1] is not None:
+                return () if token is None else (token,)
+            if not self.readers.is_operand(part[0][0]):
+                if not self.recognizer.lexer.is_keyword(part[0][0]):
+                    return (token,)
+                kinds = (part[0][0],)
+                if not self.readers.means_more(kinds):
+                    return (token,)
+                rules = self.readers.rules_for(kinds) - self.readers.careless
+                return (token, *self._levels_of(rules, near))
+        elif any(keyword is not None or kind < 0 for kind, keyword in part):
+            return ()
+        rules = self.readers.rules_for(tuple(kind for kind, _ in part))
+        if not rules:
+            token = self._token(part[0])
+            return (token,) if len(part) == 1 and token else ()
+        return self._levels_of(rules, near)
+
+    def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
+        close = sorted(rules & near)[:2]
+        rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
+        # a rule that nothing uses waits to be used: it comes first
+        narrow = min(
+            rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), -self._uses[r], r)
+        )
+        wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
+        return tuple(dict.fromkeys((narrow, *close, wide)))
+
+    def _token(self, word: Word) -> str | None:
+        kind, keyword = word
+        if keyword is not None:
+            return keyword
+        return None if kind < 0 else self.spelled(kind)
+
+    def spelled(self, kind: int) -> str:
+        """A token as a rule writes it: keywords and kinds by name, signs quoted."""
+        lexer = self.recognizer.lexer
+        if lexer.is_keyword(kind) or lexer.display[kind] == lexer.names[kind]:
+            return lexer.names[kind]
+        return f"'{lexer.display[kind]}'"
+
+
+def _as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:
+    """``x a , a , a`` as ``x a (',' a)*``; other symbols as they are."""
+    commas = [place for place, symbol in enumerate(symbols) if symbol == "','"]
+    if not commas:
+        return symbols
+    size = (commas[1] if len(commas) > 1 else len(symbols)) - commas[0] - 1
+    unit, lead = symbols[commas[0] - size : commas[0]], symbols[: commas[0]]
+    if not 0 < size <= commas[0] or symbols[commas[0] :] != ("','", *unit) * len(commas):
+        return symbols
+    return (*lead, f"(',' {' '.join(unit)})*")

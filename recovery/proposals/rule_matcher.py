@@ -1,0 +1,108 @@
+"""Which rules of a grammar read which tokens.
+
+What a few tokens are can be asked of every rule: is this a sentence of it, or the beginning of one?
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+from grammar.parser.lexer import ERROR
+from grammar.parser.recognizer import Recognizer, State
+
+__all__ = ["Readers"]
+
+# Tokens that are remembered as the beginning of longer ones, and how many answers are kept.
+_LONGEST_BEGINNING = 24
+_MOST_REMEMBERED = 200_000
+
+
+class Readers:
+    """Knows what the rules of one grammar read."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self._begun: dict[tuple[int, ...], Mapping[str, State]] = {}
+        self._spans: dict[tuple[int, ...], frozenset[str]] = {}
+        self._a_name = (recognizer.lexer.kind_of.get("NAME", ERROR),)
+
+    @cached_property
+    def _entries(self) -> dict[str, State]:
+        """A state at the start of each rule that stands for part of a line."""
+        network = self.recognizer.network
+        return {
+            rule: self.recognizer.at_rule(rule)
+            for rule in network.entry
+            if rule != self.recognizer.grammar.start
+        }
+
+    def opened_by(self, kinds: Sequence[int]) -> list[str]:
+        """Rules that go on over the end of a line which begins them so."""
+        ends = self.recognizer.ends
+        return [rule for rule, state in self._read(tuple(kinds)).items() if not ends(state)]
+
+    def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
+        """Rules of which these tokens are a whole sentence."""
+        found = self._spans.get(kinds)
+        if found is None:
+            if len(self._spans) >= _MOST_REMEMBERED:
+                self._spans.clear()
+            ends = self.recognizer.ends
+            read = self._read(kinds).items()
+            found = self._spans[kinds] = frozenset(rule for rule, state in read if ends(state))
+        return found
+
+    def _read(self, kinds: tuple[int, ...]) -> Mapping[str, State]:
+        """Rules that can begin with these tokens, with the state behind them.
+
+        Phrases are asked for with all that they begin with, so each is read one token further.
+        """
+        known = len(kinds)
+        while known and kinds[:known] not in self._begun:
+            known -= 1
+        states = self._begun[kinds[:known]] if known else self._entries
+        for count in range(known, len(kinds)):
+            following = {rule: self.recognizer.step(s, kinds[count]) for rule, s in states.items()}
+            states = {rule: state for rule, state in following.items() if state is not None}
+            if count < _LONGEST_BEGINNING:
+                if len(self._begun) >= _MOST_REMEMBERED:
+                    self._begun.clear()
+                self._begun[kinds[: count + 1]] = states
+        return states
+
+    def means_more(self, kinds: tuple[int, ...]) -> bool:
+        """Whether some rule reads the tokens that would not with any name for the first of them."""
+        rules = self.rules_for(kinds) - self.careless
+        lexer = self.recognizer.lexer
+        if rules and lexer.is_keyword(kinds[0]):
+            rules -= self.rules_for((*self._a_name, *kinds[1:]))
+        return bool(rules)
+
+    @cached_property
+    def careless(self) -> frozenset[str]:
+        """Rules that read many keywords by themselves."""
+        lexer = self.recognizer.lexer
+        keywords = [kind for kind in lexer.kind_of.values() if lexer.is_keyword(kind)]
+        counts = Counter(rule for kind in keywords for rule in self.rules_for((kind,)))
+        return frozenset(rule for rule, count in counts.items() if 4 * count > len(keywords))
+
+    @cached_property
+    def of_values(self) -> frozenset[str]:
+        """Rules that read a name as well as values of other kinds."""
+        kinds = [(k,) for k in self.recognizer.lexer.kind_of.values() if self.is_operand(k)]
+        others = frozenset[str]().union(*(self.rules_for(k) for k in kinds if k != self._a_name))
+        return self.rules_for(self._a_name) & others
+
+    def may_be_a_name(self, kind: int) -> bool:
+        """Whether a token is a reserved word that some rules read as any other name."""
+        is_word = self.recognizer.lexer.is_keyword(kind)
+        return is_word and bool(self.rules_for((kind,)) - self.careless)
+
+    def is_operand(self, kind: int) -> bool:
+        """Whether a token carries a value of its own: a name, a number, a string."""
+        display = self.recognizer.lexer.display[kind]
+        return display == self.recognizer.lexer.names[kind] and not (
+            self.recognizer.lexer.is_keyword(kind)
+        )

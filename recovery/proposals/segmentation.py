@@ -1,0 +1,82 @@
+"""Parts: what the tokens of a line fall into, operands and single words or signs.
+
+``STEP A + 1`` is the word ``STEP`` and one operand: some rule reads ``A + 1`` as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from recovery.proposals.rule_matcher import Readers
+
+__all__ = ["Cutter", "Word"]
+
+#: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
+Word = tuple[int, str | None]
+
+_LONGEST_CUT = 120  # words; the cost grows with the cube, and no statement has so many parts
+_MOST_REMEMBERED = 200_000
+_OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
+# What a rule that reads several operands in a row costs for each seam: more than writing them out.
+_LOOSE = 30
+
+
+class Cutter:
+    """Cuts lines into parts under one grammar."""
+
+    def __init__(self, readers: Readers) -> None:
+        self.readers = readers
+        self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
+
+    def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
+        """The words cut into the fewest operands and single tokens, unless they are too many."""
+        if len(words) > _LONGEST_CUT:
+            return None
+        key = tuple(words)
+        if key not in self._cuts:
+            if len(self._cuts) >= _MOST_REMEMBERED:
+                self._cuts.clear()
+            self._cuts[key] = self._cut(key)
+        return self._cuts[key]
+
+    def _cut(self, words: tuple[Word, ...]) -> list[tuple[Word, ...]] | None:
+        count = len(words)
+        best: list[tuple[int, list[tuple[Word, ...]]] | None] = [None] * count + [(0, [])]
+        for start in range(count - 1, -1, -1):
+            for end in range(start + 1, count + 1):
+                rest, part = best[end], words[start:end]
+                if rest is None or not self._can_be_written(part):
+                    continue
+                cost = rest[0] + (10 if len(part) == 1 else 9 + _LOOSE * self._seams(part))
+                known = best[start]
+                if known is None or cost < known[0]:
+                    best[start] = (cost, [part, *rest[1]])
+        return best[0][1] if best[0] else None
+
+    def _seams(self, part: tuple[Word, ...]) -> int:
+        """Where a part could fall into operands: at commas outside of brackets, between values."""
+        depth = seams = 0
+        was_value = False
+        readers, lexer = self.readers, self.readers.recognizer.lexer
+        first = part[0][0]
+        if lexer.is_keyword(first):  # what follows a word belongs to it
+            kinds = tuple(kind for kind, _ in part)
+            is_operand = not readers.of_values.isdisjoint(readers.rules_for(kinds))
+            is_a_name = not readers.of_values.isdisjoint(readers.rules_for((first,)))
+            if not (is_operand and is_a_name):
+                return int(not is_operand and not readers.means_more(kinds))
+        for kind, _ in part:
+            text = lexer.display[kind]
+            depth += (text in _OPENING) - (text in _CLOSING)
+            is_value = depth == 0 and (readers.is_operand(kind) or readers.may_be_a_name(kind))
+            seams += (depth == 0 and text == ",") + (is_value and was_value)
+            was_value = is_value
+        return seams
+
+    def _can_be_written(self, part: tuple[Word, ...]) -> bool:
+        """Whether a part is one token, or what some rule reads."""
+        if len(part) == 1:
+            return part[0][1] is not None or part[0][0] >= 0
+        if any(keyword is not None or kind < 0 for kind, keyword in part):
+            return False
+        return bool(self.readers.rules_for(tuple(kind for kind, _ in part)))

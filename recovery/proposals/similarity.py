@@ -1,0 +1,193 @@
+"""How like an alternative is to those that a rule has: where would somebody write it?
+
+A rule that gathers kinds of statement takes one more; a rule of one form takes no other.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from difflib import SequenceMatcher
+from functools import cached_property
+
+from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
+from recovery.proposals.grammar_profile import HUB, Layout
+
+__all__ = ["Likeness"]
+
+_ALIKE = 0.6
+_TOGETHER = 6
+_LIKE = 6
+_LOOSE = 2
+
+
+class Likeness:
+    """Compares alternatives under one grammar."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        self.vocabulary = layout.vocabulary
+        self._classes: dict[str, list[list[str]]] = {}
+        self._leading_words: dict[str, frozenset[str]] = {}
+
+    def unlike(self, rule: str, symbols: Sequence[str]) -> int:
+        """How little a rule asks for an alternative: below 0 where it has one just like it.
+
+        Keywords are alike; so are the same rules, signs and kinds of token. A rule of many
+        alternatives is made to take more, one of a single form is not.
+        """
+        known = self._classes.get(rule)
+        if known is None:
+            known = self._classes[rule] = [
+                [self._class(rule, e) for e in a.elements]
+                for a in self.layout.grammar.by_name[rule].alternatives
+            ]
+        new = [self._class_of(symbol) for symbol in symbols]
+        matcher = SequenceMatcher(None, b=new, autojunk=False)
+        best = 0.0
+        for old in known:
+            matcher.set_seq1(old)
+            best = max(best, matcher.ratio())
+        if self.layout.only_passes_on(rule):
+            return 0
+        kinds = {_kind(old[0]) for old in known if old}
+        if len(symbols) == 1 and self._is_one_of_words(rule):
+            return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
+        if self.gathers(rule):
+            if not self._is_single(symbols):
+                if self.vocabulary.words_of(rule):
+                    return 3 * _LIKE  # each is a word, and this is none
+                return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
+            if not self.layout.is_free(symbols[0]):
+                return -_LIKE  # it has its place already
+            return -3 * _LIKE if _kind(new[0]) in kinds else -2 * _LIKE
+        leads = self._leads(rule)
+        if len(leads) == 1 and "" not in leads:
+            return -_LIKE if symbols[0] in leads else 2 * _LIKE
+        if best >= _ALIKE and len(known) > 1:
+            return -round(_LIKE * best)
+        return 2 + max(0, _TOGETHER - len(known))
+
+    def _is_one_of_words(self, rule: str) -> bool:
+        """Whether a rule is a choice of words."""
+        return self.layout.has_choice(rule) and self.vocabulary.is_set_of_words(rule)
+
+    def _is_known_by(self, rule: str, word: str) -> bool:
+        """Whether one of the rules that a rule gathers is known by a word."""
+        return any(
+            rule in gathering and name in self.layout.callers and word in self._leads(name)
+            for name, gathering in self._gathered.items()
+        )
+
+    def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether the symbols begin with a rule that stands beside this one wherever it is called.
+
+        What may follow that rule is better said there.
+        """
+        return len(symbols) > 1 and bool(
+            self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
+        )
+
+    def extends(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether the symbols are an alternative that the rule has, with more before or behind it.
+
+        That may as well be left out, so it is better said there.
+        """
+        found = self.layout.grammar.by_name[rule]
+        for alternative in found.alternatives:
+            known = [found.source_of(e) for e in alternative.elements]
+            count = len(known)
+            if 0 < count < len(symbols) and known in (
+                list(symbols[:count]),
+                list(symbols[-count:]),
+            ):
+                return True
+        return False
+
+    def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Whether a rule is one kind of statement, known by its words, and the symbols another."""
+        leads = self._leads(rule)
+        another_word = len(symbols) == 1 and self._is_one_of_words(rule)
+        known = "" in leads or symbols[0] in leads or len(leads) >= HUB
+        return rule in self._gathered and not (known or another_word)
+
+    @cached_property
+    def _gathered(self) -> dict[str, frozenset[str]]:
+        """For each rule the rules that gather it."""
+        found: dict[str, set[str]] = defaultdict(set)
+        for rule in self.layout.grammar.rules:
+            if not rule.is_lexer and self.gathers(rule.name):
+                for alternative in rule.alternatives:
+                    only = self._only(rule, alternative)
+                    if only is not None:
+                        found[only.name].add(rule.name)
+        return {name: frozenset(rules) for name, rules in found.items()}
+
+    def gathers(self, rule: str) -> bool:
+        """Whether most alternatives of a rule are one rule or token each."""
+        found = self.layout.grammar.by_name[rule]
+        single = sum(self._only(found, a) is not None for a in found.alternatives)
+        return len(found.alternatives) > 2 and 2 * single >= len(found.alternatives)
+
+    def _only(self, rule: Rule, alternative: Alternative) -> Reference | None:
+        """The one rule or token that an alternative is, a line end behind it left aside."""
+        elements = alternative.elements
+        if len(elements) == 2 and rule.source_of(elements[1]) == self.layout.line_end:
+            elements = elements[:1]
+        first = elements[0] if len(elements) == 1 else None
+        return first if isinstance(first, Reference) else None
+
+    def _is_single(self, symbols: Sequence[str]) -> bool:
+        """Whether the symbols are one rule or one reserved word, a line end left aside."""
+        if len(symbols) == 2 and symbols[1] == self.layout.line_end:
+            symbols = symbols[:1]
+        if len(symbols) != 1:
+            return False
+        known = self.layout.grammar.by_name.get(symbols[0])
+        is_rule = known is not None and not known.is_lexer
+        return is_rule or self._class_of(symbols[0]) != symbols[0]
+
+    def _leads(self, rule: str) -> frozenset[str]:
+        """The reserved words that alternatives begin with; an empty one for those without."""
+        found = self._leading_words.get(rule)
+        if found is None:
+            alternatives = self.layout.grammar.by_name[rule].alternatives
+            words = (self._words_of(a.elements) for a in alternatives)
+            found = self._leading_words[rule] = frozenset(word for some in words for word in some)
+        return found
+
+    def _words_of(self, elements: Sequence[Element]) -> list[str]:
+        """What a sequence begins with, what may be left out passed over."""
+        for element in elements:
+            if not isinstance(element, Repeat) or element.operator == "+":
+                return self._words(element)
+        return [""]
+
+    def _words(self, element: Element) -> list[str]:
+        """A reserved word, or those of a choice; an empty one for anything else."""
+        if isinstance(element, Reference) and self.vocabulary.is_keyword(element):
+            return [element.name]
+        if isinstance(element, Group) and self.vocabulary.is_keyword(element):
+            return [w for a in element.alternatives for w in self._words(a.elements[0])]
+        return [""]
+
+    def _class(self, rule: str, element: Element) -> str:
+        return self._class_of(self.layout.grammar.by_name[rule].source_of(element))
+
+    def _class_of(self, symbol: str) -> str:
+        suffix = symbol[-1] if symbol[-1] in "?*+" else ""
+        name = symbol.rstrip("?*+")
+        if name in self.layout.grammar.by_name and not name[0].isupper():
+            if len(self.layout.callers[name]) > 1 or name in self.layout.line_ends:
+                return symbol
+            return ("block" if name in self.layout.blocks else "kind") + suffix
+        lexer = self.layout.recognizer.lexer
+        kind = lexer.kind_of.get(name)
+        if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
+            return "keyword" + suffix
+        return symbol
+
+
+def _kind(symbol: str) -> str:
+    """Signs are of one kind."""
+    return "sign" if symbol[0] == "'" else symbol

@@ -1,0 +1,383 @@
+"""Openings: where in the grammar tokens of a failing line could be let in.
+
+The recogniser is asked where it stands at the offending token, and where it stood before, and from
+which positions the rest of the line could be read. What is written into the rule there is not
+decided here: see `recovery.proposals.candidates`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+from grammar.notation.edits import AddAlternative, Address, Edit, Insert, MakeOptional
+from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
+from grammar.parser.failures import Form
+from grammar.parser.recognizer import Configuration, State
+from recovery.proposals.edit_site import UNLIKELY, Line, Opening, Ranked, places_of, sites_of
+from recovery.proposals.grammar_profile import Layout
+from recovery.proposals.line_sites import LineOpenings
+from recovery.proposals.phrases import Phraser
+from recovery.proposals.segmentation import Word
+from recovery.proposals.similarity import Likeness
+
+__all__ = ["OpeningFinder"]
+
+_MOST_SKIPPED = 3
+# Elements of a sequence in which one word may well stand for another at its beginning.
+_SHARED = 4
+_LONGEST_RUN = 24
+# What a rule may have in front of it and still be the same thing.
+_LONGEST_PREFIX = 3
+# What is let in ahead of a failure is rather a thing that was begun there than another one.
+_NOT_BEGUN = 2
+
+
+class OpeningFinder:
+    """Finds openings under one grammar."""
+
+    def __init__(self, layout: Layout, likeness: Likeness, phraser: Phraser) -> None:
+        self.recognizer = layout.recognizer
+        self.grammar = layout.grammar
+        self.layout = layout
+        self.vocabulary = layout.vocabulary
+        self.likeness = likeness
+        self.phraser = phraser
+        self._lines = LineOpenings(layout, likeness, phraser)
+
+    def find(self, line: Line) -> Iterator[Opening | Ranked]:
+        """Openings of a line, and edits that need no phrase; some more than once."""
+        recognizer, form = self.recognizer, line.form
+        words = line.words()
+        before = recognizer.restore(form.before)
+        starts = {form.index}
+        # a would-be keyword was read as a name and failed the line later than it should have
+        starts |= {i for i, _ in line.keywords if i < form.index}
+        for start in sorted(starts):
+            state, _ = recognizer.run(before, form.kinds[:start])
+            for site in sites_of(self.recognizer, state):
+                yield from self._at_site(state, site, words, start)
+        if form.index:
+            # the last token may have been read as what the line leaves out
+            start = form.index - 1
+            state, _ = recognizer.run(before, form.kinds[:start])
+            for site in sites_of(self.recognizer, state):
+                for place in places_of(self.recognizer, site):
+                    if place[-1] <= len(self._sequence_at(site, place).elements):
+                        yield from self._omissions(state, site, place, words, start)
+            yield from self._taken_for_something_else(before, form, words)
+            yield from self._earlier(before, form, words)
+        if form.index and 0 not in starts:
+            yield from self._lines.as_new_line(before, words)
+        yield from self._lines.as_lines(before, words)
+        if form.index == 0:
+            yield from self._lines.after_line_end(form, words)
+
+    def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
+        """The edits that reserve the would-be keywords among the words."""
+        return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
+
+    def block_rules(self, line: Line) -> list[str]:
+        """Rules that can begin where a line begins and whose alternatives are lines or blocks."""
+        network = self.recognizer.network
+        sites = self.recognizer.sites(self.recognizer.restore(line.form.before))
+        rules = {network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]}
+        return sorted(rules & (self.layout.of_lines | self.layout.blocks))
+
+    def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
+        return self.layout.sequence(self.recognizer.network.rule[site[0]], place[:-1])
+
+    # ------------------------------------------------------------------- from an earlier token
+
+    def _taken_for_something_else(
+        self, before: State, form: Form, words: list[Word]
+    ) -> Iterator[Opening]:
+        """Alternatives of the rules that the tokens before the failure were taken for."""
+        recognizer, network = self.recognizer, self.recognizer.network
+        begun = {frames for _, frames in self._begun(before, form)}
+        latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
+        state = before
+        for start in range(form.index):
+            for position, stack in sites_of(self.recognizer, state):
+                below = stack.positions()
+                for entry, back in network.calls[position]:
+                    frames = (back, *below)
+                    if frames in begun:
+                        beyond = recognizer.at((back, stack), state)
+                        latest[entry, frames] = (start, entry, beyond)
+            following = recognizer.step(state, form.kinds[start])
+            assert following is not None
+            state = following
+        for start, entry, beyond in latest.values():
+            rule = network.rule[entry]
+            if rule in self.layout.line_ends:
+                continue
+            for end in self._resuming(beyond, words, start, form.index + 1):
+                yield Opening(
+                    "alternative",
+                    rule,
+                    (1, 1),
+                    tuple(words[start:end]),
+                    self.layout.width(rule) + 8,
+                )
+
+    def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
+        """The rules that were being read where the line failed, with the frames below them."""
+        state, _ = self.recognizer.run(before, form.kinds[: form.index])
+        rule = self.recognizer.network.rule
+        return {
+            (rule[each[i - 1]], each[i:])
+            for each in self.recognizer.frames(state)
+            for i in range(1, len(each))
+        }
+
+    def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[Opening]:
+        """Openings ahead of the failure: what was to be let in was read as something else."""
+        recognizer, network = self.recognizer, self.recognizer.network
+        begun = self._begun(before, form)
+        for start in range(max(0, form.index - _MOST_SKIPPED), form.index):
+            state, _ = recognizer.run(before, form.kinds[:start])
+            for site in sites_of(self.recognizer, state):
+                rule = network.rule[site[0]]
+                if rule in self.layout.line_ends:
+                    continue
+                is_first = site[0] == network.entry[rule]
+                for entry, back in network.calls[site[0]]:
+                    beyond = recognizer.at((back, site[1]), state)
+                    called = network.rule[entry]
+                    rank = self.layout.width(called) + 8
+                    if (called, (back, *site[1].positions())) not in begun:
+                        rank += _NOT_BEGUN
+                    for end in self._reading_on(beyond, words, start, form.index):
+                        yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
+                # what was let in may end where another reading went on, and failed later
+                ends = self._reading_on(recognizer.at(site, state), words, start, start + 1)
+                for end, place in product(ends, places_of(self.recognizer, site)):
+                    sequence = self.layout.sequence(rule, place[:-1])
+                    comes_next = words[end][0] in self.layout.first(sequence, place[-1])
+                    if self._is_behind_line_end(rule, place):
+                        continue
+                    if comes_next or (not is_first and end >= form.index):
+                        yield self._insertion(rule, place, words[start:end])
+
+    def _reading_on(self, state: State, words: list[Word], start: int, first: int) -> list[int]:
+        """Where from ``first`` on the whole rest of the line can be read from ``state``."""
+        kinds = [kind for kind, _ in words]
+        ends = range(max(start + 1, first), min(len(kinds), start + _MOST_SKIPPED + 1))
+        return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
+
+    # --------------------------------------------------------------------------- at one site
+
+    def _at_site(
+        self, state: State, site: Configuration, words: list[Word], start: int
+    ) -> Iterator[Opening | Ranked]:
+        network = self.recognizer.network
+        position, stack = site
+        rule = network.rule[position]
+        if rule in self.layout.line_ends:
+            return
+        base = network.entry[rule]
+        automaton = network.automata[rule]
+        here = self.recognizer.at(site, state)
+        ends = self._resuming(here, words, start)
+        for place in sorted(automaton.places[position - base]):
+            number = place[-1]
+            sequence = self.layout.sequence(rule, place[:-1])
+            # inserting what is missing, to go on where we are
+            is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
+            begins_loop = number == 1 and len(place) > 2
+            gathers = self.likeness.gathers(rule)
+            for end in ends:
+                comes_next = words[end][0] in self.layout.first(sequence, number)
+                # behind all that may be left out, but for what the line has behind it; before the
+                # first element of a rule only where that element itself comes next
+                is_prefix = position != base or (not gathers and end - start <= _LONGEST_PREFIX)
+                is_suffix = is_last and position != base and not begins_loop
+                if (comes_next and is_prefix) or (
+                    is_suffix and not self._is_behind_line_end(rule, place)
+                ):
+                    yield self._insertion(rule, place, words[start:end])
+                yield from self._repetitions(rule, place, words[start:end])
+            yield from self._blocks(rule, place, words[start:])
+            if number > len(sequence.elements):
+                continue
+            # something else in place of the next element
+            element = sequence.elements[number - 1]
+            for after in self._after(site, automaton.places, place, base):
+                beyond = self.recognizer.at((after, stack), state)
+                for end in self._resuming(beyond, words, start):
+                    yield from self._replacements(rule, place, element, words[start:end])
+            yield from self._omissions(state, site, place, words, start)
+
+    def _resuming(
+        self, state: State, words: list[Word], start: int, earliest: int = 0
+    ) -> list[int]:
+        """Where the line can be read on from ``state``, to its end or for some tokens at least."""
+        kinds = [kind for kind, _ in words]
+        whole, part = [], []
+        # the end of the line itself is never part of a phrase
+        for end in range(max(start + 1, earliest), min(len(kinds), start + _LONGEST_RUN)):
+            unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
+            if unknown == end:
+                continue  # a word that the grammar lacks belongs to the phrase
+            _, failed = self.recognizer.run(state, kinds[end:unknown])
+            if failed is None:
+                whole.append(end)
+            elif failed > 1:
+                part.append(end)
+        return whole[:3] or part[:1]
+
+    def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> Opening:
+        width = self._room(rule)
+        elements = self.layout.sequence(rule, place[:-1]).elements
+        if len(place) > 2 and place[-1] > len(elements):
+            width += 1  # behind one of a choice rather than behind the choice
+        before = elements[place[-1] - 2] if place[-1] > 1 else elements[0]
+        if isinstance(before, Reference) and not before.is_token:
+            alone = self.layout.is_hub(rule) and len(elements) == 1
+            if alone or (place[-1] > 1 and self.layout.is_hub(before.name)):
+                width += UNLIKELY  # behind one of many statements rather than in it
+        return Opening("insert", rule, place, tuple(words), width + 8)
+
+    def _is_behind_line_end(self, rule: str, place: Address) -> bool:
+        """Whether a place is behind the end of a line that a rule is: that is the next line."""
+        elements = self.layout.sequence(rule, place[:-1]).elements
+        return self.layout.closing(rule) is not None and (
+            len(place) == 2 and place[-1] > len(elements)
+        )
+
+    def _room(self, rule: str) -> int:
+        """How wide an insertion into a rule is; one that has nothing of its own waits for it."""
+        width = self.layout.width(rule)
+        return width - UNLIKELY if self.layout.only_passes_on(rule) else width
+
+    def _repetitions(
+        self, rule: str, place: Address, words: Sequence[Word]
+    ) -> Iterator[Ranked | Opening]:
+        """The operand before a place again, after a sign or word: ``a (',' a)*``."""
+        if place[-1] == 1 or len(words) < 2 or any(keyword for _, keyword in words[1:]):
+            return
+        before = self.layout.sequence(rule, place[:-1]).elements[place[-1] - 2]
+        if not isinstance(before, Reference) or before.is_token:
+            return
+        kind, keyword = words[0]
+        if keyword is None and kind < 0:
+            return
+        if before.name in self.phraser.readers.rules_for(tuple(k for k, _ in words[1:])):
+            text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
+            rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
+            rank -= self.layout.said_so(text)
+            yield rank, (*self.reserved(words), Insert(rule, place, text))
+
+    def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[Ranked]:
+        """A rule of several lines that this line begins and that is not known at this place."""
+        if any(keyword for _, keyword in words):
+            return
+        rank = self.layout.width(rule) + 8
+        elements = self.layout.sequence(rule, place[:-1]).elements
+        following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
+        inner = following.item if isinstance(following, Repeat) else following
+        for block in self.phraser.readers.opened_by([kind for kind, _ in words]):
+            if isinstance(inner, Reference) and not inner.is_token and inner.name != block:
+                hub = inner.name
+                if len(self.grammar.by_name[hub].alternatives) > 1:
+                    end = self.layout.closing(hub)
+                    symbols = (block, end) if end else (block,)
+                    if not self.likeness.is_foreign(hub, symbols):
+                        worth = self.layout.width(hub) + 8 + self.likeness.unlike(hub, symbols)
+                        yield worth, (AddAlternative(hub, " ".join(symbols)),)
+            if rule != self.grammar.start and self.layout.is_at_start(rule, place):
+                continue
+            for text in (f"{block}*", f"({block} NEWLINE*)*"):
+                yield rank + UNLIKELY, (Insert(rule, place, text),)
+
+    def _replacements(
+        self, rule: str, place: Address, element: Element, words: Sequence[Word]
+    ) -> Iterator[Opening]:
+        layout = self.layout
+        elements = layout.sequence(rule, place[:-1]).elements
+        whole = len(place) == 2 and len(elements) == 1  # an alternative that is one element
+        called = element.name if isinstance(element, Reference) and not element.is_token else None
+        # one kind of statement is no place for another kind: its caller is
+        if called and (layout.has_choice(called) or not (whole and layout.is_hub(rule))):
+            rank = layout.width(called) + 8
+            yield Opening("alternative", called, (1, 1), tuple(words), rank)
+        leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
+        closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
+        lexer = self.recognizer.lexer
+        word = len(words) == 1 and (words[0][1] or lexer.is_keyword(words[0][0]))
+        if len(place) > 2 and len(elements) == 1:
+            return  # the same as with the group it is in
+        if whole or ((leading or closing) and not word):
+            return  # the same as an alternative; the words that begin and close a line or a block
+        if called and place[-1] == 1 and len(place) == 2 and layout.is_hub(rule):
+            return  # the same as an alternative of the rule or of the one it calls
+        if place[-1] == 1 and len(place) == 2 and len(words) > _LONGEST_PREFIX:
+            return  # another beginning as long as that is another thing
+        rank = layout.width(rule) + (22 if leading else 12)
+        if leading and len(elements) < _SHARED:
+            rank += 2 * UNLIKELY  # there is hardly anything that the two words have in common
+        if isinstance(element, Repeat):
+            rank += UNLIKELY  # one more thing in a loop made for something else
+        if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
+            rank += UNLIKELY
+        yield Opening("widen", rule, place, tuple(words), rank)
+
+    def _omissions(
+        self,
+        state: State,
+        site: Configuration,
+        place: Address,
+        words: list[Word],
+        start: int,
+    ) -> Iterator[Ranked]:
+        network = self.recognizer.network
+        position, stack = site
+        rule = network.rule[position]
+        base = network.entry[rule]
+        places = network.automata[rule].places
+        sequence = self.layout.sequence(rule, place[:-1])
+        rest = [kind for kind, _ in words[start:]]
+        for count in range(1, _MOST_SKIPPED + 1):
+            last = (*place[:-1], place[-1] + count)
+            if last[-1] > len(sequence.elements) + 1 or (
+                count == len(sequence.elements) and len(place) == 2
+            ):
+                return
+            if count == 1 and _may_be_left_out(sequence.elements[place[-1] - 1]):
+                continue
+            for target in (base + s for s, at in enumerate(places) if last in at):
+                _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
+                if failed is None or failed > 1:
+                    rank = self.layout.width(rule) + 8 + count
+                    left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
+                    ends = (left_out[0] is sequence.elements[0]) or last[-1] > len(
+                        sequence.elements
+                    )
+                    if ends and any(map(self.vocabulary.is_keyword, left_out)):
+                        rank += 2 * UNLIKELY  # the words that begin and close a line or a block
+                    yield rank, (MakeOptional(rule, place, count),)
+                    break
+
+    def _after(
+        self,
+        site: Configuration,
+        places: tuple[frozenset[Address], ...],
+        place: Address,
+        base: int,
+    ) -> list[int]:
+        """Positions just after the element at ``place``."""
+        following = (*place[:-1], place[-1] + 1)
+        network = self.recognizer.network
+        rule = network.rule[site[0]]
+        element = self.layout.sequence(rule, place[:-1]).elements[place[-1] - 1]
+        if isinstance(element, Reference):
+            state = network.automata[rule].edges[site[0] - base].get(element.name)
+            return [] if state is None else [base + state]
+        return [base + s for s, at in enumerate(places) if following in at]
+
+
+def _may_be_left_out(element: Element) -> bool:
+    if isinstance(element, Repeat):
+        return element.operator != "+"
+    return isinstance(element, Group) and any(not a.elements for a in element.alternatives)

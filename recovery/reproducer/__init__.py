@@ -1,0 +1,1 @@
+"""The shortest program that fails in the same way."""

@@ -1,0 +1,288 @@
+"""Reproducers: of a failing line the shortest program that still fails the same way.
+
+The line is put into the shortest program that reaches a place where it fails as it did, and then
+tokens are taken away for as long as that stays so. Nothing else in the program may be wrong. Where
+a grammar that mends the line is known, the program has to stay one that it accepts: so it shows the
+whole construct and not a stump.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from grammar.parser.failures import FailureFinder
+from grammar.parser.lexer import EOF
+from grammar.parser.recognizer import Recognizer, State
+from grammar.parser.sentences import Sentences
+from grammar.parser.shortest_paths import Paths
+from recovery.proposals.candidates import Line
+from recovery.reproducer.ddmin import shrunk, without_loops, without_stretches
+from recovery.reproducer.rendering import Spelling, Token
+from recovery.reproducer.same_failure import (
+    LONGEST_GAP,
+    SameFailure,
+    Way,
+    kinds_in,
+    line_at,
+    way_of,
+)
+
+__all__ = ["Reducer", "Reproducer"]
+
+# How many of the configurations a line was read from are looked at.
+_MOST_CONFIGURATIONS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Reproducer:
+    """A program in which one line fails.
+
+    ``line`` and ``column`` of the failure count from 1. ``tokens`` counts line ends but not the end
+    of the file; ``beyond`` are those more than the shortest program through the same place has.
+    """
+
+    text: str
+    line: int
+    column: int
+    tokens: int
+    beyond: int
+
+
+class Reducer:
+    """Makes reproducers under one grammar."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.recognizer = recognizer
+        self._finder = FailureFinder(recognizer)
+        self._spelling = Spelling(recognizer)
+        self._paths = Paths(recognizer.network)
+
+    def reduce(
+        self, line: Line, words: Sequence[str], *, mended: Recognizer | None = None
+    ) -> Reproducer | None:
+        """The reproducer of a failing line.
+
+        ``words`` are the texts of its tokens in upper case, or of the first of them. ``mended`` is
+        a recogniser that may read the line; it numbers the tokens of this grammar alike. ``None``
+        where no program fails as the line does.
+        """
+        way = self._way(line)
+        tokens = self._spelling.tokens(line, words)
+        for wider in (None,) if mended is None else (mended, None):
+            # what only follows from the failure is put up with where it cannot be helped
+            for may_follow in (False, True):
+                test = SameFailure(self._finder, self._spelling, way, wider, may_follow)
+                for programs in self._programs(line, tokens, wider):
+                    found = [self._smallest(p, test) for p in programs if test.passes(p.whole)]
+                    if found:
+                        return self._reproducer(test, min(found, key=len))
+        return None
+
+    def _way(self, line: Line) -> Way:
+        form, meant = line.form, dict(line.keywords)
+        before = self.recognizer.restore(form.before)
+        state, _ = self.recognizer.run(before, form.kinds[: form.index])
+        context = self._finder.context(state)
+        words = [meant.get(i) for i in range(len(form.kinds))]
+        return way_of(self.recognizer, form.kinds, words, form.index, context)
+
+    def _smallest(self, program: _Program, test: SameFailure) -> list[Token]:
+        """The program with as few tokens as the test lets it have."""
+        line = shrunk(
+            program.line,
+            self._spelling.operands,
+            lambda tokens: test.passes(program.before + tokens + program.after),
+        )
+        return without_stretches(program.before + line + program.after, test.passes)
+
+    def _reproducer(self, test: SameFailure, tokens: list[Token]) -> Reproducer:
+        text = self._spelling.text(tokens, test.wider)
+        assert text is not None  # the test has seen it
+        failure = self._finder.find(text)[0]
+        beyond = self._beyond([*(t.kind for t in tokens), EOF])
+        return Reproducer(text, failure.line, failure.column, len(tokens), beyond)
+
+    def _beyond(self, kinds: list[int]) -> int:
+        """How many tokens more than its frame a program has."""
+        recognizer = self.recognizer
+        _, index = recognizer.run(recognizer.start, kinds)
+        assert index is not None
+        first, _ = line_at(recognizer, kinds, index)
+        before, _ = recognizer.run(recognizer.start, kinds[:first])
+        frame = len(self._places.get(before, kinds[:first]))
+        frame += len(self._paths.completion(recognizer.frames(before)))
+        return max(0, len(kinds) - frame)
+
+    # ----------------------------------------------------------------------- whole programs
+
+    def _programs(
+        self, line: Line, tokens: list[Token], wider: Recognizer | None
+    ) -> Iterator[list[_Program]]:
+        """Programs around the line, those at one place together, the shortest ways there first."""
+        recognizer, form, line_kind = self.recognizer, line.form, self.recognizer.line_kind
+        ways_out = None if wider is None else Paths(wider.network)
+        for prefix in self._prefixes(line):
+            start, failed = recognizer.run(recognizer.start, prefix)
+            if failed is not None or (
+                recognizer.run(start, form.kinds[: form.index + 1])[1] != form.index
+            ):
+                continue
+            before, body = self._spelling.frame(prefix), tokens
+            beyond: list[list[Token]] = []
+            if wider is not None and ways_out is not None:
+                read = _readable(wider, before, tokens, form.index)
+                if read is None:
+                    continue
+                body, end = read
+                way = ways_out.completion(wider.frames(end))[:-1]
+                if body[-1:] != tokens[-1:]:  # the line has an end of its own
+                    cut = next((i for i, k in enumerate(way, 1) if k == line_kind), len(way))
+                    body = body + self._spelling.frame(way[:cut], wider, name="end of line")
+                    way = way[cut:]
+                beyond.append(self._spelling.frame(way, wider))
+            for bodies in (self._shortened(start, before, body, wider), [body]):
+                yield [
+                    _Program(before, chosen, after)
+                    for chosen in bodies
+                    for after in [*self._endings(start, chosen), *beyond]
+                ]
+
+    def _shortened(
+        self, start: State, before: list[Token], line: list[Token], wider: Recognizer | None
+    ) -> list[list[Token]]:
+        """The line without what leads from a state back to it, as far as that can be known."""
+        kinds = [token.kind for token in line]
+        states = _states(self.recognizer, start, kinds)
+        if wider is not None:
+            outset, _ = wider.run(wider.start, kinds_in(wider, before))
+            more = _states(wider, outset, kinds_in(wider, line))
+            return [without_loops(line, list(zip(_places(states), _places(more), strict=True)))]
+        # what comes behind a failure is all one, but a line that can be read on shows more
+        found = [without_loops(line, _places(states))]
+        broken = self._broken(start, line)
+        if broken.gap:
+            head, tail = broken.index + 1, broken.index + broken.gap
+            behind = _states(self.recognizer, broken.state, kinds[tail:])
+            found.append(
+                without_loops(line[:head], _places(states[:head]))
+                + without_loops(line[tail:], _places(behind))
+            )
+        return found
+
+    def _broken(self, start: State, line: list[Token]) -> _Broken:
+        kinds = [token.kind for token in line]
+        state, index = self.recognizer.run(start, kinds)
+        if index is None:  # what fails is the end of the file
+            return _Broken(len(kinds), state, 0, start)
+        for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
+            end, failed = self.recognizer.run(state, kinds[index + gap :])
+            if failed is None:
+                return _Broken(index, state, gap, end)
+        return _Broken(index, state, 0, start)
+
+    def _prefixes(self, line: Line) -> Iterator[list[int]]:
+        """Tokens to places where a line can begin, and to the very place where this one began."""
+        yield from self._places.values()
+        for frames in line.form.before[:_MOST_CONFIGURATIONS]:
+            yield self._paths.prefix(frames)
+
+    @cached_property
+    def _places(self) -> dict[State, list[int]]:
+        """The shortest tokens to each place where a line can begin, the fewest first."""
+        recognizer, sentences = self.recognizer, Sentences(self.recognizer.grammar)
+        kind_of, line_kind = recognizer.lexer.kind_of, recognizer.line_kind
+        found: dict[State, list[int]] = {recognizer.start: []}
+        for rule in sentences.reachable:
+            for sentence in sentences.through(rule):
+                kinds = [kind_of[name] for name in sentence]
+                here = recognizer.start
+                for end, kind in enumerate(kinds, 1):
+                    state = recognizer.step(here, kind)
+                    if state is None:  # a rule that only fits with more around it
+                        break
+                    here = state
+                    if kind == line_kind and end < len(found.get(here, sentence)):
+                        found[here] = kinds[:end]
+        return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
+
+    def _endings(self, start: State, line: list[Token]) -> list[list[Token]]:
+        """How a program goes on behind the line: as without it, or as if it had been read."""
+        broken, frames = self._broken(start, line), self.recognizer.frames
+        if broken.index == len(line):
+            return [[]]
+        ways = {tuple(self._paths.completion(frames(s)))[:-1] for s in (start, broken.end)}
+        if line[-1].kind != self.recognizer.line_kind:  # the last line of a file
+            ways |= {(self.recognizer.line_kind, *way) for way in ways}
+        return [self._spelling.frame(way) for way in sorted(ways, key=lambda w: (len(w), w))]
+
+
+@dataclass(frozen=True, slots=True)
+class _Program:
+    """A line in its frame."""
+
+    before: list[Token]
+    line: list[Token]
+    after: list[Token]
+
+    @property
+    def whole(self) -> list[Token]:
+        return self.before + self.line + self.after
+
+
+@dataclass(frozen=True, slots=True)
+class _Broken:
+    """Where a line fails and in what state, and how it can be read on.
+
+    ``gap`` is how many tokens there have to be left out for that, and ``end`` the state then; none
+    and the state before the line where it cannot.
+    """
+
+    index: int
+    state: State
+    gap: int
+    end: State
+
+
+def _readable(
+    wider: Recognizer, before: list[Token], line: list[Token], index: int
+) -> tuple[list[Token], State] | None:
+    """The line as a wider grammar reads it, and the state behind it.
+
+    Where that fails too, further on than the line did, the tokens there are left out, or else the
+    rest of the line.
+    """
+    start, failed = wider.run(wider.start, kinds_in(wider, before))
+    if failed is not None:
+        return None
+    kinds = kinds_in(wider, line)
+    state, failed = wider.run(start, kinds)
+    if failed is None:
+        return line, state
+    if failed <= index:
+        return None
+    for gap in range(1, min(len(kinds) - failed, LONGEST_GAP + 1)):
+        end, left = wider.run(state, kinds[failed + gap :])
+        if left is None:
+            return line[:failed] + line[failed + gap :], end
+    return line[:failed], state
+
+
+def _states(
+    recognizer: Recognizer, state: State | None, kinds: Sequence[int]
+) -> list[State | None]:
+    """The state before each of the tokens; none behind a failure."""
+    out: list[State | None] = []
+    for kind in kinds:
+        out.append(state)
+        state = None if state is None else recognizer.step(state, kind)
+    return out
+
+
+def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
+    """What tells states apart while they are kept.
+
+    Deep tails may be equal and not identical, which costs a loop: comparing them costs more.
+    """
+    return [None if s is None else (id(s.core), id(s.tail)) for s in states]

@@ -1,0 +1,136 @@
+"""Whether a program fails in the same way as a line does, and in no other.
+
+A failure is the same where the same token could not come and the grammar was doing the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from grammar.parser.failures import Context, FailureFinder
+from grammar.parser.lexer import EOF
+from grammar.parser.recognizer import Recognizer
+from recovery.reproducer.rendering import FRAME, Spelling, Token
+
+__all__ = ["LONGEST_GAP", "SameFailure", "Way", "kinds_in", "line_at", "way_of"]
+
+#: How many tokens at a failure may have to go for the rest of the line to be read.
+LONGEST_GAP = 64
+# A bound on the work for one reproducer, in tokens read: about a second.
+_MOST_READ = 3_000_000
+_COST_OF_A_TEST = 40
+
+
+class Way(NamedTuple):
+    """What makes two failures alike: the offending token and what the grammar was doing.
+
+    ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
+    it, by the name before it and by the first of the line. ``opening`` is the first token's kind
+    where the line could have ended: then the statement as a whole is what does not go on.
+    """
+
+    kind: int
+    meant: str | None
+    before: str | None
+    lead: str | None
+    opening: int | None
+    rule: str
+    expected: tuple[str, ...]
+
+
+def way_of(
+    recognizer: Recognizer,
+    kinds: Sequence[int],
+    meant: Sequence[str | None],
+    index: int,
+    context: Context,
+) -> Way:
+    """How the line of these tokens fails at ``index``."""
+    line_kind = recognizer.line_kind
+    could_end = line_kind > 0 and recognizer.lexer.display[line_kind] in context.expected
+    return Way(
+        kinds[index],
+        meant[index],
+        meant[index - 1] if index else None,
+        meant[0],
+        kinds[0] if could_end or not index else None,
+        context.rule,
+        context.expected,
+    )
+
+
+def line_at(recognizer: Recognizer, kinds: Sequence[int], index: int) -> tuple[int, int]:
+    """Where the line with that token begins and ends; the end of the file is one of its own."""
+    last, line_kind = len(kinds) - 1, recognizer.line_kind
+    if index == last:
+        return last, len(kinds)
+    first = next((i + 1 for i in range(index - 1, -1, -1) if kinds[i] == line_kind), 0)
+    end = next((i + 1 for i in range(index, last) if kinds[i] == line_kind), last)
+    return first, end
+
+
+class SameFailure:
+    """Whether a program fails in a given way, and only so."""
+
+    def __init__(
+        self,
+        finder: FailureFinder,
+        spelling: Spelling,
+        way: Way,
+        wider: Recognizer | None,
+        may_follow: bool,
+    ) -> None:
+        self.recognizer = finder.recognizer
+        self.wider = wider
+        self._finder = finder
+        self._spelling = spelling
+        self._way = way
+        self._may_follow = may_follow
+        self._left = _MOST_READ
+
+    def passes(self, tokens: list[Token]) -> bool:
+        """Whether the program passes; never once the work allowed has been done."""
+        self._left -= len(tokens) + _COST_OF_A_TEST
+        if self._left < 0:
+            return False
+        recognizer, wider = self.recognizer, self.wider
+        kinds = [*(t.kind for t in tokens), EOF]
+        state, index = recognizer.run(recognizer.start, kinds)
+        if index is None or kinds[index] != self._way.kind:
+            return False
+        first, end = line_at(recognizer, kinds, index)
+        meant = [*(t.meant for t in tokens[first:end]), None]
+        context = self._finder.context(state)
+        if way_of(recognizer, kinds[first:end], meant, index - first, context) != self._way:
+            return False
+        if any(t.name == FRAME and t.kind != recognizer.line_kind for t in tokens[index + 1 : end]):
+            return False  # the next line is one of its own
+        if wider is not None:
+            if wider.run(wider.start, [*kinds_in(wider, tokens), EOF])[1] is not None:
+                return False
+        elif not self._may_follow and not self._is_right_without(kinds, first, index, end):
+            return False
+        return self._fails_once(tokens)
+
+    def _is_right_without(self, kinds: list[int], first: int, index: int, end: int) -> bool:
+        """Whether it is a program without the failing line, or without tokens at the failure."""
+        cuts = [(first, end), (max(0, first - 1), end)]
+        cuts += [(index, index + gap) for gap in range(1, min(end - index, LONGEST_GAP + 1))]
+        run, start = self.recognizer.run, self.recognizer.start
+        return any(run(start, kinds[:i] + kinds[j:])[1] is None for i, j in cuts)
+
+    def _fails_once(self, tokens: list[Token]) -> bool:
+        text = self._spelling.text(tokens, self.wider)
+        if text is None:
+            return False
+        failures = self._finder.find(text)
+        return len(failures) == 1 or (
+            self._may_follow and all(failure.follows for failure in failures[1:])
+        )
+
+
+def kinds_in(recognizer: Recognizer, tokens: list[Token]) -> list[int]:
+    """Kinds of the tokens where names that are meant as keywords may be keywords."""
+    kind_of = recognizer.lexer.kind_of
+    return [t.kind if t.meant is None else kind_of.get(t.meant, t.kind) for t in tokens]

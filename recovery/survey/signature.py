@@ -1,0 +1,208 @@
+"""Shapes: what a failing line looks like, in words a person uses.
+
+Real source has thousands of failing lines and few causes. A shape keeps what tells causes apart
+(the word a line begins with, the token that could not come, the rule at work) and drops what does
+not (names, numbers, the place in the file). Words that the grammar does not know yet are names to
+its lexer; that such a word is meant as a keyword shows in how it stands: beside operands of many
+kinds with no sign between, in several files, and hardly ever as a plain name.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from grammar.parser.failures import Context, Form
+from grammar.parser.lexer import ERROR, Lexer
+from recovery.survey.failing_line import Failed
+
+__all__ = ["Shape", "Shaper"]
+
+_ELLIPSIS = "…"
+# Signs that no plain name at the beginning of a line has behind it, but a keyword can.
+_BEGINS_OPERAND = frozenset("{-+")
+# A word is a would-be keyword when it stands so in so many files and beside so many different
+# words on one side (a declared name stands beside its type only; where lines begin two words are
+# enough), or this often with none, or where hardly any other name ever comes …
+_WORD_FILES = 2
+_WORD_NEIGHBOURS = 3
+_WORD_ALONE = 6
+_WORD_CHOICE = 2
+# … and in at least this share of its uses on failing lines.
+_WORD_SHARE = 0.8
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What tells one kind of failure from another.
+
+    ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
+    plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
+    ``bracket`` the bracket that is open before it, and ``is_first`` whether it comes right behind
+    that: this is told, but alone it tells no kinds apart.
+    """
+
+    rule: str
+    lead: str
+    bracket: str
+    offender: str
+    is_first: bool = field(default=False, compare=False)
+
+    @property
+    def title(self) -> str:
+        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``."""
+        parts = [self.lead] if self.lead else []
+        if self.bracket:
+            parts += [_ELLIPSIS, self.bracket]
+        if self.offender == self.lead:
+            return f"{self.lead} {_ELLIPSIS}"
+        if self.bracket and self.is_first:
+            return " ".join((*parts, self.offender))
+        if not parts or parts[-1] != _ELLIPSIS:
+            parts.append(_ELLIPSIS)
+        return " ".join((*parts, self.offender))
+
+
+class Shaper:
+    """Gives failures their shapes; sees all of them first, to learn the words."""
+
+    def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, Failed, Form]]) -> None:
+        """``failures`` come with the digest of their file."""
+        self.lexer = lexer
+        self._name = lexer.kind_of.get("NAME", ERROR)
+        self._signs = frozenset(
+            kind
+            for kind, text in enumerate(lexer.display)
+            if text != lexer.names[kind] and not lexer.is_keyword(kind)
+        )
+        beside: Counter[str] = Counter()
+        plain: Counter[str] = Counter()
+        files: dict[str, set[str]] = defaultdict(set)
+        neighbours: dict[tuple[str, int], set[str]] = defaultdict(set)
+        alone: Counter[str] = Counter()
+        led: dict[str, set[str]] = defaultdict(set)  # files with lines it leads
+        ends: dict[tuple[int, ...], Counter[str]] = defaultdict(Counter)
+        failures = list(failures)
+        for _, failed, form in failures:
+            if not 0 < form.index < len(failed.words):
+                continue
+            before, kind = form.kinds[form.index - 1 : form.index + 1]
+            if kind == self._name and self.lexer.is_keyword(before):
+                ends[form.kinds[: form.index]][failed.words[form.index]] += 1
+        self._sole = frozenset(
+            word
+            for words in ends.values()
+            if len(words) <= _WORD_CHOICE
+            for word, count in words.items()
+            if count >= _WORD_NEIGHBOURS
+        )
+        for digest, failed, form in failures:
+            for place, word in self._names(failed, form):
+                if not self._stands_out(form, place, word):
+                    plain[word] += 1
+                    continue
+                beside[word] += 1
+                files[word].add(digest)
+                sides = [s for s in (-1, 1) if self._is_operand_at(form.kinds, place + s)]
+                alone[word] += not sides
+                if place == 0 and sides:
+                    led[word].add(digest)
+                for side in sides:
+                    if place + side < len(failed.words):
+                        neighbours[word, side].add(failed.words[place + side])
+        self._keywords = frozenset(
+            word
+            for word, count in beside.items()
+            if not word.startswith("$")
+            and len(files[word]) >= _WORD_FILES
+            and (
+                max(len(neighbours[word, -1]), len(neighbours[word, 1])) >= _WORD_NEIGHBOURS
+                or alone[word] >= _WORD_ALONE
+                or (len(led[word]) >= _WORD_FILES and len(neighbours[word, 1]) > 1)
+                or word in self._sole
+            )
+            and count >= _WORD_SHARE * (count + plain[word])
+        )
+
+    def _names(self, failed: Failed, form: Form) -> Iterator[tuple[int, str]]:
+        """Names on a line that are not inside braces, where names stand beside values anyway."""
+        depth = 0
+        for place, (kind, word) in enumerate(zip(form.kinds, failed.words, strict=False)):
+            if word == "{":
+                depth += 1
+            elif word == "}":
+                depth -= 1
+            elif kind == self._name and not depth:
+                yield place, word
+
+    def _stands_out(self, form: Form, place: int, word: str) -> bool:
+        """Whether a name stands as a keyword would: alone, or where no other name ever comes."""
+        is_sole = place == form.index and word in self._sole
+        return is_sole or self._stands_alone(form.kinds, place)
+
+    def _stands_alone(self, kinds: tuple[int, ...], place: int) -> bool:
+        """Whether the name has no sign on the side where a name in an expression has one.
+
+        A plain name begins a line only before a sign; elsewhere it follows a sign or a keyword. A
+        name that follows an operand, or that an operand follows, is one word too many.
+        """
+        before = kinds[place - 1] if place else None
+        after = kinds[place + 1] if place + 1 < len(kinds) else None
+        if before is None:
+            return after not in self._signs or self.lexer.display[after] in _BEGINS_OPERAND
+        return self._is_operand(before) or self._is_operand(after) or self._is_sign(before, ":")
+
+    def _is_operand_at(self, kinds: tuple[int, ...], place: int) -> bool:
+        return 0 <= place < len(kinds) and self._is_operand(kinds[place])
+
+    def _is_operand(self, kind: int | None) -> bool:
+        if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
+            return False
+        text = self.lexer.display[kind]
+        return (kind not in self._signs and not self.lexer.is_keyword(kind)) or text in "])}"
+
+    def _is_sign(self, kind: int, text: str) -> bool:
+        return kind > 0 and self.lexer.display[kind] == text
+
+    def keywords(self, failed: Failed, form: Form) -> tuple[tuple[int, str], ...]:
+        """Would-be keywords on a failing line, with their places."""
+        return tuple(
+            (place, word)
+            for place, word in self._names(failed, form)
+            if word in self._keywords and self._stands_out(form, place, word)
+        )
+
+    def shape(self, failed: Failed, form: Form, context: Context) -> Shape:
+        """The shape of a failure."""
+        kinds, index = form.kinds, form.index
+        meant = dict(self.keywords(failed, form))
+        lead = meant.get(0, "")
+        if self.lexer.is_keyword(kinds[0]):
+            lead = self.lexer.display[kinds[0]]
+        offender = meant.get(index) or self._display(kinds[index])
+        if 0 in meant and index == 1:
+            offender = lead  # the line fails after its first word because of that word
+        bracket = self._open_bracket(kinds[:index])
+        is_first = index > 0 and self._display(kinds[index - 1]) == bracket
+        return Shape(context.rule, lead, bracket, offender, is_first)
+
+    def _display(self, kind: int) -> str:
+        if kind == ERROR:
+            return "unknown character"
+        return {"NEWLINE": "end of line", "EOF": "end of file", "NAME": "name"}.get(
+            self.lexer.names[kind], self.lexer.display[kind]
+        )
+
+    def _open_bracket(self, kinds: tuple[int, ...]) -> str:
+        """The innermost bracket that is open before the offending token."""
+        closed = 0
+        for kind in reversed(kinds):
+            text = self.lexer.display[kind] if kind > 0 else ""
+            if text in (")", "]", "}"):
+                closed += 1
+            elif text in ("(", "[", "{"):
+                if not closed:
+                    return text
+                closed -= 1
+        return ""

@@ -1,0 +1,241 @@
+"""The survey: every file of a corpus read under one grammar, every failure collected.
+
+Files are surveyed in parallel processes, each with a recogniser of its own; results come back in
+the order of discovery, whatever process they came from, so the same corpus gives the same survey.
+A file with the same content as an earlier one is not read again but counted with it.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from grammar.notation import g4
+from grammar.parser.failures import FailureFinder, Form
+from grammar.parser.recognizer import Recognizer
+from recovery.survey.failing_line import Failed, failures_of, source_lines
+from recovery.survey.result_cache import Kept, Memory, key_of
+from support.files.discovery import Found, Skipped, decode, digest, discover, read
+from support.parallel.executor import in_order, meet
+from support.parallel.progress import Progress, unheard
+
+__all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
+
+# One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
+_TASK_BYTES = 1 << 20
+_TASK_FILES = 64
+_SMALL = 8 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyedFile:
+    """A distinct content: where it lies, and what failed in it.
+
+    ``places`` are (path, origin) of the file and of every copy of it, in the order of discovery;
+    ``found`` is the first of them.
+    """
+
+    found: Found
+    places: tuple[tuple[str, str], ...]
+    digest: str
+    size: int
+    failures: tuple[Failed, ...]
+
+    @property
+    def path(self) -> str:
+        """The first of its places, as people are shown it."""
+        return self.found.path
+
+    def lines(self) -> list[str]:
+        """The lines of the file, read again; empty where it has changed since the survey."""
+        data = read(self.found)
+        if isinstance(data, Skipped) or digest(data) != self.digest:
+            return []
+        source = decode(data)
+        return [] if isinstance(source, str) else source_lines(source.text)
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What reading a corpus under a grammar found. ``seconds`` is wall-clock time."""
+
+    grammar: g4.Grammar
+    files: tuple[SurveyedFile, ...]
+    skipped: tuple[Skipped, ...]
+    forms: tuple[Form, ...]
+    seconds: float
+
+
+def survey(
+    roots: Sequence[Path],
+    grammar: g4.Grammar,
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    cache: Path | None = None,
+    on_found: Progress = unheard,
+    on_done: Progress = unheard,
+) -> Survey:
+    """Read everything below ``roots`` under ``grammar``.
+
+    ``jobs`` is the number of processes, by default one a core, or one for a small corpus;
+    ``scheduler`` the address of a Dask cluster that reads instead (`support.parallel.executor`).
+    ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
+    ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
+    more have been dealt with.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to survey, and
+    `support.parallel.executor.WorkersError` where there is nobody to read.
+    """
+    began = time.perf_counter()
+    candidates = list(discover(roots))
+    on_found(len(candidates))
+    meet(scheduler)  # before anything is written
+    with _memory(cache, grammar) as memory:
+        gathered = _Gathered(memory)
+        tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
+        count = jobs or _processes(candidates)
+        for done in in_order(_perform, tasks, jobs=count, scheduler=scheduler):
+            gathered.add(done)
+            on_done(len(done))
+    on_done(len(candidates) - gathered.read_now)
+    return gathered.survey(grammar, time.perf_counter() - began)
+
+
+def _processes(candidates: Iterable[Found | Skipped]) -> int:
+    """As many as there are cores, but one where starting more would cost more than it saves."""
+    size = sum(c.size for c in candidates if isinstance(c, Found))
+    return 1 if size < _SMALL else os.cpu_count() or 1
+
+
+def _memory(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[Memory | None]:
+    return nullcontext() if cache is None else Memory(cache, key_of(grammar))
+
+
+def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Survey:
+    """Read programs given as (path, text) in this process; each is taken for a file of its own."""
+    began = time.perf_counter()
+    finder = FailureFinder(Recognizer(grammar))
+    forms: dict[Form, int] = {}
+    files = []
+    for path, text in programs:
+        found = Found(path, "given", len(text), Path(path), None)
+        failed = failures_of(finder, text, forms)
+        files.append(SurveyedFile(found, ((path, "given"),), path, len(text), failed))
+    return Survey(grammar, tuple(files), (), tuple(forms), time.perf_counter() - began)
+
+
+# ------------------------------------------------------------------------------ in a process
+
+
+@cache
+def _finder(grammar_text: str) -> FailureFinder:
+    return FailureFinder(Recognizer(g4.read(grammar_text)))
+
+
+def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
+    finder = _finder(grammar_text)
+    results: list[Kept] = []
+    for data in contents:
+        source = decode(data)
+        if isinstance(source, str):
+            results.append(source)
+        else:
+            forms: dict[Form, int] = {}
+            failures = failures_of(finder, source.text, forms)
+            results.append((failures, tuple(forms)))
+    return results
+
+
+# ------------------------------------------------------------------------------ in the parent
+
+
+@dataclass(slots=True)
+class _Content:
+    found: Found
+    places: list[tuple[str, str]]
+    size: int
+    result: tuple[Failed, ...] | str = ()
+
+
+class _Gathered:
+    """Results so far, by content."""
+
+    def __init__(self, memory: Memory | None) -> None:
+        self.memory = memory
+        self.contents: dict[str, _Content] = {}
+        self.skipped: list[Skipped] = []
+        self.forms: dict[Form, int] = {}
+        self.submitted: deque[str] = deque()
+        self.read_now = 0
+
+    def meet(self, found: Found, data: bytes) -> bool:
+        """Note a content and where it lies; returns whether it has to be read."""
+        place = (found.path, found.origin)
+        key = digest(data)
+        known = self.contents.get(key)
+        if known is not None:
+            known.places.append(place)
+            return False
+        self.contents[key] = _Content(found, [place], len(data))
+        kept = self.memory.recall(key) if self.memory else None
+        if kept is not None:
+            self._take(key, kept)
+            return False
+        self.submitted.append(key)
+        return True
+
+    def add(self, done: list[Kept]) -> None:
+        """Take the results of the next task."""
+        keys = [self.submitted.popleft() for _ in done]
+        if self.memory:
+            self.memory.keep(zip(keys, done, strict=True))
+        for key, kept in zip(keys, done, strict=True):
+            self._take(key, kept)
+        self.read_now += len(done)
+
+    def _take(self, key: str, kept: Kept) -> None:
+        if isinstance(kept, str):
+            self.contents[key].result = kept
+            return
+        failures, forms = kept
+        numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
+        self.contents[key].result = tuple([f.with_form(numbers[f.form]) for f in failures])
+
+    def survey(self, grammar: g4.Grammar, seconds: float) -> Survey:
+        files: list[SurveyedFile] = []
+        skipped = list(self.skipped)
+        for key, content in self.contents.items():
+            places = tuple(content.places)
+            if isinstance(content.result, str):
+                skipped += [Skipped(path, content.result, origin) for path, origin in places]
+            else:
+                files.append(SurveyedFile(content.found, places, key, content.size, content.result))
+        skipped.sort(key=lambda s: s.path)
+        return Survey(grammar, tuple(files), tuple(skipped), tuple(self.forms), seconds)
+
+
+def _tasks(
+    candidates: Iterable[Found | Skipped], gathered: _Gathered
+) -> Iterator[tuple[bytes, ...]]:
+    """Cut the contents that have to be read into tasks."""
+    contents: list[bytes] = []
+    size = 0
+    for candidate in candidates:
+        data = candidate if isinstance(candidate, Skipped) else read(candidate)
+        if isinstance(data, Skipped):
+            gathered.skipped.append(data)
+        elif isinstance(candidate, Found) and gathered.meet(candidate, data):
+            contents.append(data)
+            size += len(data)
+            if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:
+                yield tuple(contents)
+                contents, size = [], 0
+    if contents:
+        yield tuple(contents)

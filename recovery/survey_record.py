@@ -1,0 +1,184 @@
+"""The record of a survey: the JSON that `krl recover` writes and the page reads.
+
+Its fields are a contract (docs/architecture.md): others read it from outside.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any
+
+from grammar.parser.lexer import ERROR
+from grammar.parser.recognizer import Recognizer
+from recovery.clustering.cluster import Cluster, Clusters, Member
+from recovery.proposal_review import Reviewer
+from recovery.reproducer.reduce import Reducer
+from recovery.survey.survey import Survey, SurveyedFile
+
+__all__ = ["record_of"]
+
+_EXAMPLES = 5
+_CONTEXT_LINES = 3
+_WIDEST_LINE = 1_000
+_FILES_NAMED = 200
+
+
+def record_of(
+    found: Survey,
+    clusters: Clusters,
+    *,
+    grammar_name: str,
+) -> dict[str, Any]:
+    """Everything a survey found, as plain data.
+
+    Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
+    name the first place of a content, ``copies`` the others.
+    """
+    recognizer = Recognizer(found.grammar)
+    reviewer = Reviewer(found, clusters)
+    reducer = Reducer(recognizer)
+    files = found.files
+    parsed = [f for f in files if not f.failures]
+    return {
+        "grammar": grammar_name,
+        "grammar_sha256": found.grammar.sha256,
+        "files": _places(files),
+        "distinct": len(files),
+        "parsed": _places(parsed),
+        "bytes": _bytes(files),
+        "parsed_bytes": _bytes(parsed),
+        "seconds": round(found.seconds, 3),
+        "skipped": [
+            {"path": s.path, "reason": s.reason, "origin": s.origin} for s in found.skipped
+        ],
+        "origins": _origins(files),
+        "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
+        "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
+        "swallowed": [asdict(suspect) for suspect in reviewer.swallowed()],
+        "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
+        "failures": _failures(found, clusters, recognizer),
+    }
+
+
+def _places(files: Iterable[SurveyedFile]) -> int:
+    return sum(len(f.places) for f in files)
+
+
+def _bytes(files: Iterable[SurveyedFile]) -> int:
+    return sum(f.size * len(f.places) for f in files)
+
+
+def _origins(files: Iterable[SurveyedFile]) -> list[dict[str, Any]]:
+    counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
+    for file in files:
+        for _, origin in file.places:
+            counts[origin][bool(file.failures)] += 1
+    return [
+        {"name": name, "files": good + bad, "parsed": good, "failed": bad}
+        for name, (good, bad) in sorted(counts.items())
+    ]
+
+
+def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[dict[str, Any]]:
+    contexts, names = clusters.contexts, recognizer.lexer.names
+    offenders = [form.kinds[form.index] for form in found.forms]
+    kinds = ["unknown character" if kind == ERROR else names[kind] for kind in offenders]
+    return [
+        {
+            "path": file.path,
+            "line": failed.line,
+            "column": failed.column,
+            "token": failed.token,
+            "kind": kinds[failed.form],
+            "text": failed.source,
+            "expected": list(contexts[failed.form].expected),
+            "rule": contexts[failed.form].rule,
+            "cluster": clusters.cluster_of[file.digest, index],
+            "follows": failed.follows,
+        }
+        for file in found.files
+        for index, failed in enumerate(file.failures)
+    ]
+
+
+def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any]:
+    files = cluster.files
+    example = cluster.example
+    return {
+        "id": cluster.id,
+        "title": cluster.title,
+        "failures": len(cluster.members),
+        "lines": len(cluster.members),
+        "follows": sum(m.failed.follows for m in cluster.members),
+        "files": _places(files),
+        "distinct": len(files),
+        "origins": len({origin for f in files for _, origin in f.places}),
+        "unlocks": cluster.unlocks,
+        "rule": cluster.context.rule,
+        "rule_stack": list(cluster.context.rules),
+        "expected": list(cluster.context.expected),
+        "token": example.failed.token,
+        "example": _example(example),
+        "examples": [_example(m) for m in _examples(cluster)],
+        "files_by_origin": _files_by_origin(cluster),
+        "reproducer": _reproducer(cluster, reviewer, reducer),
+        "proposals": reviewer.records(cluster),
+    }
+
+
+def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any] | None:
+    if cluster.line.is_enormous:
+        return None
+    best = next((p for p in cluster.proposals if p.mended), None)
+    mended = reviewer.wider(best) if best is not None else None
+    found = reducer.reduce(cluster.line, cluster.example.failed.words, mended=mended)
+    return None if found is None else asdict(found)
+
+
+def _example(member: Member) -> dict[str, Any]:
+    failed = member.failed
+    return {
+        "path": member.file.path,
+        "line": failed.line,
+        "column": failed.column,
+        "token": failed.token,
+        "text": failed.source,
+        "context": _surroundings(member),
+    }
+
+
+def _examples(cluster: Cluster) -> list[Member]:
+    """Further examples, from as many files as there are."""
+    first = cluster.example
+    by_file: dict[str, Member] = {}
+    for member in sorted(cluster.members, key=lambda m: (m.failed.follows, len(m.failed.source))):
+        if member != first:
+            by_file.setdefault(member.file.digest, member)
+    return list(by_file.values())[:_EXAMPLES]
+
+
+def _files_by_origin(cluster: Cluster) -> list[dict[str, Any]]:
+    places: dict[str, dict[str, int]] = defaultdict(dict)
+    for member in cluster.members:
+        for path, origin in member.file.places:
+            places[origin].setdefault(path, member.failed.line)
+    out = []
+    for origin in sorted(places, key=lambda o: (-len(places[o]), o)):
+        listed = list(places[origin].items())
+        entry: dict[str, Any] = {
+            "origin": origin,
+            "files": [{"path": path, "line": line} for path, line in listed[:_FILES_NAMED]],
+        }
+        if len(listed) > _FILES_NAMED:
+            entry["more"] = len(listed) - _FILES_NAMED
+        out.append(entry)
+    return out
+
+
+def _surroundings(member: Member) -> list[dict[str, Any]]:
+    """The numbered lines around a failure."""
+    lines, line = member.file.lines(), member.failed.line
+    first, last = max(1, line - _CONTEXT_LINES), min(len(lines), line + _CONTEXT_LINES)
+    return [{"line": n, "text": lines[n - 1][:_WIDEST_LINE]} for n in range(first, last + 1)]

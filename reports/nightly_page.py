@@ -1,0 +1,193 @@
+"""The page of a night: what changed, how its steps went, and the curves over all nights."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.embedding import embedded_json
+from reports.number_format import Figure, counted, percent, share
+from reports.page import render, source, write_page
+from reports.record_fields import Record, count, nested, number, records, text, texts
+from reports.sanitizing import plain, shown
+
+__all__ = ["write_night_page"]
+
+_MAX_NIGHTS = 400
+_MAX_CHANGES = 300
+_BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
+_FINE = ("ok", "findings")
+_GOOD = ("fixed", "survey: gone cluster")
+#: The figures of benches in words; others are shown by their names.
+_IN_WORDS = {
+    "recover.bytes_per_s": "survey, bytes a second",
+    "recover.warm_bytes_per_s": "survey with a warm automaton, bytes a second",
+    "recover.recognise_bytes_per_s": "recogniser alone, bytes a second",
+    "recover.ratio_vs_antlr_python": "survey against ANTLR in Python, times",
+    "recover.unchanged_s_per_mb": "survey of what has not changed, s a MB",
+    "recover.linear": "survey, a MB of the largest corpus against one of the smallest, times",
+    "recover.memory_growth_mb": "survey, memory that the largest corpus takes more, MB",
+    "check.s_per_mb": "check, s a MB",
+    "check.unchanged_s_per_mb": "check of what has not changed, s a MB",
+    "vm.vm_vs_tree": "bytecode in Python against tree, times",
+    "vm.native_vs_tree": "C against tree, times",
+    "vm.native_vs_vm": "C against bytecode in Python, times",
+    "vm.native_vs_lua": "C against Lua, times",
+    "arm.planning_ms_per_motion": "planning, ms a motion",
+    "arm.simulated_s_lookahead": "motions with look-ahead, simulated s",
+    "arm.simulated_s_batch": "the same in batches, simulated s",
+    "arm.inverse_per_s": "inverse kinematics, poses a second",
+    "conform.share": "planted faults found, share",
+    "conform.failing_share": "planted faults that turn a night red, share",
+    "conform.cases_per_s": "cases a second",
+    "mutation.detected": "damaged grammars noticed, share",
+    "mutation.rule_top1": "right rule first, share",
+    "mutation.rule_top5": "right rule among five, share",
+    "mutation.repair_top1": "right repair first, share",
+    "mutation.repair_top5": "right repair among five, share",
+    "mutation.clusters_per_cause": "clusters a cause",
+    "mutation.false_accept": "negatives let in by the first proposal, share",
+}
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    name: str
+    status: str
+    is_fine: bool
+    seconds: float
+    page: str
+
+
+@dataclass(frozen=True, slots=True)
+class _NightView:
+    """``wrong`` says what makes it a bad night; ``bench`` has words, value, that of before."""
+
+    date: str
+    wrong: tuple[str, ...]
+    figures: tuple[Figure, ...]
+    changes: tuple[tuple[str, str], ...]
+    steps: tuple[_Step, ...]
+    bench: tuple[tuple[str, str, str], ...]
+    nights: int
+
+
+def write_night_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of one night, and return its path.
+
+    ``record`` is a line of the history with ``changes``, the sentences of
+    `reports.history.changes`, and ``history``, the lines up to it; every field may be absent. The
+    page appears whole or not at all. Raises OSError when the folder cannot be made or written.
+    """
+    nights = records(record, "history")[-_MAX_NIGHTS:]
+    data = embedded_json({"nights": [_short(night) for night in nights]})
+    scripts = "\n".join(source(f"{name}.js") for name in ("page", "night"))
+    page = render(
+        "nightly.html.j2",
+        script=f'"use strict";\n{{\n{scripts}}}\n',
+        styles=["page.css", "conform.css", "nightly.css"],
+        data=data,
+        view=_view(record, nights),
+    )
+    return write_page(page, folder / "index.html")
+
+
+def _short(night: Record) -> Json:
+    """A night as its curves need it."""
+    recover, fuzz = nested(night, "recover"), nested(night, "fuzz")
+    verdicts = nested(nested(night, "conform"), "verdicts")
+    return {
+        "date": shown(text(night, "date"), 40),
+        "parsed": share(count(recover, "parsed"), count(recover, "files")) if recover else None,
+        "passed": count(verdicts, "pass") if verdicts else None,
+        "failed": count(verdicts, "fail") if verdicts else None,
+        "divergences": count(fuzz, "divergences") if fuzz else None,
+        "bench": {
+            _in_words(name): plain(value)
+            for name, value in nested(night, "bench").items()
+            if isinstance(value, int | float)
+        },
+    }
+
+
+def _view(record: Mapping[str, Any], nights: Sequence[Record]) -> _NightView:
+    before = nested(nights[-2], "bench") if len(nights) > 1 else {}
+    return _NightView(
+        date=shown(text(record, "date"), 40),
+        wrong=tuple(_wrong(record)),
+        figures=tuple(_figures(record)),
+        changes=tuple(
+            (_tone(one), shown(one, 400)) for one in texts(record, "changes")[:_MAX_CHANGES]
+        ),
+        steps=tuple(_step(name, step) for name, step in nested(record, "steps").items()),
+        bench=tuple(
+            (_in_words(name), _figure(value), _figure(before.get(name)))
+            for name, value in nested(record, "bench").items()
+            if isinstance(value, int | float)
+        ),
+        nights=len(nights),
+    )
+
+
+def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
+    """What was found; a step that was not done has no figure."""
+    recover, conform = nested(record, "recover"), nested(record, "conform")
+    fuzz, bench = nested(record, "fuzz"), nested(record, "bench")
+    if recover:
+        files, parsed = count(recover, "files"), count(recover, "parsed")
+        yield Figure("files parse", percent(parsed, files), f"{parsed:,} of {files:,}")
+    if conform:
+        verdicts = nested(conform, "verdicts")
+        told = f"{count(verdicts, 'fail'):,} fail, {count(verdicts, 'skipped'):,} skipped"
+        yield Figure("runs of cases pass", f"{count(verdicts, 'pass'):,}", told)
+        hard, covered = count(conform, "hard"), count(conform, "hard_covered")
+        told = f"{covered:,} of {hard:,} that may fail"
+        yield Figure("rules covered", percent(covered, hard), told)
+    if fuzz:
+        told = counted(count(fuzz, "divergences"), "divergence")
+        yield Figure("programs fuzzed", f"{count(fuzz, 'programs'):,}", told)
+    if number(bench, "conform.share"):
+        told = f"{number(bench, 'conform.cases_per_s'):,.0f} cases a second"
+        yield Figure("planted faults found", percent(number(bench, "conform.share"), 1), told)
+
+
+def _wrong(record: Mapping[str, Any]) -> Iterator[str]:
+    """Why it was no good night; nothing where it was one."""
+    for name, step in nested(record, "steps").items():
+        status = text(step, "status") if isinstance(step, Mapping) else ""
+        if status not in _FINE:
+            yield f"step {shown(name, 60)}: {shown(status, 120)}"
+    if failed := count(nested(nested(record, "conform"), "verdicts"), "fail"):
+        yield f"{counted(failed, 'run')} of cases failed"
+    if divergences := count(nested(record, "fuzz"), "divergences"):
+        yield f"{counted(divergences, 'divergence')} of the fuzzer"
+
+
+def _in_words(name: str) -> str:
+    return _IN_WORDS.get(name) or shown(name, 80)
+
+
+def _figure(value: Any) -> str:
+    if not isinstance(value, int | float):
+        return ""
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+
+
+def _tone(change: str) -> str:
+    return "bad" if change.startswith(_BAD) else "good" if change.startswith(_GOOD) else ""
+
+
+def _step(name: str, step: Any) -> _Step:
+    fields: Record = step if isinstance(step, Mapping) else {}
+    status, page = text(fields, "status"), text(fields, "page")
+    # a link of ours: a relative one without any scheme
+    is_ours = page.replace("/", "").replace(".", "").replace("-", "").isalnum()
+    return _Step(
+        shown(name, 60),
+        shown(status, 300),
+        status in _FINE,
+        number(fields, "seconds"),
+        page if is_ours and not page.startswith("/") else "",
+    )

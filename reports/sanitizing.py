@@ -1,0 +1,33 @@
+"""Foreign values made fit for a page: short, printable, finite."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from reports.embedding import printable
+from reports.number_format import clip
+
+__all__ = ["plain", "shown"]
+
+_MOST_ITEMS = 2_000
+_DEEPEST = 8
+
+
+def shown(text: str, width: int) -> str:
+    """One line of foreign text: cut to a width, tabs widened, every character visible."""
+    return printable(clip(text.replace("\t", "    "), width))
+
+
+def plain(value: Any, width: int = 400, depth: int = 0) -> Any:
+    """A value of a record as JSON that can be shown: long lists are cut, odd numbers spelled."""
+    if value is None or isinstance(value, bool | int):
+        return value
+    if isinstance(value, float):
+        return round(value, 6) if math.isfinite(value) else str(value)
+    if depth > _DEEPEST:
+        return "…"
+    if isinstance(value, Mapping):
+        return {shown(str(name), 80): plain(one, width, depth + 1) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(one, width, depth + 1) for one in value[:_MOST_ITEMS]]
+    return shown(str(value), width)

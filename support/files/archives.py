@@ -1,0 +1,363 @@
+"""Reading `.zip` archives without trusting them.
+
+Nothing is ever unpacked to disk: a member is found by its place in the directory of the archive and
+read into memory. Names serve for showing only, so a name such as `../x.src` has no power. Sizes in
+the directory are claims: what is read is counted, and reading stops at the limits below.
+"""
+
+from __future__ import annotations
+
+import atexit
+import io
+import os
+import re
+import stat
+import struct
+import threading
+import zipfile
+import zlib
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO
+
+from support.files.untrusted import open_file
+
+__all__ = [
+    "ArchiveError",
+    "Member",
+    "close_archives",
+    "is_archive",
+    "members",
+    "read",
+    "read_whole",
+    "too_large",
+    "why",
+]
+
+MB = 1 << 20
+MAX_FILE_BYTES = 64 * MB
+"""One file, packed or not. The longest KRL file known has about 1 MB; point tables may have ten."""
+MAX_ARCHIVE_BYTES = 2048 * MB
+"""What the members read from one archive may have together, nested archives included."""
+MAX_MEMBERS = 100_000
+"""Members of one archive, nested ones included. A controller backup has about 5,000."""
+MAX_DIRECTORY_BYTES = 16 * MB
+"""An archive's directory, read in one piece by `zipfile`: room for `MAX_MEMBERS` long names."""
+OPEN_ARCHIVES = 4
+"""Archives kept open between two calls of `read` in one process."""
+
+# Both unpack in bounded steps. The bzip2 and LZMA readers of `zipfile` turn a few kilobytes into
+# gigabytes in one step; no controller and no common Windows tool packs with them.
+_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
+_OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
+_ENCRYPTED = 0x1
+_UNIX = 3  # `create_system` of archives whose attributes hold a file mode
+_STEP = MB
+_DRIVE = re.compile(r"\A[A-Za-z]:")
+
+# What `zipfile` raises on damaged archives, found by feeding it damaged ones.
+_DAMAGE = (
+    zipfile.BadZipFile,
+    zipfile.LargeZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    OSError,
+    OverflowError,
+    RuntimeError,
+    ValueError,
+)
+
+_TOO_DEEP = "an archive in an archive in an archive is not opened"
+_TOO_MANY = f"more than {MAX_MEMBERS:,} members"
+_OVERLAPPING = "its bytes are those of another member too"
+_HEAD_BYTES = 30  # before a member, at least
+_CHANGED = "the archive changed while it was being read"
+
+
+class ArchiveError(Exception):
+    """An archive or a member of it that cannot be read; the message is the reason, one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member worth reading, or one that would be but for `problem`.
+
+    `path` is for people: cleaned, `/` separated, unique in its archive. `address` is for `read`:
+    the places in the directories on the way (`17`, or `3/17` for a member of a nested archive),
+    because names may be double or not decodable. `size` is what the directory claims, in bytes.
+    `nested` is the `path` of the archive inside the archive that holds it, if any.
+    """
+
+    path: str
+    address: str
+    size: int
+    nested: str | None
+    problem: str | None
+
+
+def is_archive(name: str) -> bool:
+    """Tell whether `name` is that of an archive to look into."""
+    return name.lower().endswith(".zip")
+
+
+def why(error: OSError) -> str:
+    """Return the reason of `error` without the path, which may hold anything."""
+    return error.strerror or type(error).__name__
+
+
+def read_whole(stream: io.RawIOBase | IO[bytes]) -> bytes:
+    """Return what is left in `stream`; raises ArchiveError beyond the limit for one file."""
+    data = bytearray()
+    while step := stream.read(_STEP):
+        data += step
+        if len(data) > MAX_FILE_BYTES:
+            raise ArchiveError(too_large())
+    return bytes(data)
+
+
+def too_large() -> str:
+    """Return the reason for files beyond the limit."""
+    return f"larger than {_in_mb(MAX_FILE_BYTES)}"
+
+
+def members(file: Path, wanted: Callable[[str], bool]) -> list[Member]:
+    """List the members of the archive `file` whose cleaned path is `wanted`, sorted by path.
+
+    Archives in it are opened too, one level deep. Raises ArchiveError when `file` is no readable
+    archive or has more members than the limit.
+    """
+    with closing(_on_disk(file)) as archive:
+        return list(_listed(archive, wanted, _Budget(MAX_MEMBERS, MAX_ARCHIVE_BYTES)))
+
+
+def read(file: Path, address: str, size: int) -> bytes:
+    """Return the content of a member that `members` listed with this `address` and `size`.
+
+    Archives stay open for the next call, a few in each process. Raises ArchiveError.
+    """
+    *outer, last = (int(place) for place in address.split("/"))
+    with _lock:
+        infos = (archive := _kept(file, outer[0] if outer else None)).infos
+        if last >= len(infos) or infos[last].file_size != size:
+            raise ArchiveError(_CHANGED)
+        return archive.content(infos[last])
+
+
+def close_archives() -> None:
+    """Close what `read` keeps open in this process."""
+    with _lock:
+        for archive in _open.values():
+            archive.close()
+        _open.clear()
+
+
+# -- listing ---------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Budget:
+    """What is left of the limits of one archive."""
+
+    members: int
+    bytes: int
+
+    def spend(self, size: int) -> str | None:
+        """Take `size` bytes off, or say that they are too many; a smaller file may still fit."""
+        if size > self.bytes:
+            return f"the archive holds more than {_in_mb(MAX_ARCHIVE_BYTES)}"
+        self.bytes -= size
+        return None
+
+
+def _listed(
+    archive: _Archive,
+    wanted: Callable[[str], bool],
+    budget: _Budget,
+    inside: Member | None = None,
+) -> Iterator[Member]:
+    budget.members -= len(archive.infos)
+    if budget.members < 0:
+        raise ArchiveError(_TOO_MANY)
+    prefix, place = (f"{inside.path}/", f"{inside.address}/") if inside else ("", "")
+    overlapping = _overlapping(archive.infos)
+    for path, index in _named(archive.infos, wanted):
+        info = archive.infos[index]
+        problem = _OVERLAPPING if index in overlapping else _problem(info)
+        problem = problem or budget.spend(info.file_size)
+        if problem is None and is_archive(path):
+            problem = _TOO_DEEP if inside else _TOO_MANY if budget.members <= 0 else None
+        member = Member(
+            path=prefix + path,
+            address=f"{place}{index}",
+            size=info.file_size,
+            nested=inside.path if inside else None,
+            problem=problem,
+        )
+        if problem or not is_archive(path):
+            yield member
+            continue
+        try:
+            with closing(archive.inner(info)) as opened:
+                yield from _listed(opened, wanted, budget, member)
+        except ArchiveError as error:
+            yield replace(member, problem=str(error))
+
+
+def _named(infos: list[zipfile.ZipInfo], wanted: Callable[[str], bool]) -> list[tuple[str, int]]:
+    """Pair the cleaned, unique path of each wanted member with its place; sorted by path."""
+    paths = [(_clean(info.filename), index) for index, info in enumerate(infos)]
+    chosen = [
+        (path, index)
+        for path, index in paths
+        if wanted(path) and not infos[index].filename.endswith(("/", "\\"))
+    ]
+    chosen.sort(key=lambda pair: (pair[0].casefold(), *pair))
+    seen: Counter[str] = Counter()
+    unique = []
+    for path, index in chosen:
+        seen[path] += 1
+        unique.append((f"{path} ({seen[path]})" if seen[path] > 1 else path, index))
+    return unique
+
+
+def _clean(name: str) -> str:
+    """Return the path that a member's name means, below the archive whatever it says.
+
+    Windows tools write backslashes; drive letters, leading slashes and `..` lose their meaning.
+    """
+    parts = _DRIVE.sub("", name.replace("\\", "/"), count=1).split("/") if name else []
+    return "/".join(part for part in parts if part not in ("", ".", ".."))
+
+
+def _problem(info: zipfile.ZipInfo) -> str | None:
+    """Say what forbids reading a member, as far as the directory tells."""
+    mode = info.external_attr >> 16 if info.create_system == _UNIX else 0
+    if stat.S_ISLNK(mode):
+        return "symbolic link"
+    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
+        return "not a regular file"
+    if info.flag_bits & _ENCRYPTED:
+        return "encrypted"
+    if info.compress_type not in _METHODS:
+        name = _OTHER_METHODS.get(info.compress_type, f"number {info.compress_type}")
+        return f"compression method {name} is not supported"
+    if info.file_size > MAX_FILE_BYTES:
+        return too_large()
+    return None
+
+
+def _overlapping(infos: list[zipfile.ZipInfo]) -> set[int]:
+    """The places of members that begin before another has ended.
+
+    So a few kilobytes can claim to hold gigabytes; no tool that packs files writes that.
+    """
+    found, end = set(), 0
+    for place in sorted(range(len(infos)), key=lambda place: infos[place].header_offset):
+        info = infos[place]
+        if info.header_offset < end:
+            found.add(place)
+        end = max(end, info.header_offset + _HEAD_BYTES + info.compress_size)
+    return found
+
+
+def _in_mb(size: int) -> str:
+    return f"{size // MB:,} MB"
+
+
+# -- reading ---------------------------------------------------------------------------------------
+
+
+class _Stream(io.BufferedReader):
+    """Bytes of an archive that refuse to be read whole: `zipfile` does so with the directory."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        if size is not None and size > MAX_DIRECTORY_BYTES:
+            raise ArchiveError(f"its directory is larger than {_in_mb(MAX_DIRECTORY_BYTES)}")
+        return super().read(size)
+
+
+class _Archive:
+    """An open archive; `infos` are its members in the order of its directory."""
+
+    __slots__ = ("_stream", "_zip", "infos")
+
+    def __init__(self, raw: io.RawIOBase | io.BytesIO) -> None:
+        self._stream = _Stream(raw)
+        try:
+            self._zip = zipfile.ZipFile(self._stream)
+        except _DAMAGE as error:
+            raise ArchiveError(self._close_unopened()) from error
+        except ArchiveError:
+            self._stream.close()
+            raise
+        self.infos = self._zip.infolist()
+
+    def _close_unopened(self) -> str:
+        """Close, and say what the bytes are if not a whole archive."""
+        with self._stream as stream:
+            stream.seek(0)
+            start = stream.read(4)
+        if not start:
+            return "empty file"
+        return "truncated or damaged archive" if start[:2] == b"PK" else "not a zip archive"
+
+    def content(self, info: zipfile.ZipInfo) -> bytes:
+        """Return what the member `info` holds; raises ArchiveError."""
+        if problem := _problem(info):
+            raise ArchiveError(problem)
+        try:
+            with self._zip.open(info) as stream:
+                return read_whole(stream)
+        except _DAMAGE as error:
+            checksum = str(error).startswith("Bad CRC")
+            reason = "damaged: wrong checksum" if checksum else "damaged in the archive"
+            raise ArchiveError(reason) from error
+
+    def inner(self, info: zipfile.ZipInfo) -> _Archive:
+        """Open the archive that the member `info` is, in memory; raises ArchiveError."""
+        return _Archive(io.BytesIO(self.content(info)))
+
+    def close(self) -> None:
+        self._zip.close()
+        self._stream.close()
+
+
+def _on_disk(file: Path) -> _Archive:
+    try:
+        return _Archive(open_file(file))
+    except OSError as error:
+        raise ArchiveError(f"cannot be read: {why(error)}") from error
+
+
+# The process is part of the key: a forked child shares the file position of what it inherits.
+_Key = tuple[int, str, int, int, int | None]
+_open: OrderedDict[_Key, _Archive] = OrderedDict()
+_lock = threading.Lock()
+atexit.register(close_archives)
+
+
+def _kept(file: Path, outer: int | None) -> _Archive:
+    """Return the archive `file`, or the one at place `outer` in it, open."""
+    try:
+        state = file.stat()
+    except OSError as error:
+        raise ArchiveError(f"cannot be read: {why(error)}") from error
+    key = (os.getpid(), str(file), state.st_mtime_ns, state.st_size, outer)
+    if key in _open:
+        _open.move_to_end(key)
+        return _open[key]
+    if outer is None:
+        archive = _on_disk(file)
+    else:
+        around = _kept(file, None)
+        if outer >= len(around.infos):
+            raise ArchiveError(_CHANGED)
+        archive = around.inner(around.infos[outer])
+    _open[key] = archive
+    while len(_open) > OPEN_ARCHIVES:
+        _open.popitem(last=False)[1].close()
+    return archive

@@ -1,0 +1,113 @@
+"""Several files written together: all of them, or none.
+
+Everything is laid beside its target first. What is then exchanged is put back where a later
+exchange fails, so that a full disk or a file in use leaves the folder as it was. A process that is
+killed puts nothing back. For that there is a journal, itself written whole: once it stands, the
+change counts as made, and `finish` exchanges what the process did not come to.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+from support.files.untrusted import json_of, read_bytes
+
+__all__ = ["JournalError", "finish", "write_together"]
+
+
+class JournalError(ValueError):
+    """A journal that is not to be followed; the text names it."""
+
+
+def write_together(
+    changes: Mapping[Path, bytes | None], *, journal: Path | None = None
+) -> list[Path]:
+    """Give each file its new content; ``None`` removes it. Returns the files that have changed.
+
+    Folders of new files are made. ``journal`` is where a killed process leaves word of what it was
+    about to do. Raises `OSError`, and then nothing has changed.
+    """
+    olds = {path: path.read_bytes() if path.is_file() else None for path in changes}
+    staged: dict[Path, Path] = {}
+    done: list[Path] = []
+    try:
+        for path, content in changes.items():
+            if content is not None and content != olds[path]:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                staged[path] = path.with_name(f"{path.name}.part")
+                staged[path].write_bytes(content)
+        if journal is not None:
+            _note(journal, changes)
+        for path, content in changes.items():
+            if path in staged:
+                done.append(path)
+                staged[path].replace(path)
+            elif content is None and olds[path] is not None:
+                done.append(path)
+                path.unlink()
+    except BaseException:
+        for path in done:
+            old = olds[path]
+            with contextlib.suppress(OSError):
+                path.unlink() if old is None else path.write_bytes(old)
+        raise
+    finally:
+        for part in staged.values():
+            part.unlink(missing_ok=True)
+        if journal is not None:
+            journal.unlink(missing_ok=True)
+    return done
+
+
+def _note(journal: Path, changes: Mapping[Path, bytes | None]) -> None:
+    """Write down which file is to have which content, by its digest."""
+    wanted = {
+        str(path.absolute()): None if content is None else hashlib.sha256(content).hexdigest()
+        for path, content in changes.items()
+    }
+    part = journal.with_name(f"{journal.name}.part")
+    part.write_text(json.dumps(wanted), encoding="utf-8")
+    part.replace(journal)
+
+
+def finish(journal: Path) -> list[Path]:
+    """Exchange what a killed process had laid ready; the files that changed.
+
+    Without a journal nothing was begun, or all of it is done. A part whose content is not the one
+    noted is another's, and left alone. Raises `OSError`, and `JournalError` for a journal that is
+    damaged or names files elsewhere than below the folder that the journal's folder lies in.
+    """
+    try:
+        wanted = json_of(read_bytes(journal).decode("utf-8"))
+    except FileNotFoundError:
+        return []
+    except ValueError as error:
+        raise JournalError(f"{journal}: {error}") from None
+    home = journal.resolve().parent.parent
+    if not isinstance(wanted, dict) or not all(_is_below(home, name) for name in wanted):
+        raise JournalError(f"{journal}: not what an acceptance wrote that was broken off here")
+    done = []
+    for name, digest in wanted.items():
+        path = Path(name)
+        part = path.with_name(f"{path.name}.part")
+        if digest is None:
+            if path.is_file():
+                path.unlink()
+                done.append(path)
+        elif part.is_file() and hashlib.sha256(part.read_bytes()).hexdigest() == digest:
+            part.replace(path)
+            done.append(path)
+    journal.unlink(missing_ok=True)
+    return done
+
+
+def _is_below(home: Path, name: str) -> bool:
+    """Whether a file may be one of ours; its name may hold anything, links on the way too."""
+    try:
+        return Path(name).is_absolute() and home in Path(name).resolve().parents
+    except (OSError, ValueError, RuntimeError):
+        return False

@@ -1,0 +1,98 @@
+"""Small files that other people wrote: opened without waiting, read with limits on size and depth.
+
+KRL itself comes in through `support.files.discovery`. This is for what stands beside it: grammars,
+constructs, profiles, scripts, recordings.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import math
+import os
+import stat
+import tomllib
+from pathlib import Path
+from typing import Any, Final
+
+__all__ = [
+    "MOST_BYTES",
+    "MOST_DOTS",
+    "MOST_TOML",
+    "DocumentError",
+    "json_of",
+    "open_file",
+    "read_bytes",
+    "read_text",
+    "toml_of",
+]
+
+#: No document that a person writes is nearly as large; recordings may have some MB.
+MOST_BYTES: Final = 64 << 20
+# `tomllib` needs seconds for a dotted key of thousands of parts, and minutes for tens of thousands.
+MOST_DOTS: Final = 100
+MOST_TOML: Final = 1_000_000
+
+
+class DocumentError(ValueError):
+    """A text that is not TOML or JSON, or too deeply nested; says why in one line."""
+
+
+def open_file(file: Path) -> io.FileIO:
+    """Open a regular file for reading; raises OSError, also for folders, pipes and devices.
+
+    Never waits: opening a pipe nobody writes to would.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
+    stream = io.FileIO(os.open(file, flags), "rb")
+    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+        stream.close()
+        raise OSError(errno.EINVAL, "not a regular file", str(file))
+    return stream
+
+
+def read_bytes(file: Path, most: int = MOST_BYTES) -> bytes:
+    """The bytes of a regular file; raises OSError, also where there are more than ``most``."""
+    with open_file(file) as opened, io.BufferedReader(opened) as stream:
+        data = stream.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, f"larger than {most >> 20} MB", str(file))
+    return data
+
+
+def read_text(file: Path, encoding: str = "utf-8") -> str:
+    """The text of a regular file, whatever ends its lines; raises OSError, UnicodeDecodeError."""
+    return read_bytes(file).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+
+
+def toml_of(text: str) -> dict[str, Any]:
+    """The tables of a TOML text; raises `DocumentError`."""
+    if len(text) > MOST_TOML:
+        raise DocumentError(f"not TOML that is read: longer than {MOST_TOML:,} characters")
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > MOST_DOTS:
+            raise DocumentError(f"not TOML that is read: more than {MOST_DOTS} dots, line {number}")
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise DocumentError("not TOML: nested too deeply") from None
+    except ValueError as error:  # also an integer of thousands of digits
+        raise DocumentError(f"not TOML: {error}") from None
+
+
+def json_of(text: str) -> Any:
+    """The value of a JSON text, its numbers finite; raises `DocumentError`."""
+    try:
+        return json.loads(text, parse_float=_finite, parse_constant=_finite)
+    except RecursionError:
+        raise DocumentError("not JSON: nested too deeply") from None
+    except ValueError as error:
+        raise DocumentError(f"not JSON: {error}") from None
+
+
+def _finite(written: str) -> float:
+    value = float(written)
+    if not math.isfinite(value):
+        raise ValueError(f"{written[:20]} is no finite number")
+    return value

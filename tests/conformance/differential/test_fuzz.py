@@ -1,0 +1,303 @@
+"""The fuzzer: executors that agree, wrong ones that are found, programs made small."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conformance.differential import campaign, runs
+from conformance.differential.campaign import fuzz, record_of
+from conformance.differential.divergence import difference, examine, prepared
+from conformance.differential.fault_catalogue import Mutant, mutants
+from conformance.differential.fault_detection import Pool, mutated
+from conformance.differential.fault_detection import record_of as record_of_hunt
+from conformance.differential.random_world import RandomWorld
+from conformance.differential.reduction import reduce_program, statements_of
+from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
+from conformance.differential.traces import plain, shown
+from grammar.generation.programs.programs import seeded
+from grammar.semantics.types import INT, Array
+from interp.bytecode._generated.opcodes import Op
+from interp.port.requests import At, Invoke, Poll, Read, Write
+from interp.values.faults import Fault
+from interp.values.values import ArrayValue
+from krl.cli import main
+
+AT = At("PROG.SRC", 1, 0)
+
+
+def mutant_of(op: Op, fault: str) -> Mutant:
+    """A mutant by what it does wrong."""
+    return next(one for one in mutants() if one.op is op and one.fault == fault)
+
+
+@pytest.fixture
+def wrong(monkeypatch: pytest.MonkeyPatch) -> Callable[[Mutant], None]:
+    """Puts a mutant in place of the machine."""
+
+    def planted(mutant: Mutant) -> None:
+        monkeypatch.setitem(runs.EXECUTORS, "vm", mutated(mutant))
+
+    return planted
+
+
+# ------------------------------------------------------------------------------- agreement
+
+
+def test_executors_agree() -> None:
+    """All executors that there are ask and tell the same."""
+    found = fuzz(25, 21, available())
+    assert [] == [(one.number, one.difference.executor) for one in found.findings]
+    assert 25 == sum(found.ends.values())
+
+
+def test_the_reference_agrees_with_itself() -> None:
+    """A run follows from the program and the seed of its world alone."""
+    program = prepared(seeded(22, 3).files)
+    assert trace_of(program, EXECUTORS["tree"], "w") == trace_of(program, EXECUTORS["tree"], "w")
+
+
+def test_findings_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two processes find what one finds."""
+    monkeypatch.setattr(campaign, "_SHARD", 4)
+    alone, shared = (record_of(fuzz(10, 23, ["tree"], jobs), 0.0) for jobs in (1, 2))
+    assert alone == shared
+
+
+# ------------------------------------------------------------------------------- wrong ones
+
+
+@pytest.mark.parametrize(
+    ("op", "fault"),
+    [
+        (Op.ADD_INT, "does what SUB_INT does"),
+        (Op.DIV_INT, "rounds down"),
+        (Op.REAL_TO_INT, "drops the fraction"),
+        (Op.MUL_REAL, "the result is not rounded to single"),
+        (Op.STORE_DATA, "stores nothing"),
+        (Op.JUMP_UNLESS, "never goes elsewhere"),
+        (Op.TELL_LOCAL, "tells nothing"),
+    ],
+)
+def test_planted_faults_are_found(op: Op, fault: str) -> None:
+    """A machine with a wrong instruction parts from the reference within few programs."""
+    verdict = Pool(1, 200).judge(mutant_of(op, fault))
+    assert verdict.caught_by is not None
+
+
+def test_right_machine_is_no_mutant() -> None:
+    """A mutant whose change is none is not found."""
+    same = Mutant(Op.ADD_INT, "is right", lambda rules, _state: rules[Op.ADD_INT])
+    assert Pool(1, 10).judge(same).caught_by is None
+
+
+def test_mutants_are_many_and_all_different() -> None:
+    """There are faults for all instructions that a program can reach."""
+    names = [one.name for one in mutants()]
+    assert len(set(names)) == len(names) >= 150
+    assert {"UNLINKED"} >= {op.name for op in Op} - {one.op.name for one in mutants()}
+
+
+def test_record_of_a_hunt() -> None:
+    """What was missed is told by name."""
+    pool = Pool(1, 20)
+    same = Mutant(Op.ADD_INT, "is right", lambda rules, _state: rules[Op.ADD_INT])
+    verdicts = [pool.judge(one) for one in (same, mutant_of(Op.ADD_INT, "does what SUB_INT does"))]
+    record = record_of_hunt(verdicts, 40, 1)
+    assert (2, 1, 0.5) == (record["mutants"], record["caught"], record["share"])
+    assert ["ADD_INT: is right"] == record["missed"]
+
+
+# ------------------------------------------------------------------------------- reduction
+
+
+def test_difference_is_reduced(
+    wrong: Callable[[Mutant], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program on which executors part is made small and still tells them apart."""
+    wrong(mutant_of(Op.MUL_INT, "does what ADD_INT does"))
+    monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
+    found = fuzz(12, 1, ["tree", "vm"])
+    assert found.findings
+    small = found.findings[0]
+    assert small.statements is not None
+    assert small.statements <= 10
+    assert small.difference.expected != small.difference.actual
+    program = prepared(small.files)
+    worlds = (campaign.world_seed(1, small.number, n) for n in range(campaign._SEEDS))
+    assert any(examine(program, world, ["tree", "vm"]) for world in worlds)
+    assert "*" in "".join(text for _, text in small.files)
+
+
+def test_reduction_keeps_what_holds() -> None:
+    """Lines, blocks, branches, files and operands go as long as the fact stays true."""
+    main_text = "\n".join(
+        [
+            "DEF PROG()",
+            "INT I,J",
+            "I=1",
+            "WHILE I<10",
+            "  IF I==3 THEN",
+            "    J=(I+7)*(2+3)",
+            "  ELSE",
+            "    J=2",
+            "  ENDIF",
+            "  I=I+1",
+            "ENDWHILE",
+            "HALT",
+            "END",
+            "DEF OTHER()",
+            "HALT",
+            "END",
+            "",
+        ]
+    )
+    files = (("PROG.SRC", main_text), ("PROG.DAT", "DEFDAT PROG\nINT K=1\nENDDAT\n"))
+    found = reduce_program(files, lambda given: "I+7" in given[0][1] and _loads(given))
+    assert (("PROG.SRC", "DEF PROG()\n    J=I+7\nEND\n"),) == found.files
+    assert 1 == found.statements == statements_of(found.files)
+
+
+def _loads(files: Any) -> bool:
+    return campaign.loaded(files) is not None
+
+
+def test_difference_tells_the_first_fact() -> None:
+    """The first fact that differs is told, or that there is none on one side."""
+    left, right = [("line", AT), ("call", AT, "A")], [("line", AT), ("call", AT, "B")]
+    found = difference("vm", left, right)
+    assert found is not None
+    assert (1, "PROG.SRC:1 (depth 0) call 'A'") == (found.place, found.expected_text)
+    short = difference("vm", left, left[:1])
+    assert short is not None
+    assert "nothing more" == short.actual_text
+    assert difference("vm", left, list(left)) is None
+
+
+# ------------------------------------------------------------------------------- facts
+
+
+def test_values_of_different_types_differ() -> None:
+    """1, 1.0 and TRUE are three values, and -0.0 is not 0.0."""
+    values = [plain(one) for one in (1, 1.0, True, "1", 0.0, -0.0, None)]
+    assert len(values) == len({repr(one) for one in values})
+    assert all(one != other for n, one in enumerate(values) for other in values[:n])
+    array = ArrayValue(Array(INT, (2,)), [1, None])
+    assert ("ARRAY", (2,), (1, None)) == plain(array)
+    assert "PROG.SRC:1 (depth 0) assign ('A') ('ARRAY' (2) (1 -))" == shown(
+        ("assign", AT, ("A",), plain(array))
+    )
+
+
+# ------------------------------------------------------------------------------- the world
+
+
+def test_world_keeps_what_is_written() -> None:
+    """Members and elements keep their values; the rest has some from the seed."""
+    world = RandomWorld("x", has_faults=False)
+    assert None is world.reply(Write(AT, ("$BASE", "X"), 7.5))
+    assert 7.5 == world.reply(Read(AT, ("$BASE", "X")))
+    assert 7.5 == world.reply(Read(AT, ("$BASE",))).get("X")
+    assert None is world.reply(Write(AT, ("$OUT", 4), True))
+    assert True is world.reply(Read(AT, ("$OUT", 4)))
+    answer = world.reply(Read(AT, ("$OUT", 99_999)))
+    assert isinstance(answer, Fault)
+    assert "index" == answer.slug
+
+
+def test_world_lets_nobody_wait_for_ever() -> None:
+    """After some looks in vain every input is TRUE."""
+    world = RandomWorld("x", has_faults=False)
+    for _ in range(4):
+        world.reply(Poll(AT, is_first=False))
+    assert [True] * 20 == [world.read(("$IN", number)) for number in range(1, 21)]
+
+
+def test_world_answers_routines() -> None:
+    """A routine of the world has a result, and values for what is passed :OUT."""
+    world = RandomWorld("x", has_faults=False)
+    result, after = world.reply(Invoke(AT, "EXISTS_KRLDLG", (1, None)))
+    assert isinstance(result, bool)
+    assert isinstance(after[1], int)
+
+
+def test_world_faults_now_and_then() -> None:
+    """Some requests are answered by a fault, always the same ones for a seed."""
+    request = Write(AT, ("$FLAG", 1), True)
+    first, second = RandomWorld("y"), RandomWorld("y")
+    answers = [first.reply(request) for _ in range(2000)]
+    assert answers == [second.reply(request) for _ in range(2000)]
+    assert 2 <= sum(isinstance(one, Fault) for one in answers) <= 30
+
+
+def test_interference_is_compared() -> None:
+    """Conditions are looked at, actions entered, and RESUME unwinds, on some programs."""
+    words: set[str] = set()
+    for number in range(90):
+        program = prepared(seeded(31, number).files)
+        facts = trace_of(program, EXECUTORS["tree"], campaign.world_seed(31, number))
+        words |= {str(one[0]) for one in facts}
+    assert {"evaluated", "entered"} <= words
+
+
+def test_executor_that_raises_is_a_finding() -> None:
+    """An exception of an executor is a fact, and so a difference."""
+
+    def broken(_program: Prepared, _limits: object, _sink: object) -> Any:
+        raise RuntimeError("broken")
+
+    program = prepared(seeded(1, 1).files)
+    assert [("raised", None, "RuntimeError", "broken")] == trace_of(program, broken, "x", LIMITS)
+
+
+# ------------------------------------------------------------------------------- the command
+
+
+def test_command_without_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Exit status 0, and a record with what was covered."""
+    target = tmp_path / "fuzz.json"
+    arguments = ["fuzz", "--programs", "12", "--seed", "5", "--jobs", "1", "--json", str(target)]
+    assert 0 == main(arguments)
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert (12, 5, list(available())) == (record["programs"], record["seed"], record["executors"])
+    assert record["coverage"]["node"]["Assignment"] > 12
+    assert [] == record["differences"]
+    assert "No difference." in capsys.readouterr().out
+
+
+def test_command_with_differences(
+    wrong: Callable[[Mutant], None],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Exit status 1, each program reduced and shown with what both sides did."""
+    wrong(mutant_of(Op.STORE_LOCAL, "stores nothing"))
+    monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
+    target = tmp_path / "fuzz.json"
+    arguments = ["fuzz", "--programs", "20", "--jobs", "1", "--json", str(target)]
+    assert 1 == main([*arguments, "--executor", "tree", "--executor", "vm"])
+    first = json.loads(target.read_text(encoding="utf-8"))["differences"][0]
+    assert "vm" == first["executor"]
+    assert first["statements"] <= 10
+    out = capsys.readouterr().out
+    assert first["expected"] in out
+    assert "reduced to" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--executor", "tree"], "name two executors at least"),
+        (["--executor", "nobody", "--executor", "tree"], "the executor is one of"),
+        (["--json", "."], "a folder, not a file"),
+    ],
+)
+def test_wrong_usage(arguments: list[str], text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Wrong usage ends with one clear line and exit status 2."""
+    assert 2 == main(["fuzz", *arguments])
+    assert text in capsys.readouterr().err

@@ -1,0 +1,62 @@
+"""The reference of rules is complete, fresh, and says what the project does."""
+
+import re
+from importlib import resources
+from pathlib import Path
+
+from conformance.suite import semantics
+from conformance.suite.registry import registry
+from conformance.suite.semantics import PAGE, UNUSED, codes_of, page
+from grammar.diagnostics.codes import by_code
+from grammar.semantics.rules import tiers
+
+WORDS = {"grammar", "tables", "check", "lint", "run"}
+
+
+def test_page_is_fresh() -> None:
+    """The page in docs is fresh: after a change run python -m conformance.suite.semantics."""
+    assert page() == PAGE.read_text(encoding="utf-8")
+
+
+def test_every_rule_has_one_statement() -> None:
+    """All 246 rules are there, in the order and with the tiers of the grammar's table."""
+    found = registry()
+    assert list(tiers().items()) == [(rule.id, rule.tier) for rule in found.values()]
+    assert len(found) == len({rule.statement for rule in found.values()})
+    assert all(r.statement.endswith(".") and len(r.statement) < 240 for r in found.values())
+
+
+def test_only_what_is_confirmed_may_fail() -> None:
+    """A rule of tier R or X alone fails nobody, nor one that leaves a question open."""
+    hard = {rule.id for rule in registry().values() if rule.may_fail}
+    assert hard <= {rule for rule, tier in tiers().items() if not set("RX").issuperset(tier)}
+    assert len(hard) == 201
+
+
+def test_what_is_done_is_one_of_few_words() -> None:
+    """Each rule says what is done for it, and no finding rests on a rule that is not checked."""
+    codes = codes_of()
+    for rule in registry().values():
+        assert rule.today, rule
+        assert WORDS >= set(rule.today), rule
+        if codes[rule.id]:
+            assert {"check", "lint"} & set(rule.today), rule
+
+
+def test_every_code_is_given_by_a_check() -> None:
+    """What no check tells is not claimed to be checked."""
+    grammar = Path(str(resources.files("grammar")))
+    modules = [path for path in grammar.rglob("*.py") if path.name != "codes.py"]
+    modules += (grammar.parent / "recovery").glob("*check*.py")
+    source = "".join(path.read_text(encoding="utf-8") for path in modules)
+
+    def is_given(code: str, slug: str) -> bool:
+        return f'"{slug}"' in source or bool(re.search(rf"\b{code.removeprefix('KSS')}\b", source))
+
+    never = {name for name, code in by_code().items() if not is_given(name, code.slug)}
+    assert set(UNUSED) == never
+
+
+def test_topics_are_those_of_the_rules() -> None:
+    """Every topic has rules, and every rule has a topic."""
+    assert set(semantics._TOPICS) == {rule.topic for rule in registry().values()}

@@ -1,0 +1,199 @@
+"""Syntax failures as findings: what is said, where, and what would mend it."""
+
+from pathlib import Path
+
+import pytest
+
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.expected_tokens import in_words
+from grammar.diagnostics.open_blocks import lead, open_blocks
+from grammar.diagnostics.syntax_errors import MOST_TOLD, syntax_findings
+from grammar.notation.generate import GRAMMAR
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+from recovery.negatives.negatives import Negative, load
+
+NEGATIVES = GRAMMAR.parents[1] / "corpus" / "negatives"
+TO_PARSE = [negative for negative in load(NEGATIVES) if negative.phase == "parse"]
+
+
+def findings(text: str, path: str = "A.src") -> list[Diagnostic]:
+    failures = read_module(text, path)
+    assert isinstance(failures, list), "the text can be read"
+    return syntax_findings(failures, Source(text, path))
+
+
+def only(*lines: str, path: str = "A.src") -> Diagnostic:
+    """The one finding of a routine of these lines."""
+    (found,) = findings("\n".join(["DEF A()", *lines, "END", ""]), path)
+    return found
+
+
+def mended(text: str, fix: Fix | None) -> str:
+    """A text with a fix applied."""
+    assert fix is not None
+    assert fix.is_edit
+    assert fix.region is not None
+    source = Source(text)
+    start = source.offset(fix.region.line, fix.region.column)
+    end = source.offset(fix.region.end_line, fix.region.end_column)
+    return f"{text[:start]}{fix.replacement}{text[end:]}"
+
+
+def name_of(negative: Negative) -> str:
+    assert negative.path is not None
+    return negative.path.relative_to(NEGATIVES).as_posix()
+
+
+@pytest.mark.parametrize("negative", TO_PARSE, ids=name_of)
+def test_first_finding_is_on_the_line_of_the_negative(negative: Negative) -> None:
+    """Every written negative of the phase ``parse`` is told first where it says."""
+    (first, *_) = findings(negative.text, f"NEG{Path(name_of(negative)).suffix}")
+    assert negative.line == first.region.line
+    assert "error" == first.severity
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "better"),
+    [
+        ("IF $IN[1] = TRUE THEN", "a comparison is written ==", "IF $IN[1] == TRUE THEN"),
+        ("WHILE N = = 5", "a comparison is written ==", "WHILE N == 5"),
+        ("N == 5", "an assignment is written =", "N = 5"),
+        ("N := 5", "an assignment is written =", "N = 5"),
+        ("IF N != 5 THEN", "KRL has no !=", "IF N <> 5 THEN"),
+        ("IF $IN[1] && $IN[2] THEN", "KRL has no &&", "IF $IN[1] AND $IN[2] THEN"),
+        ("B = !$IN[1]", "KRL has no !", "B = NOT $IN[1]"),
+        ("IF $IN[1]  ; both", "THEN is missing", "IF $IN[1] THEN  ; both"),
+        ("IF $IN[1] DO", "IF has THEN and no DO", "IF $IN[1] THEN"),
+        ("WHILE $IN[1] DO", "WHILE has no DO", "WHILE $IN[1] "),
+        ("FOR N = 1 TO 9 STEP=2", "STEP has no =", "FOR N = 1 TO 9 STEP 2"),
+        ("INTERRUPT 5 ON", "the number stands behind ON", "INTERRUPT ON 5"),
+        ("N = (1 + 2", ") is missing", "N = (1 + 2)"),
+        ("$OUT[1 = TRUE", None, None),
+        ("// a comment", "a comment begins with a semicolon", "; a comment"),
+        ("X = -.5", "a number begins with a digit", "X = -0.5"),
+        ("GLOBAL DECL INT N", "GLOBAL stands behind DECL", "DECL GLOBAL INT N"),
+        ("PART_T LAST", "DECL is missing before PART_T", "DECL PART_T LAST"),
+        ("ELSEIF $IN[2] THEN", "KRL has no ELSEIF", None),
+        ("N = 7 MOD 2", "KRL has no MOD", None),
+        ("WORK", "WORK alone is no statement", None),
+        ("HALT $OUT[1] = TRUE", "a second statement on this line", None),
+        ("DECL INT WHILE", "WHILE is a keyword and cannot be a name", None),
+        ('TEXT[] = "OPEN', "the text is not closed", None),
+        ("DECL INT N = 5", "an initial value in a routine", None),
+    ],
+)
+def test_usual_mistakes(line: str, message: str | None, better: str | None) -> None:
+    """Mistakes that people make again and again are told by name, some with an edit."""
+    text = f"DEF A()\n{line}\nEND\n"
+    first = findings(text)[0]
+    assert 2 == first.region.line
+    if message is not None:
+        assert message == first.message
+    if better is not None:
+        assert f"DEF A()\n{better}\nEND\n" == mended(text, first.fix)
+
+
+@pytest.mark.parametrize(
+    ("opener", "closer"),
+    [
+        ("IF $IN[1] THEN", "ENDIF"),
+        ("FOR N = 1 TO 2", "ENDFOR"),
+        ("WHILE $IN[1]", "ENDWHILE"),
+        ("REPEAT", "UNTIL"),
+        ("LOOP", "ENDLOOP"),
+        ("SPLINE", "ENDSPLINE"),
+    ],
+)
+def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
+    """The opener is told with its line; a LOOP has the controller's own number [CTL-10]."""
+    first = findings(f"DEF A()\nHALT\n{opener}\nEND\n")[0]
+    assert f"{opener.split(maxsplit=1)[0]} on line 3 is not closed" == first.message
+    assert f"{closer} is missing" == first.reason
+    assert ("KSS2144" if opener == "LOOP" else "KRL001") == first.code
+
+
+def test_crossed_blocks() -> None:
+    """Of two blocks that cross it is the inner one that is not closed."""
+    first = findings("DEF A()\nLOOP\nIF $IN[1] THEN\nENDLOOP\nENDIF\nEND\n")[0]
+    assert ("IF on line 3 is not closed", 4) == (first.message, first.region.line)
+
+
+def test_the_end_of_the_file() -> None:
+    """What is missing at the very end is told on the last line that says something."""
+    (found,) = findings("DEF A()\nHALT\n\n\n")
+    assert ("DEF on line 1 is not closed", 2, 5) == (
+        found.message,
+        found.region.line,
+        found.region.column,
+    )
+
+
+def test_expected_is_told_in_words() -> None:
+    """Without a name for the mistake, what could have stood there is told."""
+    found = only("WAIT 5")
+    assert ("5 cannot stand here", "expected: FOR or SEC") == (found.message, found.reason)
+    assert "expected: a value" == only("N = 1 +").reason
+
+
+@pytest.mark.parametrize(
+    ("expected", "words"),
+    [
+        ((), ""),
+        (("NEWLINE",), "the end of the line"),
+        ((",", "NEWLINE"), '"," or the end of the line'),
+        (("ENDIF", "HALT", "IF", "LIN", "NAME", "NEWLINE"), "ENDIF or a statement"),
+        (("INTEGER", "NAME", "REAL_NUMBER", "STRING", "("), "a value"),
+        (("INTEGER", "REAL_NUMBER", "STRING", "{"), "a constant"),
+        (("BOOL", "INT", "NAME", "REAL"), "a type"),
+        (("AT_MOST", "==", "*", "THEN"), "THEN or an operator"),
+        (("EOF", "HEADER"), "the end of the file"),
+    ],
+)
+def test_words_for_tokens(expected: tuple[str, ...], words: str) -> None:
+    """Tokens that people have one word for are told by it."""
+    assert words == in_words(expected)
+
+
+def test_what_follows_is_left_out() -> None:
+    """An opener that cannot be read makes its closer fail, which is not told."""
+    assert ["a comparison is written =="] == [
+        found.message for found in findings("DEF A()\nIF N = 1 THEN\nHALT\nENDIF\nEND\n")
+    ]
+
+
+def test_only_so_many_are_told() -> None:
+    """A file of which no line can be read is told in bounded length."""
+    found = findings("DEF A()\n" + "5 5\n" * (MOST_TOLD + 50) + "END\n")
+    assert MOST_TOLD + 1 == len(found)
+    assert "50 more lines" in found[-1].message
+
+
+def test_too_deep_is_no_error() -> None:
+    """What only we cannot do is a warning, and says so."""
+    (found,) = findings("DEF A()\nN = " + "(" * 500 + "1" + ")" * 500 + "\nEND\n")
+    assert ("KRL003", "warning") == (found.code, found.severity)
+
+
+def test_failures_far_out_on_a_line() -> None:
+    """On an enormous line only what was expected is told."""
+    (found,) = findings("DEF A()\nN = " + "1 + " * 20_000 + "\nEND\n")
+    assert ("the line ends too early", 80_005) == (found.message, found.region.column)
+
+
+def test_open_blocks() -> None:
+    """Lines know the blocks around them, whatever is not closed in between."""
+    text = "DEF A()\nLOOP\nIF X THEN\nENDLOOP\nGLOBAL DEF B()\nEND\nWAIT FOR X\n"
+    found = open_blocks(Source(text), range(1, 9))
+    assert [None, "DEF", "LOOP", "IF", "DEF", "DEF", "DEF", "DEF"] == [
+        block and block.word for _, block in sorted(found.items())
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [("  endif ; done", "ENDIF"), ("global def A()", "DEF"), ("; IF", ""), ("$OUT[1]", "")],
+)
+def test_lead(line: str, word: str) -> None:
+    """The word that says what a line is."""
+    assert word == lead(line)

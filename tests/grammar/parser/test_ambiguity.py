@@ -1,0 +1,196 @@
+"""A text is ambiguous when it has two derivations, counted one by one."""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from random import Random
+
+import pytest
+
+from grammar.notation.g4 import read
+from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat
+from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sentences import Sentences
+
+#: A derivation: the rule and what it was made of, tokens as their names.
+Tree = tuple[object, ...]
+
+HEAD = "grammar T;\n"
+WORDS = "IF THEN ELSE END A B C".split()
+TOKENS = "".join(f"{word} : '{word}' ;\n" for word in WORDS)
+SIGNS = "PLUS : '+' ;\nCOMMA : ',' ;\nNEWLINE : '\\n' ;\nSPACE : ' ' -> skip ;\n"
+
+
+def grammar_of(*rules: str) -> Grammar:
+    return read(HEAD + "\n".join(f"{rule} ;" for rule in rules) + "\n" + TOKENS + SIGNS)
+
+
+def ambiguous(grammar: Grammar, text: str) -> bool:
+    recognizer = Recognizer(grammar)
+    assert recognizer.accepts(text)
+    return is_ambiguous(recognizer, recognizer.start, recognizer.kinds(text))
+
+
+# ------------------------------------------------------------------------- known by heart
+
+
+@pytest.mark.parametrize(
+    ("rules", "text", "expected"),
+    [
+        # the dangling ELSE, and what mends it
+        (["s : i EOF", "i : IF A THEN i (ELSE i)? | B"], "IF A THEN IF A THEN B ELSE B", True),
+        (["s : i EOF", "i : IF A THEN i (ELSE i)? | B"], "IF A THEN B ELSE B", False),
+        (["s : i EOF", "i : IF A THEN i (ELSE i)? END | B"], "IF A THEN B ELSE B END", False),
+        (["s : i EOF", "i : IF i (ELSE i)? END | B"], "IF IF B ELSE B END END", False),
+        # operators of one level and of two
+        (["s : e EOF", "e : A ('+' e)* "], "A + A", False),
+        (["s : e EOF", "e : A ('+' e)* "], "A + A + A", True),
+        (["s : e EOF", "e : t ('+' t)*", "t : A (',' A)*"], "A + A , A + A , A", False),
+        # two rules for the same tokens
+        (["s : (a | b) EOF", "a : A", "b : A"], "A", True),
+        (["s : (a | b) EOF", "a : A B", "b : A C"], "A B", False),
+        (["s : a B EOF", "a : A | b", "b : A"], "A B", True),
+        # where one loop ends and the next begins
+        (["s : a* b EOF", "a : A", "b : A*"], "A", True),
+        (["s : a* b EOF", "a : A", "b : B A*"], "A A B A", False),
+        (["s : a a EOF", "a : A? B?"], "A B", True),
+        (["s : a a EOF", "a : A? B?"], "B A", False),
+        # what may be empty
+        (["s : a? A EOF", "a : B?"], "A", True),
+        (["s : a A EOF", "a : B?"], "A", False),
+        (["s : a* A EOF", "a : B?"], "A", True),
+        # the same tokens twice in one rule are one reading
+        (["s : A EOF | A EOF"], "A", False),
+        (["s : A? A? EOF"], "A", False),
+        (["s : (A | A B) B? EOF"], "A B", False),
+    ],
+)  # fmt: skip
+def test_textbook_cases(rules: Sequence[str], text: str, expected: bool) -> None:
+    """Two ways to derive a text are an ambiguity; two ways to write one rule are not."""
+    assert expected == ambiguous(grammar_of(*rules), text)
+
+
+def test_what_cannot_be_read_has_no_reading() -> None:
+    """A text that is no sentence is not ambiguous, however ambiguous its beginning is."""
+    recognizer = Recognizer(grammar_of("s : (a | b) C EOF", "a : A", "b : A"))
+    assert is_ambiguous(recognizer, recognizer.start, recognizer.kinds("A C"))
+    for text in ("A B", "A", "B", "A C C"):
+        assert not is_ambiguous(recognizer, recognizer.start, recognizer.kinds(text))
+
+
+def test_readings_that_end_differently_are_none_yet() -> None:
+    """Halfway through, two readings may still turn out to be one; at the end they do not."""
+    recognizer = Recognizer(grammar_of("s : a B EOF | b C EOF", "a : A", "b : A"))
+    kinds = recognizer.kinds("A B")
+    assert not is_ambiguous(recognizer, recognizer.start, kinds[:1])
+    assert not is_ambiguous(recognizer, recognizer.start, kinds)
+
+
+def test_reading_may_begin_anywhere() -> None:
+    """From a state in the middle only what is read from there on counts."""
+    recognizer = Recognizer(grammar_of("s : t (IF t)? EOF", "t : (a | b) C? | B", "a : A", "b : A"))
+    kinds = recognizer.kinds("A IF B")
+    assert is_ambiguous(recognizer, recognizer.start, kinds)
+    state, _ = recognizer.run(recognizer.start, kinds[:2])
+    assert not is_ambiguous(recognizer, state, kinds[2:])
+    assert is_ambiguous(recognizer, state, recognizer.kinds("A"))
+
+
+def test_deep_nesting_is_looked_through() -> None:
+    """An ambiguity a hundred brackets deep is found, and none is made up on the way."""
+    rules = ("s : e EOF", "e : IF e THEN | x | y", "x : A B", "y : A C? B")
+    for inner, expected in (("A C B", False), ("A B", True)):
+        text = "IF " * 100 + inner + " THEN" * 100
+        assert expected == ambiguous(grammar_of(*rules), text)
+
+
+# ------------------------------------------------------------------- counted independently
+
+
+class Derivations:
+    """All derivations of some tokens, each once, found by trying everything.
+
+    Of rounds of a loop that read nothing two in a row are tried: more would go on for ever.
+    """
+
+    def __init__(self, grammar: Grammar, tokens: Sequence[str]) -> None:
+        self.grammar = grammar
+        self.tokens = tokens
+        self._known: dict[tuple[str, int], frozenset[tuple[Tree, int]]] = {}
+
+    def __iter__(self) -> Iterator[Tree]:
+        whole = self._of_rule(self.grammar.start, 0)
+        return (tree for tree, end in whole if end == len(self.tokens))
+
+    def _of_rule(self, name: str, at: int) -> frozenset[tuple[Tree, int]]:
+        if (name, at) not in self._known:
+            alternatives = self.grammar.by_name[name].alternatives
+            found = (t for a in alternatives for t in self._of_sequence(a.elements, at))
+            self._known[name, at] = frozenset(islice(found, 4_000))
+        return self._known[name, at]
+
+    def _of_sequence(self, elements: Sequence[Element], at: int) -> Iterator[tuple[Tree, int]]:
+        if not elements:
+            yield (), at
+            return
+        for first, middle in self._of(elements[0], at):
+            for rest, end in self._of_sequence(elements[1:], middle):
+                yield (*first, *rest), end
+
+    def _of(self, element: Element, at: int) -> Iterator[tuple[Tree, int]]:
+        match element:
+            case Group(alternatives=alternatives):
+                for alternative in alternatives:
+                    yield from self._of_sequence(alternative.elements, at)
+            case Repeat(item=item, operator=operator):
+                if operator != "+":
+                    yield (), at
+                yield from self._of(item, at) if operator == "?" else self._rounds(item, at, 2)
+            case Literal() | Reference():
+                yield from self._of_symbol(self.grammar.token_of(element), at)
+            case _:
+                raise AssertionError(element)
+
+    def _rounds(self, item: Element, at: int, idle: int) -> Iterator[tuple[Tree, int]]:
+        for first, middle in self._of(item, at):
+            left = 2 if middle != at else idle - 1
+            if left >= 0:
+                yield first, middle
+                for rest, end in self._rounds(item, middle, left):
+                    yield (*first, *rest), end
+
+    def _of_symbol(self, name: str, at: int) -> Iterator[tuple[Tree, int]]:
+        rule = self.grammar.by_name.get(name)
+        if rule is not None and not rule.is_lexer:
+            for tree, end in self._of_rule(name, at):
+                yield ((name, tree),), end
+        elif at < len(self.tokens) and self.tokens[at] == name:
+            yield (name,), at + 1
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_it_is_what_counting_derivations_says(
+    seed: int, random_grammar: Callable[[Random], Grammar]
+) -> None:
+    """On random grammars and sentences of them: ambiguous means two derivations or more."""
+    chance = Random(seed)
+    grammar = random_grammar(chance)
+    recognizer = Recognizer(grammar)
+    for _ in range(6):
+        sentence = [*Sentences(grammar).random(chance, 6), "EOF"][-9:]
+        kinds = [recognizer.lexer.kind_of[name] for name in sentence]
+        count = len(set(islice(Derivations(grammar, sentence), 3)))
+        assert (count > 1) == is_ambiguous(recognizer, recognizer.start, kinds), sentence
+
+
+def test_random_grammars_are_of_both_kinds(random_grammar: Callable[[Random], Grammar]) -> None:
+    """Among the random cases there are ambiguous sentences and others, so that the law bites."""
+    said = set()
+    for seed in range(12):
+        chance = Random(seed)
+        grammar = random_grammar(chance)
+        recognizer = Recognizer(grammar)
+        sentence = [*Sentences(grammar).random(chance, 6), "EOF"]
+        kinds = [recognizer.lexer.kind_of[name] for name in sentence]
+        said.add(is_ambiguous(recognizer, recognizer.start, kinds))
+    assert {True, False} == said

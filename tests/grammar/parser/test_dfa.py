@@ -1,0 +1,193 @@
+"""Lexer rules become a minimal automaton, and the automaton a pattern for the longest match."""
+
+import re
+from itertools import pairwise
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grammar.notation.g4 import read
+from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar, normalised
+from grammar.parser.dfa import (
+    CharAutomaton,
+    automaton_of,
+    both_cases,
+    class_of,
+    first_characters,
+    overlap,
+    pattern_of,
+)
+
+ASCII = (0, 127)
+RANGES = st.lists(
+    st.tuples(st.integers(0, 400), st.integers(0, 60)).map(lambda p: (p[0], p[0] + p[1])),
+    min_size=1,
+    max_size=5,
+)
+
+
+def lexer_grammar(rules: str, *, folded: bool = False) -> Grammar:
+    options = "options { caseInsensitive = true; }\n" if folded else ""
+    return read(f"grammar T;\n{options}s : EOF ;\n{rules}\n")
+
+
+def automaton(rules: str, *, folded: bool = False) -> CharAutomaton:
+    grammar = lexer_grammar(rules, folded=folded)
+    return automaton_of(grammar, [r for r in grammar.rules if r.is_lexer and not r.is_fragment])
+
+
+def members(ranges: tuple[tuple[int, int], ...] | list[tuple[int, int]]) -> set[int]:
+    return {code for low, high in ranges for code in range(low, high + 1)}
+
+
+# -------------------------------------------------------------------- sets of characters
+
+
+@given(RANGES)
+def test_normalised_ranges(ranges: list[tuple[int, int]]) -> None:
+    """Normalising keeps the characters and leaves sorted ranges that do not touch."""
+    result = normalised(ranges)
+    assert members(ranges) == members(result)
+    assert all(high + 1 < low for (_, high), (low, _) in pairwise(result))
+    assert result == normalised(list(reversed(ranges)))
+
+
+@given(RANGES)
+def test_both_cases_of_ascii_only(ranges: list[tuple[int, int]]) -> None:
+    """The other case of A-Z and a-z is added and nothing else: é, ſ and the Kelvin sign stay."""
+    letters = {c for c in members(ranges) if chr(c).isascii() and chr(c).isalpha()}
+    expected = members(ranges) | {ord(chr(c).swapcase()) for c in letters}
+    assert expected == members(both_cases(ranges))
+
+
+@given(RANGES)
+def test_a_set_as_re_writes_it(ranges: list[tuple[int, int]]) -> None:
+    """The class for ``re`` matches these characters and no other, whatever they mean to ``re``."""
+    pattern = re.compile(class_of(normalised(ranges)))
+    assert members(ranges) == {c for c in range(600) if pattern.fullmatch(chr(c))}
+
+
+def test_a_set_of_everything() -> None:
+    """The widest set matches line ends and characters beyond the basic plane too."""
+    pattern = re.compile(class_of(((0, 0x10FFFF),)))
+    assert all(pattern.fullmatch(c) for c in ("\n", "\0", "\U0001f916", "]", "^"))
+
+
+@given(RANGES, RANGES)
+def test_overlap(left: list[tuple[int, int]], right: list[tuple[int, int]]) -> None:
+    """Two sets overlap when they share a character."""
+    assert bool(members(left) & members(right)) == overlap(left, right)
+
+
+# -------------------------------------------------------------------------- the automaton
+
+
+@pytest.mark.parametrize(
+    ("rules", "states"),
+    [
+        ("A : 'x' ;", 2),
+        ("A : 'x' | 'y' ;", 2),
+        ("A : [0-9]+ ;", 2),
+        ("A : 'ab' | 'cb' ;", 3),
+        ("A : 'ab' ; B : 'cb' ;", 3),
+        ("A : [0-9]+ ; B : [0-9]+ '.' [0-9]+ ;", 4),
+        ("A : ('a' 'b')* 'a' ;", 2),
+        ("A : 'a'? 'b' | 'a'+ 'b' ;", 2),
+    ],
+)
+def test_the_automaton_is_minimal(rules: str, states: int) -> None:
+    """No two states of the automaton accept the same continuations."""
+    assert states == len(automaton(rules).edges)
+
+
+@pytest.mark.parametrize(
+    ("rules", "text", "end"),
+    [
+        ("A : '<' ; B : '<=' ; C : '<=>' ;", "<=>", 3),
+        ("A : '<' ; B : '<=>' ;", "<=", 1),
+        ("A : [0-9]+ ; B : [0-9]+ '.' [0-9]+ ;", "12.", 2),
+        ("A : [0-9]+ ; B : [0-9]+ '.' [0-9]+ ;", "12.5.2", 4),
+        ("A : 'a' ; B : 'a' 'b'* 'c' ;", "abbb", 1),
+        ("A : 'a' ; B : 'a' 'b'* 'c' ;", "abbbc", 5),
+        ("A : '\"' ~[\"]* '\"' ;", '"ab', 0),
+        ("A : D+ ; fragment D : [0-9] ;", "007", 3),
+        ("A : 'if' ;", "IF", 0),
+        ("A : . ;", "\n", 1),
+    ],
+)
+def test_the_longest_match(rules: str, text: str, end: int) -> None:
+    """The longest accepted text wins, and a start that leads nowhere is given back."""
+    assert end == automaton(rules).longest(text, 0)
+    assert end + 2 == automaton(rules).longest(f"? {text}", 2) or end == 0
+
+
+def test_case_is_ignored_where_the_grammar_says_so() -> None:
+    """``caseInsensitive`` holds for quoted text and for sets."""
+    folded = automaton("A : 'iF' [X-Z]+ ;", folded=True)
+    assert [5, 5, 0] == [folded.longest(t, 0) for t in ("IFxyz", "ifXYZ", "ıfxyz")]
+
+
+def test_what_a_match_begins_with() -> None:
+    """The first characters of all rules together, options that may be absent included."""
+    expected = normalised([(ord(c), ord(c)) for c in "abcxz"])
+    assert expected == first_characters(automaton("A : 'x'? [a-c] ; B : 'z' ;"))
+
+
+# ---------------------------------------------------------------------------- the pattern
+
+
+def test_a_cycle_of_several_states_has_no_pattern() -> None:
+    """A loop over one state is a pattern's loop; a longer cycle has no pattern of its own."""
+    assert pattern_of(automaton("A : 'a' [b-d]* 'e' ;")) is not None
+    assert pattern_of(automaton("A : '\"' (~[\"] | '\"\"')* '\"' ;")) is None
+    assert pattern_of(automaton("A : ('a' 'b')+ ;")) is None
+
+
+def random_rules(chance: Random) -> str:
+    """Lexer rules over few letters, so that they overlap, none matching the empty text."""
+
+    def element(depth: int) -> str:
+        kind = chance.choice("csgr" if depth else "cs")
+        if kind == "c":
+            return f"'{chance.choice('abc')}'"
+        if kind == "s":
+            return chance.choice(["[ab]", "[bc]", "~[a]", "'aa'", "'bc'", "."])
+        if kind == "g":
+            inner = (sequence(depth - 1) for _ in range(chance.randint(1, 2)))
+            return f"({' | '.join(inner)})"
+        return f"({sequence(depth - 1)}){chance.choice('?*+')}"
+
+    def sequence(depth: int) -> str:
+        return " ".join(element(depth) for _ in range(chance.randint(1, 3)))
+
+    rules = (
+        f"T{n} : '{chance.choice('abc')}' {sequence(2)} ;" for n in range(chance.randint(1, 4))
+    )
+    return "\n".join(rules)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.randoms(use_true_random=True))
+def test_the_pattern_matches_what_the_automaton_does(chance: Random) -> None:
+    """Where there is a pattern, its match is the automaton's longest match at every place."""
+    found = automaton(random_rules(chance))
+    pattern = pattern_of(found)
+    if pattern is None:
+        return
+    compiled = re.compile(pattern)
+    text = "".join(chance.choice("aabbccd") for _ in range(30))
+    for start in range(len(text)):
+        match = compiled.match(text, start)
+        assert (match.end() if match else start) == found.longest(text, start)
+
+
+@pytest.mark.parametrize("name", ["KRL.g4", "preliminary.g4"])
+def test_own_grammars_are_cut_at_the_speed_of_re(name: str) -> None:
+    """The project's grammars have a pattern: the slow way is for other people's grammars."""
+    grammar = read(GRAMMAR.with_name(name).read_text(encoding="utf-8"))
+    rules = [r for r in grammar.rules if r.is_lexer and not r.is_fragment]
+    others = [r for r in rules if r.name not in grammar.literal_tokens.values()]
+    assert pattern_of(automaton_of(grammar, others)) is not None

@@ -1,0 +1,243 @@
+"""Rules become minimal deterministic automata, linked into one network."""
+
+from collections.abc import Callable
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grammar.notation.edits import AddAlternative, AddToken, apply, element_at, sequences
+from grammar.notation.g4 import read, read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar, Literal, Reference
+from grammar.notation.wellformed import problem
+from grammar.parser.lexer import lexer_of
+from grammar.parser.network import (
+    Network,
+    RuleAutomaton,
+    is_left_recursive,
+    may_be_empty,
+    network_of,
+    rule_automaton,
+    with_rule,
+)
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sentences import Sentences
+
+RandomGrammar = Callable[[Random], Grammar]
+Mutated = Callable[[list[str], Random, list[str]], list[str]]
+
+#: A position with the positions to return to, the outermost first.
+Way = tuple[int, tuple[int, ...]]
+
+MANY = st.randoms(use_true_random=True)
+PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
+TOKENS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\nNEWLINE : '\\n' ;\n"
+
+
+def grammar_of(rules: str) -> Grammar:
+    return read(f"grammar T;\n{rules}\n{TOKENS}")
+
+
+def automaton_of(rule: str) -> RuleAutomaton:
+    grammar = grammar_of(f"{rule}\nt : A | B t ;")
+    return rule_automaton(grammar, grammar.rules[0])
+
+
+def accepts(network: Network, tokens: list[str]) -> int | None:
+    """Where the recogniser of a network stops."""
+    recognizer = Recognizer(PRELIMINARY, network)
+    return recognizer.run(recognizer.start, [network.lexer.kind_of[t] for t in tokens])[1]
+
+
+# -------------------------------------------------------------------- automata of rules
+
+
+@pytest.mark.parametrize(
+    ("rule", "edges", "final"),
+    [
+        ("s : A B ;", [{"A": 1}, {"B": 2}, {}], {2}),
+        ("s : A | A B ;", [{"A": 1}, {"B": 2}, {}], {1, 2}),
+        ("s : A B | t B ;", [{"A": 1, "t": 1}, {"B": 2}, {}], {2}),
+        ("s : ;", [{}], {0}),
+        ("s : A* ;", [{"A": 0}], {0}),
+        ("s : A+ ;", [{"A": 1}, {"A": 1}], {1}),
+        ("s : A (',' A)* ;", [{"A": 1}, {"COMMA": 0}], {1}),
+        ("s : (A? B?)? ;", [{"A": 1, "B": 2}, {"B": 2}, {}], {0, 1, 2}),
+        ("s : ((A | 'b')* 'a')? ;", [{"A": 0, "B": 1}, {"A": 0, "B": 1}], {0}),
+    ],
+)
+def test_a_rule_is_the_smallest_automaton(
+    rule: str, edges: list[dict[str, int]], final: set[int]
+) -> None:
+    """States that read on alike are one, and no state reads one symbol in two ways."""
+    grammar = read(f"grammar T;\n{rule}\nt : A | B t ;\n{TOKENS}COMMA : ',' ;\n")
+    automaton = rule_automaton(grammar, grammar.rules[0])
+    assert edges == [dict(e) for e in automaton.edges]
+    assert final == automaton.final
+
+
+def test_where_in_the_rule_a_state_stands() -> None:
+    """`places` are the addresses of the elements that may come next, and of ends of sequences."""
+    automaton = automaton_of("s : A (B | C t)? A ;")
+    assert automaton.places[0] == {(1, 1)}
+    assert automaton.places[automaton.edges[0]["A"]] == {(1, 2), (1, 2, 1, 1), (1, 2, 2, 1), (1, 3)}
+    after_c = automaton.edges[automaton.edges[0]["A"]]["C"]
+    assert automaton.places[after_c] == {(1, 2, 2, 2)}
+    after_group = automaton.edges[after_c]["t"]
+    assert automaton.places[after_group] == {(1, 2, 1, 2), (1, 2, 2, 3), (1, 3)}
+    (last,) = automaton.final
+    assert automaton.places[last] == {(1, 4)}
+
+
+@pytest.mark.parametrize("name", ["krl", "preliminary"])
+def test_places_name_what_is_read_there(name: str, request: pytest.FixtureRequest) -> None:
+    """A state reads the symbols of the elements at its places, and every place has a state."""
+    grammar: Grammar = request.getfixturevalue(name)
+    for rule in (r for r in grammar.rules if not r.is_lexer):
+        automaton = rule_automaton(grammar, rule)
+        lengths = {at: len(alternative.elements) for at, alternative in sequences(rule)}
+        for edges, places in zip(automaton.edges, automaton.places, strict=True):
+            elements = [element_at(rule, p) for p in places if p[-1] <= lengths[p[:-1]]]
+            symbols = [e for e in elements if isinstance(e, Reference | Literal)]
+            assert {grammar.token_of(e) for e in symbols} <= set(edges)
+        expected = {(*at, n) for at, size in lengths.items() for n in range(1, size + 2)}
+        assert expected == set().union(*automaton.places)
+
+
+# ---------------------------------------------------------------------------- the network
+
+
+@pytest.mark.parametrize("name", ["krl", "preliminary"])
+def test_positions_are_the_states_of_all_rules(name: str, request: pytest.FixtureRequest) -> None:
+    """Each state of each rule's automaton is one position with that state's edges."""
+    grammar: Grammar = request.getfixturevalue(name)
+    network = network_of(grammar)
+    assert grammar.start == network.rule[network.start]
+    positions = 0
+    for rule, automaton in network.automata.items():
+        base = network.entry[rule]
+        for state, edges in enumerate(automaton.edges):
+            p = base + state
+            tokens = {network.lexer.names[k]: to - base for k, to in network.shifts[p].items()}
+            calls = {network.rule[entry]: back - base for entry, back in network.calls[p]}
+            assert all(network.entry[network.rule[entry]] == entry for entry, _ in network.calls[p])
+            assert dict(edges) == tokens | calls
+            assert (rule, state in automaton.final) == (network.rule[p], network.final[p])
+            positions += 1
+    assert positions == len(network.rule)
+
+
+def surroundings(network: Network, start: int) -> tuple[set[Way], set[tuple[str, Way]], bool]:
+    """What `Network.reach` tells, by taking one step after the other."""
+    sites: set[Way] = {(start, ())}
+    todo = list(sites)
+    for position, returns in todo:  # grows while it is walked
+        found = [(entry, (*returns, back)) for entry, back in network.calls[position]]
+        found += [(returns[-1], returns[:-1])] if network.final[position] and returns else []
+        todo += [way for way in found if way not in sites]
+        sites |= set(found)
+    moves = {
+        (network.lexer.names[kind], (target, returns))
+        for position, returns in sites
+        for kind, target in network.shifts[position].items()
+    }
+    return sites, moves, any(network.final[p] and not returns for p, returns in sites)
+
+
+@pytest.mark.parametrize("name", ["krl", "preliminary"])
+def test_the_reach_of_every_position(name: str, request: pytest.FixtureRequest) -> None:
+    """What is known of a position is what following calls and returns from it leads to."""
+    network = network_of(request.getfixturevalue(name))
+    for position in range(len(network.rule)):
+        check_reach(network, position)
+
+
+@settings(max_examples=60, deadline=None)
+@given(chance=MANY)
+def test_the_reach_in_random_grammars(chance: Random, random_grammar: RandomGrammar) -> None:
+    """The same where rules are empty, recursive and call one another in every way."""
+    network = network_of(random_grammar(chance))
+    for position in range(len(network.rule)):
+        check_reach(network, position)
+
+
+def check_reach(network: Network, position: int) -> None:
+    sites, moves, ends = surroundings(network, position)
+    reach = network.reach(position)
+    assert sites == set(reach.sites)
+    assert moves == {(network.lexer.names[k], way) for k in reach.first for way in reach[k]}
+    assert not any(reach[k] for k in range(len(network.lexer.names)) if k not in reach.first)
+    assert ends == reach.ends
+    assert reach.rules >= {network.rule[p] for p, _ in sites}
+
+
+@settings(max_examples=60, deadline=None)
+@given(chance=MANY)
+def test_positions_that_pass_a_return_on(chance: Random, random_grammar: RandomGrammar) -> None:
+    """From these, and from no others, the rule can end and nothing else can be done."""
+    network = network_of(random_grammar(chance))
+    for position in range(len(network.rule)):
+        found = surroundings(network, position)
+        assert (({(position, ())}, set(), True) == found) == (position in network.passing())
+
+
+@settings(max_examples=60, deadline=None)
+@given(chance=MANY)
+def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
+    """A network with one rule exchanged reads like one linked anew; other positions stay."""
+    rule = chance.choice([r for r in PRELIMINARY.rules if not r.is_lexer])
+    text = chance.choice(["STRING", "WAIT NAME?", "'(' expression ')'", "ZZWORD (',' NAME)*"])
+    changed = apply(PRELIMINARY, [AddToken("ZZWORD"), AddAlternative(rule.name, text)])
+    old = network_of(PRELIMINARY)
+    accepts(old, [*Sentences(PRELIMINARY).random(chance, 40), "EOF"])  # old now knows its reach
+    lexer = lexer_of(PRELIMINARY).with_keyword("ZZWORD")
+    network = with_rule(old, changed, changed.by_name[rule.name], lexer)
+    anew = network_of(changed, lexer)
+    assert (old.entry, old.start) == (network.entry, network.start)
+    for p, name in enumerate(old.rule):
+        if name != rule.name:
+            assert (old.shifts[p], old.calls[p], name) == (
+                network.shifts[p],
+                network.calls[p],
+                network.rule[p],
+            )
+    names = [n for n in lexer.names if n not in ("COMMENT", "SPACE")]
+    for grammar in (PRELIMINARY, changed):
+        tokens = Sentences(grammar).random(chance, 40)
+        for some in ([*tokens, "EOF"], [*mutated(tokens, chance, names), "EOF"]):
+            assert accepts(anew, some) == accepts(network, some)
+    again = with_rule(network, PRELIMINARY, rule, lexer)
+    assert accepts(network_of(PRELIMINARY, lexer), some) == accepts(again, some)
+
+
+# ------------------------------------------------------------------------ left recursion
+
+
+@settings(max_examples=200, deadline=None)
+@given(chance=MANY)
+def test_left_recursion_is_found(chance: Random, random_grammar: RandomGrammar) -> None:
+    """The network has a left-recursive cycle exactly where reading the grammar finds one."""
+    grammar = random_grammar(chance)
+    rules = [r.name for r in grammar.rules if not r.is_lexer]
+    words = [chance.choice([*rules[1:], "A", f"{rules[-1]}?"]) for _ in range(chance.randint(1, 3))]
+    changed = apply(grammar, [AddAlternative(chance.choice(rules), " ".join(words))])
+    found = "left recursion" in (problem(changed) or "")
+    assert found == is_left_recursive(network_of(changed))
+
+
+@settings(max_examples=200, deadline=None)
+@given(chance=MANY)
+def test_left_recursion_of_one_change(chance: Random, random_grammar: RandomGrammar) -> None:
+    """Looking at the changed rule alone tells what looking at all of them does."""
+    grammar = random_grammar(chance)
+    before = network_of(grammar)
+    if is_left_recursive(before):
+        return
+    rules = [r.name for r in grammar.rules if not r.is_lexer]
+    rule = chance.choice(rules)
+    words = [chance.choice([*rules[1:], "A", f"{rules[-1]}?"]) for _ in range(chance.randint(1, 3))]
+    after = network_of(apply(grammar, [AddAlternative(rule, " ".join(words))]), before.lexer)
+    empty = may_be_empty(before)
+    assert is_left_recursive(after) == is_left_recursive(after, [rule], empty)

@@ -1,0 +1,470 @@
+"""Parse trees: what they consist of, where, and which one where there are several."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from grammar.notation.g4 import read
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    walk,
+)
+from grammar.notation.wellformed import shortest_length, shortest_lengths
+from grammar.parser import parse as parsing
+from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.failures import FailureFinder
+from grammar.parser.parse import Parser, Stop
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sentences import Sentences
+from grammar.parser.tree import Node, Token, Tree
+
+#: A tree as a test writes it: a rule and what it was made of, tokens as their names.
+Plain = tuple[object, ...]
+
+WORDS = "".join(f"{word} : '{word}' ;\n" for word in "ABCDE")
+SIGNS = "COMMA : ',' ;\nNEWLINE : '\\n' ;\nSPACE : ' ' -> skip ;\n"
+
+
+def grammar_of(*rules: str) -> Grammar:
+    return read("grammar T;\n" + "".join(f"{rule} ;\n" for rule in rules) + WORDS + SIGNS)
+
+
+def parsed(parser: Parser, text: str) -> Tree:
+    tree = parser.parse(text)
+    assert isinstance(tree, Tree), tree
+    return tree
+
+
+def plain(node: Node) -> Plain:
+    below = [plain(c) if isinstance(c, Node) else c.kind for c in node.children]
+    return (node.rule, *below)
+
+
+def tree_of(rules: Sequence[str], text: str) -> Plain:
+    return plain(parsed(Parser(Recognizer(grammar_of(*rules))), text).root)
+
+
+@pytest.fixture(scope="module")
+def parser(recognizer: Recognizer) -> Parser:
+    """A parser of the restrictive start."""
+    return Parser(recognizer)
+
+
+@pytest.fixture(scope="module")
+def krl_parser(krl_recognizer: Recognizer) -> Parser:
+    """A parser of the grammar in force."""
+    return Parser(krl_recognizer)
+
+
+@pytest.fixture(scope="module")
+def trees(krl_parser: Parser, corpus: Mapping[Path, str]) -> Mapping[Path, Tree]:
+    """The trees of the programs of the own corpus that can be read."""
+    programs = ((p, krl_parser.parse(t)) for p, t in corpus.items() if "programs" in p.parts)
+    return {path: tree for path, tree in programs if isinstance(tree, Tree)}
+
+
+# ----------------------------------------------------------------------------- what they are
+
+
+def test_a_small_program(parser: Parser) -> None:
+    """Every rule and every token is there, in order, chains of rules included."""
+    tree = parsed(parser, "DEF A()\nX=1\nEND\n")
+    number: Plain = ("literal", "INTEGER")
+    for rule in "primary factor product sum conjunction disjunction expression".split():
+        number = (rule, number)
+    assignment = ("assignment", ("variable", "NAME"), "ASSIGN", number)
+    statement = ("statement", ("simpleStatement", assignment), ("eol", "NEWLINE"))
+    head = ["DEF", "NAME", "LPAREN", "RPAREN", ("eol", "NEWLINE")]
+    program = ("program", ("procedure", *head, statement, "END"))
+    assert ("module", program, "NEWLINE", "EOF") == plain(tree.root)
+
+
+def test_where_tokens_are(parser: Parser) -> None:
+    """Lines and columns count from 1, offsets from 0, whatever the line ends are."""
+    tree = parsed(parser, "\r\nDEF  A() ; x\r  \n\tX = 1\nEND")
+    found = [(t.kind, t.text, t.line, t.column, t.offset) for t in tree.tokens]
+    assert [
+        ("NEWLINE", "\r\n", 1, 1, 0),
+        ("DEF", "DEF", 2, 1, 2),
+        ("NAME", "A", 2, 6, 7),
+        ("LPAREN", "(", 2, 7, 8),
+        ("RPAREN", ")", 2, 8, 9),
+        ("NEWLINE", "\r", 2, 13, 14),
+        ("NEWLINE", "\n", 3, 3, 17),
+        ("NAME", "X", 4, 2, 19),
+        ("ASSIGN", "=", 4, 4, 21),
+        ("INTEGER", "1", 4, 6, 23),
+        ("NEWLINE", "\n", 4, 7, 24),
+        ("END", "END", 5, 1, 25),
+        ("EOF", "", 5, 4, 28),
+    ] == found
+    assert [" ; x", "  "] == [tree.gap(5), tree.gap(6)]
+
+
+def test_where_nodes_are(parser: Parser) -> None:
+    """A node knows its tokens and its text, with the comments within and not those around."""
+    tree = parsed(parser, "DEF A() ; one\nIF X THEN ; two\nEXIT ; three\nENDIF ; four\nEND ; five")
+    nodes = {n.rule: n for n in tree.root.walk() if isinstance(n, Node)}
+    block = nodes["ifStatement"]
+    assert block.text == "IF X THEN ; two\nEXIT ; three\nENDIF"
+    assert (5, 12) == (block.first, block.stop)
+    assert tree.text[slice(*block.span)] == block.text
+    assert ["IF", "ENDIF"] == [tree.tokens[block.first].text, tree.tokens[block.stop - 1].text]
+
+
+def test_what_is_skipped_lies_between(trees: Mapping[Path, Tree]) -> None:
+    """Gaps and tokens in turn are the text, and every token comes once, in order."""
+    for path, tree in trees.items():
+        pieces = [tree.gap(token.index) + token.text for token in tree.tokens]
+        assert tree.text == "".join(pieces), path
+        leaves = [x.index for x in tree.root.walk() if isinstance(x, Token)]
+        assert list(range(len(tree.kinds))) == leaves, path
+
+
+def test_nodes_nest(trees: Mapping[Path, Tree]) -> None:
+    """The children of a node lie side by side, from its first token to its last."""
+    for tree in trees.values():
+        for node in tree.root.walk():
+            if isinstance(node, Node):
+                at = node.first
+                for child in node.children:
+                    assert at == (child.first if isinstance(child, Node) else child.index)
+                    at = child.stop if isinstance(child, Node) else at + 1
+                assert node.stop == at
+
+
+def test_views_of_one_place_are_equal(parser: Parser) -> None:
+    """Asking twice gives equal nodes and tokens; another place or another tree does not."""
+    first, second = (parsed(parser, "DEF A()\nX=1\nX=1\nEND\n") for _ in range(2))
+    assert list(first.root.walk()) == list(first.root.walk())
+    assert len(set(first.root.walk())) == len(list(first.root.walk()))
+    assert first.root != second.root
+
+
+def test_lines_built_alike_share_their_outline(parser: Parser) -> None:
+    """What can be said of a rule from its outline has to be worked out once for all such lines."""
+    texts = ["DEF A()\nX=1\nY=2\nEND\n", "DEF B()\nLOOP\nZ=7\nENDLOOP\nEND\n"]
+    found = [
+        node.outline
+        for text in texts
+        for node in parsed(parser, text).root.walk()
+        if isinstance(node, Node) and node.rule == "assignment"
+    ]
+    assert 3 == len(found)
+    assert 1 == len(set(found))
+
+
+def test_inner_passes_chains_of_rules(parser: Parser) -> None:
+    """From an expression the way leads at once to the first rule that has more than a rule."""
+    tree = parsed(parser, "DEF A()\nX=1+Y[2]\nEND\n")
+    nodes = [node for node in tree.root.walk() if isinstance(node, Node)]
+    inner = [(n.inner.rule, n.inner.text) for n in nodes if n.rule == "expression"]
+    assert [("sum", "1+Y[2]"), ("literal", "2")] == inner
+    for node in nodes:
+        while node.inner != node:
+            (child,) = node.children
+            assert isinstance(child, Node)
+            assert node.inner == child.inner
+            node = child  # noqa: PLW2901 - one step down the chain
+
+
+def test_a_rule_that_reads_nothing_is_there() -> None:
+    """An empty rule is a node without tokens, where the next token begins."""
+    rules = ["s : a b EOF", "a : A?", "b : a C a"]
+    assert ("s", ("a",), ("b", ("a",), "C", ("a",)), "EOF") == tree_of(rules, "C")
+    tree = parsed(Parser(Recognizer(grammar_of(*rules))), " C ")
+    found = [n for n in tree.root.walk() if isinstance(n, Node) and n.rule == "a"]
+    assert [(0, 0), (0, 0), (1, 1)] == [(n.first, n.stop) for n in found]
+    assert [(1, 1), (1, 1), (3, 3)] == [n.span for n in found]
+
+
+def test_skipped_tokens_the_lexer_cuts_are_not_in_the_tree() -> None:
+    """Where a comment begins like a token the lexer cuts it too; the tree is the same."""
+    lexer = "A : 'a' ;\nDIVIDE : '/' ;\nNEWLINE : '\\n' ;\nCOMMENT : '//' ~[\\n]* -> skip ;\n"
+    recognizer = Recognizer(read(f"grammar T;\ns : (A | '/' | NEWLINE)* EOF ;\n{lexer}"))
+    assert not recognizer.lexer.leaves_out_skipped
+    tree = parsed(Parser(recognizer), "a/a//a\n//\na")
+    assert ["a", "/", "a", "\n", "\n", "a", ""] == [t.text for t in tree.tokens]
+    assert ["", "", "", "//a", "//", "", ""] == [tree.gap(i) for i in range(7)]
+    assert (3, 1) == (tree.tokens[5].line, tree.tokens[5].column)
+
+
+# ------------------------------------------------------------------------------- no program
+
+
+def test_where_it_stops(parser: Parser, recognizer: Recognizer) -> None:
+    """A text that is no program gives the first token that cannot be there, and its state."""
+    stop = parser.parse("DEF A()\n  X=1 ;c\n FOO BAR\nEND\n")
+    assert isinstance(stop, Stop)
+    assert (3, 6, 22, "BAR") == (stop.line, stop.column, stop.offset, stop.text)
+    assert "=" in FailureFinder(recognizer).context(stop.state).expected
+    end = parser.parse("DEF A()\n")
+    assert isinstance(end, Stop)
+    assert (2, 1, 8, "") == (end.line, end.column, end.offset, end.text)
+
+
+def test_it_stops_where_the_recogniser_does(
+    krl_parser: Parser, krl_recognizer: Recognizer, corpus: Mapping[Path, str]
+) -> None:
+    """Texts have a tree when they are accepted, and else the first failure is where it stops."""
+    finder = FailureFinder(krl_recognizer)
+    stopped = 0
+    for text in corpus.values():
+        result = krl_parser.parse(text)
+        assert krl_recognizer.accepts(text) == isinstance(result, Tree)
+        if isinstance(result, Stop) and len(text) < 2000:
+            stopped += 1
+            first = finder.find(text)[0]
+            assert (first.line, first.column, first.text) == (
+                result.line,
+                result.column,
+                result.text,
+            )
+    assert stopped > 300
+
+
+# ------------------------------------------------------------------------- several readings
+
+
+@pytest.mark.parametrize(
+    ("rules", "text", "expected"),
+    [
+        # the dangling ELSE belongs to the inner IF
+        (
+            ["s : i EOF", "i : A i (B i)? | C"],
+            "AACBC",
+            ("s", ("i", "A", ("i", "A", ("i", "C"), "B", ("i", "C"))), "EOF"),
+        ),
+        # the alternative written first, seen from outside
+        (["s : (x | y) EOF", "x : A", "y : A"], "A", ("s", ("x", "A"), "EOF")),
+        (["s : (y | x) EOF", "x : A", "y : A"], "A", ("s", ("y", "A"), "EOF")),
+        # only if the rest can be read then
+        (["s : x B EOF | y C EOF", "x : A", "y : A"], "AC", ("s", ("y", "A"), "C", "EOF")),
+        # optional parts and loops take what they can get
+        (["s : x* y EOF", "x : A", "y : A*"], "A", ("s", ("x", "A"), ("y",), "EOF")),
+        (["s : x? y EOF", "x : A", "y : A?"], "A", ("s", ("x", "A"), ("y",), "EOF")),
+        # the choice at the left counts first, whatever is lost at the right
+        (
+            ["s : (x | x y) z EOF", "x : A", "y : B", "z : (y | C)*"],
+            "AB",
+            ("s", ("x", "A"), ("z", ("y", "B")), "EOF"),
+        ),
+        # an earlier alternative wins although it shows later that it is one
+        (
+            ["s : (A x | A y) EOF", "x : B", "y : B"],
+            "AB",
+            ("s", "A", ("x", "B"), "EOF"),
+        ),
+        (
+            ["s : (x C | y C | x D) EOF", "x : A", "y : A"],
+            "AC",
+            ("s", ("x", "A"), "C", "EOF"),
+        ),
+    ],
+)  # fmt: skip
+def test_the_reading_that_antlr_takes(rules: Sequence[str], text: str, expected: Plain) -> None:
+    """Of several readings the one is taken whose first decision that differs is written first."""
+    assert expected == tree_of(rules, text)
+
+
+class Readings:
+    """The trees of some tokens, found by trying everything in the order in which it is written.
+
+    For grammars without `endless_loops`.
+    """
+
+    def __init__(self, grammar: Grammar, tokens: Sequence[str]) -> None:
+        self.grammar = grammar
+        self.tokens = [*tokens, "EOF"]
+
+    def first(self) -> Plain | None:
+        """The tree of the first reading, if there is one."""
+        ways = self._of_rule(self.grammar.start, 0)
+        return next((tree for tree, end in ways if end == len(self.tokens)), None)
+
+    def _of_rule(self, name: str, start: int) -> Iterator[tuple[Plain, int]]:
+        for below, end in self._of_choice(self.grammar.by_name[name].alternatives, start):
+            yield (name, *below), end
+
+    def _of_choice(
+        self, alternatives: Sequence[Alternative], start: int
+    ) -> Iterator[tuple[Plain, int]]:
+        for alternative in alternatives:
+            yield from self._of_sequence(alternative.elements, start)
+
+    def _of_sequence(self, elements: Sequence[Element], start: int) -> Iterator[tuple[Plain, int]]:
+        if not elements:
+            yield (), start
+            return
+        for left, middle in self._of_element(elements[0], start):
+            for right, end in self._of_sequence(elements[1:], middle):
+                yield (*left, *right), end
+
+    def _of_element(self, element: Element, start: int) -> Iterator[tuple[Plain, int]]:
+        match element:
+            case Reference(name=name) if not element.is_token:
+                for tree, end in self._of_rule(name, start):
+                    yield (tree,), end
+            case Reference() | Literal():
+                name = self.grammar.token_of(element)
+                if self.tokens[start : start + 1] == [name]:
+                    yield (name,), start + 1
+            case Group(alternatives=alternatives):
+                yield from self._of_choice(alternatives, start)
+            case Repeat(item=item, operator=operator):
+                yield from self._of_rounds(item, operator, start)
+                if operator != "+":
+                    yield (), start
+
+    def _of_rounds(self, item: Element, operator: str, start: int) -> Iterator[tuple[Plain, int]]:
+        for left, middle in self._of_element(item, start):
+            if operator != "?":
+                for right, end in self._of_rounds(item, operator, middle):
+                    yield (*left, *right), end
+            yield left, middle
+
+
+def endless_loops(grammar: Grammar) -> bool:
+    """Whether a loop may go round without reading, which ANTLR refuses."""
+    lengths = shortest_lengths(grammar)
+    elements = (e for r in grammar.rules if not r.is_lexer for a in r.alternatives for e in walk(a))
+    return any(
+        isinstance(e, Repeat) and e.operator != "?" and shortest_length(e.item, lengths) == 0
+        for e in elements
+    )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int) -> None:
+    """The tree is the first of all that trying everything gives; a unique one is not ambiguous."""
+    chance = Random(seed)
+    several = 0
+    for _ in range(60):
+        grammar = random_grammar(chance)
+        if endless_loops(grammar):
+            continue
+        recognizer = Recognizer(grammar)
+        parser = Parser(recognizer)
+        sentences = Sentences(grammar)
+        for _ in range(12):
+            tokens = sentences.random(chance, chance.randint(1, 10))
+            if len(tokens) > 9:
+                continue
+            text = "".join(tokens).replace("NEWLINE", "\n")
+            tree = parsed(parser, text)
+            assert Readings(grammar, tokens).first() == plain(tree.root), (grammar.text, text)
+            ambiguous = is_ambiguous(recognizer, recognizer.start, recognizer.kinds(text))
+            several += ambiguous
+            assert not (ambiguous and tree.is_unique), (grammar.text, text)
+    assert several > 20
+
+
+@pytest.mark.parametrize(
+    ("rules", "text", "expected"),
+    [
+        (["s : i EOF", "i : A i (B i)? | C"], "AACBC", False),
+        (["s : i EOF", "i : A i (B i)? | C"], "AAC", True),
+        (["s : (x | y) EOF", "x : A B", "y : A C"], "AB", True),
+        (["s : x C EOF | y C EOF | y D EOF", "x : A", "y : A"], "AC", False),
+        (["s : x C EOF | y C EOF | y D EOF", "x : A", "y : A"], "AD", True),
+        (["s : x x A EOF", "x : B?"], "BA", False),
+        (["s : x x A EOF", "x : B?"], "BBA", True),
+        (["s : x? A EOF", "x : B?"], "A", False),
+    ],
+)
+def test_whether_the_reading_was_unique(rules: Sequence[str], text: str, expected: bool) -> None:
+    """A tree tells whether a second one was met, whichever part of the text has two readings."""
+    assert expected == parsed(Parser(Recognizer(grammar_of(*rules))), text).is_unique
+
+
+def test_own_programs_have_one_reading(trees: Mapping[Path, Tree]) -> None:
+    """No program of the own corpus has a second reading under the grammar in force."""
+    assert [] == [path.name for path, tree in trees.items() if not tree.is_unique]
+
+
+# ------------------------------------------------------------------------- depth and memory
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "depth"),
+    [
+        (
+            "DEF A()\n" + "LOOP\n" * 30_000 + "ENDLOOP\n" * 30_000 + "END\n",
+            "loopStatement",
+            30_000,
+        ),
+        (f"DEF A()\nX={'(' * 5000}1{')' * 5000}\nEND\n", "primary", 5001),
+        (f"DEF A()\nX={'A[' * 5000}1{']' * 5000}\nEND\n", "index", 5000),
+        (f"DEF A()\nF({'1,' * 5000}1)\nEND\n", "expression", 5001),
+        (f"DEF A()\nX={'NOT ' * 5000}A\nEND\n", "factor", 5001),
+    ],
+    ids=["blocks", "brackets", "indices", "arguments", "signs"],
+)
+def test_deep_nesting_is_parsed(parser: Parser, text: str, rule: str, depth: int) -> None:
+    """Depth and length meet no limit of Python's, neither in making a tree nor in walking it."""
+    tree = parsed(parser, text)
+    todo, found = [tree.outline], 0
+    while todo:
+        outline = todo.pop()
+        found += outline.rule == rule
+        todo += [child for child in outline.children if not isinstance(child, int)]
+    assert depth == found
+    assert sum(1 for _ in tree.root.walk()) > depth
+
+
+def test_right_recursion_leaves_little_to_remember(recognizer: Recognizer) -> None:
+    """Ten times the depth adds no set of configurations and no action, and lengthens none."""
+    found = set()
+    for depth in (200, 2_000, 20_000):
+        parser = Parser(recognizer)
+        parsed(parser, "DEF A()\nX=" + "NOT " * depth + "A\nEND\n")
+        deriver = parser._deriver
+        longest = max(len(action.steps) for action in deriver.actions)
+        found.add((deriver.size, len(deriver.actions), longest))
+        assert 1 == len(found), depth
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("AABD", ("s", ("r", "A", ("r", "A", ("r", "B"))), "D", "EOF")),
+        ("A\nBD", ("s", ("r", "A", "NEWLINE", ("r", "B")), "D", "EOF")),
+        (
+            "A\nAA\nC\nD",
+            ("s", ("r", "A", "NEWLINE", ("r", "A", ("r", "A", "NEWLINE",
+             ("e", "C", ("t", "NEWLINE"))))), "D", "EOF"),
+        ),
+        ("AED", ("s", ("r", "A", ("e", "E", ("t",))), "D", "EOF")),
+    ],
+)  # fmt: skip
+def test_rules_that_end_as_one(text: str, expected: Plain) -> None:
+    """What is the last thing in a rule ends with it, on the line where it began or later."""
+    rules = [
+        "s : r D EOF",
+        "r : A r | A NEWLINE (r | e) | A e | B",
+        "e : (C | E) t",
+        "t : NEWLINE?",
+    ]
+    assert expected == tree_of(rules, text)
+
+
+def test_what_is_forgotten_is_worked_out_again(
+    recognizer: Recognizer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Trees are the same where no line, or only two, can be remembered."""
+    blocks = "IF X THEN\n" * 3 + "ELSE\nENDIF\n" * 3
+    texts = [f"DEF A()\n{blocks}END\n", "DEF A()\nX=1\nY=2\nX=Y+1\nWAIT SEC 1\nX=1\nEND\n"]
+    expected = [plain(parsed(Parser(recognizer), text).root) for text in texts]
+    for name, value in (("_MOST_REMEMBERED", 2), ("_LONGEST_REMEMBERED", 0)):
+        monkeypatch.setattr(parsing, name, value)
+        parser = Parser(recognizer)
+        assert expected == [plain(parsed(parser, text).root) for text in texts]
+        assert len(parser._changes) <= (2 if name == "_MOST_REMEMBERED" else 0)

@@ -1,0 +1,745 @@
+"""Which files belong together, and what a name means in each of them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+
+import pytest
+
+from grammar.notation.generate import GRAMMAR
+from grammar.semantics.link import File, Project, Workspace, link
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution, resolve
+from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason
+from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import Kind, Space
+from grammar.semantics.types import BOOL, INT, REAL, UNKNOWN, Array, Enumeration, Structure, Type
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.walk import walk
+
+CORPUS = GRAMMAR.parents[1] / "corpus"
+BROKEN = "?"
+#: What makes a project look like a whole backup.
+BACKUP = {
+    "KRC/R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
+    "KRC/R1/Mada/$machine.dat": "DEFDAT $MACHINE PUBLIC\nENDDAT\n",
+    "KRC/R1/System/bas.src": "DEF BAS()\nEND\n",
+}
+
+
+def file(path: str, text: str, origin: str = "") -> File:
+    """A file to link; a ``?`` stands for one that cannot be read."""
+    if text == BROKEN:
+        return File(path, None, origin)
+    module = read_module(text)
+    assert isinstance(module, ast.Module), module
+    return File(path, module, origin)
+
+
+def workspace(texts: Mapping[str, str], is_complete: bool | None = None) -> Workspace:
+    return link([file(path, text) for path, text in texts.items()], is_complete=is_complete)
+
+
+def project(texts: Mapping[str, str], is_complete: bool | None = None) -> Project:
+    (only,) = workspace(texts, is_complete).projects
+    return only
+
+
+def module(of: Project, path: str) -> Module:
+    return next(module for module in of.modules if module.path == path)
+
+
+def resolved(of: Project, path: str) -> Resolution:
+    return resolve(of, module(of, path))
+
+
+def use(of: Project, path: str, name: str, nth: int = -1) -> Answer:
+    """The answer for the ``nth`` place of a name in a file, by default the last one."""
+    answers = sorted(resolved(of, path).answers.items(), key=lambda item: item[0].span)
+    return [answer for node, answer in answers if node.text == name][nth]
+
+
+def declared_in(answer: Answer) -> str | None:
+    """The path of the file that declares what was found."""
+    assert isinstance(answer, Found), answer
+    return answer.module.path if answer.module else None
+
+
+def dat(name: str, *lines: str) -> str:
+    return "\n".join((f"DEFDAT {name}", *lines, "ENDDAT", ""))
+
+
+def src(head: str, *lines: str) -> str:
+    return "\n".join((f"DEF {head}", *lines, "END", ""))
+
+
+# ------------------------------------------------------------------------------------- scopes
+
+
+def test_data_list_of_the_same_name() -> None:
+    """SCO-05: main routine, local and GLOBAL routines of a file see its data list, others do not.
+
+    That GLOBAL routines of the same file see it too is what KUKA-written packages rest on.
+    """
+    of = project(
+        {
+            "a.src": src("A()", "N=1") + src("OWN()", "N=2") + "GLOBAL " + src("ALL()", "N=3"),
+            "a.dat": dat("A", "DECL INT N=0"),
+            "b.src": src("B()", "N=4"),
+        },
+        is_complete=True,
+    )
+    assert ["a.dat"] * 3 == [declared_in(use(of, "a.src", "N", nth)) for nth in range(3)]
+    answer = use(of, "b.src", "N")
+    assert isinstance(answer, NotFound)
+    assert answer.hidden is not None
+    assert "a.dat" == declared_in(answer.hidden)
+
+
+def test_names_in_any_letter_case() -> None:
+    """TYP-05: files, modules and names belong together whatever their letter case."""
+    of = project({"Job.SRC": src("JOB()", "Count=1"), "JOB.dat": dat("job", "INT cOUNT=1")})
+    assert "JOB.dat" == declared_in(use(of, "Job.SRC", "Count"))
+
+
+def test_submit_program_has_a_data_list() -> None:
+    """A `.sub` file is paired like a `.src` file."""
+    of = project({"sps.sub": src("SPS()", "N=1"), "sps.dat": dat("SPS", "INT N=1")})
+    assert "sps.dat" == declared_in(use(of, "sps.sub", "N"))
+
+
+def test_local_data_shadow_the_data_list_and_that_shadows_global_data() -> None:
+    """The innermost declaration counts; each hidden one can be named."""
+    of = project(
+        {
+            "g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"),
+            "a.dat": dat("A", "DECL REAL N=1.0"),
+            "a.src": src("A()", "DECL BOOL N", "N=TRUE") + src("B()", "N=2.0"),
+            "c.src": src("C()", "N=3"),
+        }
+    )
+    inner, middle = use(of, "a.src", "N", 1), use(of, "a.src", "N", 2)
+    assert ["a.src", "a.dat"] == [declared_in(inner), declared_in(middle)]
+    assert "g.dat" == declared_in(use(of, "c.src", "N"))
+    main = module(of, "a.src")
+    assert main.table is not None
+    hidden = list(of.scope(main, main.table.routines[0]).shadowed())
+    assert [(inner, middle)] == hidden
+    (outer,) = of.scope(module(of, "a.dat")).shadowed()
+    assert ["a.dat", "g.dat"] == [declared_in(found) for found in outer]
+
+
+def test_parameter_named_like_global_data() -> None:
+    """A parameter hides global data of its name."""
+    of = project(
+        {
+            "$config.dat": dat("$CONFIG", "DECL REAL N=1.0"),
+            "a.src": src("A(N:IN)", "DECL INT N", "N=1") + src("B()", "N=1.0"),
+        }
+    )
+    inner, outer = use(of, "a.src", "N", 2), use(of, "a.src", "N", 3)
+    assert isinstance(inner, Found)
+    assert (Kind.PARAMETER, INT) == (inner.symbol.kind, of.types.of(inner))
+    assert "$config.dat" == declared_in(outer)
+
+
+@pytest.mark.parametrize(
+    ("head", "declaration", "is_seen"),
+    [
+        ("G PUBLIC", "DECL GLOBAL INT N=1", True),
+        ("G PUBLIC", "DECL INT N=1", False),
+        ("G", "DECL GLOBAL INT N=1", False),
+        ("$CONFIG", "DECL INT N=1", True),
+        ("$CUSTOM PUBLIC", "INT N=1", True),
+    ],
+)
+def test_global_data(head: str, declaration: str, is_seen: bool) -> None:
+    """SCO-04: PUBLIC and GLOBAL together make data visible elsewhere, or a list of the system."""
+    texts = {"g.dat": dat(head, declaration), "a.src": src("A()", "N=2")}
+    answer = use(project(texts, is_complete=True), "a.src", "N")
+    assert is_seen is isinstance(answer, Found)
+    assert is_seen or (isinstance(answer, NotFound) and answer.hidden is not None)
+
+
+def test_routines_of_other_modules() -> None:
+    """SCO-01: the first routine of a module and its GLOBAL ones are called from everywhere."""
+    lib = src("LIB()") + src("OWN()") + "GLOBAL DEFFCT INT SHARED()\nRETURN 1\nENDFCT\n"
+    of = project({"lib.src": lib, "a.src": src("A()", "LIB()", "OWN()", "N=SHARED()")}, True)
+    assert "lib.src" == declared_in(use(of, "a.src", "LIB"))
+    assert "lib.src" == declared_in(use(of, "a.src", "SHARED"))
+    answer = use(of, "a.src", "OWN")
+    assert isinstance(answer, NotFound)
+    assert answer.hidden is not None
+
+
+def test_routine_with_the_name_of_the_file_that_is_not_first() -> None:
+    """SCO-01: a main routine in the wrong place is an error there and not for its callers."""
+    texts = {"lib.src": src("OTHER()") + src("LIB()"), "a.src": src("A()", "LIB()")}
+    of = project(texts, is_complete=True)
+    assert "lib.src" == declared_in(use(of, "a.src", "LIB"))
+    assert [True, False] == [found.is_misnamed for found in of.modules]
+
+
+def test_local_routine_hides_a_module() -> None:
+    """A call prefers the routine of the same file; a routine may call itself."""
+    of = project({"b.src": src("B()"), "a.src": src("A()", "B()") + src("B()", "A()", "B()")})
+    assert ["a.src"] * 4 == [
+        declared_in(use(of, "a.src", name, nth))
+        for name, nth in (("B", 0), ("B", 1), ("A", 1), ("B", 2))
+    ]
+
+
+def test_announced_routine_that_is_there() -> None:
+    """SCO-10: EXT is only an announcement; the call means the routine of the other module."""
+    of = project(
+        {
+            "a.src": src("A()", "EXT WORK (INT :IN)", "WORK(1)"),
+            "$config.dat": dat("$CONFIG", "EXT WORK (INT :IN)"),
+            "work.src": src("WORK(N:IN)"),
+        }
+    )
+    assert () == of.clashes
+    answer = use(of, "a.src", "WORK")
+    assert "work.src" == declared_in(answer)
+    assert isinstance(answer, Found)
+    assert Kind.ROUTINE is answer.symbol.kind
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        {"a.src": src("A()", "EXT WORK (INT :IN)") + src("B()", "WORK(1)")},
+        {"a.src": src("A()", "WORK(1)"), "a.dat": dat("A", "EXT WORK (INT :IN)")},
+        {"a.src": src("A()", "WORK(1)"), "$config.dat": dat("$CONFIG", "EXT WORK (INT :IN)")},
+    ],
+    ids=["another routine", "data list", "$CONFIG"],
+)
+def test_announced_routine_that_is_missing(texts: Mapping[str, str]) -> None:
+    """SCO-10: EXT in the file, its data list or $CONFIG gives the signature of what is missing."""
+    of = project(texts)
+    answer = use(of, "a.src", "WORK")
+    assert isinstance(answer, Found)
+    assert Kind.EXTERNAL is answer.symbol.kind
+    (unknown,) = resolved(of, "a.src").open_uses
+    assert ("WORK", Space.ROUTINE) == (unknown.name.key, unknown.space)
+
+
+def test_what_the_controller_has_is_not_hidden_by_ext() -> None:
+    """EXTP of a predefined routine in a list of the controller leaves its name the routine's."""
+    of = project(
+        {
+            "a.src": src("A()", "ERR_CLEAR($ERR)"),
+            "$operate.dat": dat("$OPERATE", "EXTP ERR_CLEAR (ERROR_T PERR :OUT)"),
+        }
+    )
+    answer = use(of, "a.src", "ERR_CLEAR")
+    assert isinstance(answer, Found)
+    assert answer.module is None
+
+
+def test_import() -> None:
+    """ADV-05: IMPORT reaches data that are not GLOBAL, in a list that is PUBLIC."""
+    texts = {
+        "a.dat": dat("A", "IMPORT INT MINE IS /R1/B..THEIRS", "IMPORT INT NO IS /R1/C..N"),
+        "a.src": src("A()", "MINE=NO"),
+        "b.dat": dat("B PUBLIC", "DECL INT THEIRS=1"),
+        "c.dat": dat("C", "DECL INT N=1"),
+    }
+    of = project(texts, is_complete=True)
+    mine, refused = use(of, "a.src", "MINE"), use(of, "a.src", "NO")
+    assert isinstance(mine, Found)
+    assert isinstance(refused, Found)
+    assert "b.dat" == declared_in(of.imported(mine))
+    answer = of.imported(refused)
+    assert isinstance(answer, NotFound)
+    assert answer.hidden is not None
+    assert "c.dat" == declared_in(answer.hidden)
+
+
+def test_import_from_a_list_that_is_not_there() -> None:
+    """ADV-05: without the other list nobody can tell what IMPORT stands for."""
+    texts = {"a.dat": dat("A", "IMPORT INT N IS /R1/B..N"), "a.src": src("A()", "N=1")}
+    for is_complete, expected in ((False, MaybeElsewhere), (True, NotFound)):
+        of = project(texts, is_complete)
+        found = use(of, "a.src", "N")
+        assert isinstance(found, Found)
+        assert isinstance(of.imported(found), expected)
+
+
+def test_labels_stay_in_their_routine() -> None:
+    """CTL-07: a label of another routine is not found, however incomplete the project is."""
+    of = project({"a.src": src("A()", "GOTO X", "GOTO Y", "X:") + src("B()", "Y:")})
+    assert isinstance(use(of, "a.src", "X", 0), Found)
+    assert NotFound() == use(of, "a.src", "Y", 0)
+
+
+def test_channels() -> None:
+    """A channel is found as an argument, in its own space."""
+    texts = {
+        "$custom.dat": dat("$CUSTOM PUBLIC", "CHANNEL :LINK :SER_1 $PSER_1"),
+        "a.src": src("A()", "DECL INT LINK,H", "COPEN(:LINK,H)"),
+    }
+    answer = use(project(texts), "a.src", "LINK")
+    assert isinstance(answer, Found)
+    assert (Kind.CHANNEL, "$custom.dat") == (answer.symbol.kind, declared_in(answer))
+
+
+# ------------------------------------------------------------------------- types and members
+
+
+def test_members_of_structures() -> None:
+    """TYP-15, TYP-20: members are found through indices and structures, predefined ones too."""
+    of = project(
+        {
+            "a.dat": dat("A", "STRUC BOX_T INT NO, FRAME AT[2]", "DECL BOX_T BOX[3]"),
+            "a.src": src("A()", "BOX[1].AT[2].X=BOX[2].WIDTH", "BOX[3].NO.X=1"),
+        }
+    )
+    at, x, width = (use(of, "a.src", name, 0) for name in ("AT", "X", "WIDTH"))
+    assert "a.dat" == declared_in(at)
+    assert declared_in(x) is None
+    assert NotFound() == width
+    assert isinstance(x, Found)
+    assert isinstance(at, Found)
+    assert REAL == of.types.of(x)
+    assert "FRAME[2]" == str(of.types.of(at))
+    answers = resolved(of, "a.src").answers
+    assert 1 == sum(name.text == "X" for name in answers)  # an INT has no members to look up
+
+
+def test_type_is_looked_up_where_it_is_named() -> None:
+    """A GLOBAL variable may have a type that others do not see, or call otherwise."""
+    of = project(
+        {
+            "g.dat": dat("G PUBLIC", "STRUC PART_T INT NO", "DECL GLOBAL PART_T PART={NO 1}"),
+            "a.dat": dat("A", "ENUM PART_T NO_PART"),
+            "a.src": src("A()", "PART.NO=2"),
+        }
+    )
+    assert "g.dat" == declared_in(use(of, "a.src", "NO"))
+
+
+def test_components_of_aggregates() -> None:
+    """TYP-19: components are members of what is declared, assigned to, or named in front."""
+    lines = ("DECL FRAME F={X 1,Q 2}", "DECL BOX_T B={AT {Y 1},NO 2}", "B={BOX_T: AT {POS: S 2}}")
+    of = project({"a.dat": dat("A", "STRUC BOX_T INT NO, FRAME AT", *lines)})
+    assert NotFound() == use(of, "a.dat", "Q")
+    assert isinstance(use(of, "a.dat", "S"), Found)
+    assert [None, "a.dat", None] == [
+        declared_in(use(of, "a.dat", name)) for name in ("X", "NO", "Y")
+    ]
+
+
+def test_enumerations_with_the_same_constants() -> None:
+    """TYP-16: constants belong to the type of their target and are no names of the scope."""
+    lines = ("ENUM HUE_T RED, GREEN", "ENUM LAMP_T GREEN, OFF", "DECL HUE_T H", "DECL LAMP_T L")
+    of = project({"a.dat": dat("A", *lines), "a.src": src("A()", "H=#GREEN", "L=#GREEN")})
+    hue, lamp = use(of, "a.src", "H"), use(of, "a.src", "L")
+    assert isinstance(hue, Found)
+    assert isinstance(lamp, Found)
+    assert Enumeration("HUE_T", ("RED", "GREEN")) == of.types.of(hue)
+    assert Enumeration("LAMP_T", ("GREEN", "OFF")) == of.types.of(lamp)
+    assert {"H", "L", "A"} == {name.text for name in resolved(of, "a.src").answers}
+
+
+def test_types_of_what_is_declared() -> None:
+    """TYP-08, IOT-03: sizes may be constants; signals are BOOL, INT for groups, or analog."""
+    lines = ("DECL CONST INT MOST=4", "DECL REAL R[MOST,2]", "SIGNAL B $OUT[1]")
+    signals = ("SIGNAL I $IN[1] TO $IN[8]", "SIGNAL V $ANIN[1]", "SIGNAL DEAD FALSE")
+    of = project({"a.dat": dat("A", *lines, *signals, "DECL MISSING_T M", "SIGNAL S S")})
+    scope = of.scope(module(of, "a.dat"))
+    types = {key: of.types.of(found) for key in "RBIVMS" if (found := scope.own(Space.VALUE, key))}
+    dead = scope.own(Space.VALUE, "DEAD")
+    assert dead is not None
+    assert {
+        "R": Array(REAL, (4, 2)),
+        "B": BOOL,
+        "I": INT,
+        "V": REAL,
+        "M": UNKNOWN,
+        "S": UNKNOWN,
+    } == types
+    assert BOOL == of.types.of(dead)
+
+
+def test_structures_in_a_circle() -> None:
+    """A structure that holds itself, at once or by way of another, ends as an unknown type."""
+    of = project({"a.dat": dat("A", "STRUC P_T Q_T Q", "STRUC Q_T P_T P", "STRUC S_T S_T S")})
+    scope = of.scope(module(of, "a.dat"))
+    for key in ("P_T", "Q_T", "S_T"):
+        found = scope.own(Space.TYPE, key)
+        assert found is not None
+        assert isinstance(of.types.of(found), Structure)
+        assert key == str(of.types.of(found))
+
+
+def test_structures_of_many_structures() -> None:
+    """Types are made once: wide circles and long chains of structures take no time."""
+    members = ",".join(f"M{number}" for number in range(50))
+    circle = [f"STRUC C{number} C{(number + 1) % 5} {members}" for number in range(5)]
+    chain = [f"STRUC D{number} D{number + 1} A,B" for number in range(2_000)]
+    of = project({"a.dat": dat("A", *circle, *chain, "STRUC D2000 INT N")})
+    scope = of.scope(module(of, "a.dat"))
+    for key in ("C0", "D0"):
+        found = scope.own(Space.TYPE, key)
+        assert found is not None
+        assert key == str(of.types.of(found))
+
+
+def test_found_is_one_object() -> None:
+    """The same symbol is the same object, from wherever it is looked up."""
+    of = project({"g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"), "a.src": src("A()", "N=1")})
+    near, far = (of.scope(module(of, path)).find(Space.VALUE, "N") for path in ("g.dat", "a.src"))
+    assert near is far
+
+
+def test_what_the_controller_brings() -> None:
+    """System variables, types and functions are found without any file, with their types."""
+    lines = ("DECL E6POS P", "P=$POS_ACT", "N=ABS(P.X)", "N=TOOL_DATA[1].Y")
+    of = project({"a.src": src("A()", *lines)})
+    names = ("$POS_ACT", "ABS", "X", "Y")
+    assert [None] * 4 == [declared_in(use(of, "a.src", name)) for name in names]
+    variable = use(of, "a.src", "$POS_ACT")
+    assert isinstance(variable, Found)
+    assert "E6POS" == str(of.types.of(variable))
+
+
+def test_declared_system_data_come_before_what_is_predefined() -> None:
+    """The machine data of the backup are those of its own release."""
+    of = project({"$machine.dat": dat("$MACHINE PUBLIC", "INT $NUM_AX=6"), "a.src": src("A()")})
+    assert "$machine.dat" == declared_in(of.scope(of.modules[1]).find(Space.VALUE, "$NUM_AX"))
+
+
+# ----------------------------------------------------------------------------------- projects
+
+
+def roots(of: Workspace) -> dict[str, list[str]]:
+    return {found.root: [module.path for module in found.modules] for found in of.projects}
+
+
+def test_two_backups_see_nothing_of_one_another() -> None:
+    """Each backup of a call has data, routines and system data of its own."""
+    one = {
+        "one/KRC/R1/System/$config.dat": dat("$CONFIG", "INT N=1"),
+        "one/KRC/R1/Program/a.src": src("A()", "N=1", "B()"),
+        "one/KRC/R1/Program/b.src": src("B()"),
+    }
+    other = {path.replace("one/", "other/"): text for path, text in one.items()}
+    other["other/KRC/R1/System/$config.dat"] = dat("$CONFIG", "REAL M=1.0")
+    both = workspace(one | other)
+    assert {"one/KRC": list(one), "other/KRC": list(other)} == roots(both)
+    first, second = both.projects
+    assert () == first.clashes + second.clashes
+    path = "Program/a.src"
+    assert "one/KRC/R1/System/$config.dat" == declared_in(use(first, f"one/KRC/R1/{path}", "N"))
+    assert isinstance(use(second, f"other/KRC/R1/{path}", "N"), MaybeElsewhere)
+    assert "other/KRC/R1/Program/b.src" == declared_in(use(second, f"other/KRC/R1/{path}", "B"))
+
+
+def test_system_data_of_r1_and_steu_are_shared() -> None:
+    """Both drives of a controller are one project, in any letter case and without KRC too."""
+    of = project(
+        {
+            "cell/Steu/Mada/$custom.dat": dat("$CUSTOM PUBLIC", "INT N=1"),
+            "cell/R1/Program/a.src": src("A()", "N=1"),
+            "cell/R1/cell.src": src("CELL()", "A()"),
+        }
+    )
+    assert "cell" == of.root
+    assert of.is_controller
+    assert "cell/Steu/Mada/$custom.dat" == declared_in(use(of, "cell/R1/Program/a.src", "N"))
+
+
+def test_files_around_a_backup_are_another_project() -> None:
+    """Templates and notes beside a backup are no part of the robot's program."""
+    found = workspace(
+        {
+            "x/KRC/R1/Program/a.src": src("A()"),
+            "x/C/KRC/Roboter/Template/a.src": src("A()"),
+            "x/a.src": src("A()"),
+        }
+    )
+    assert ["x", "x/KRC"] == sorted(of.root for of in found.projects)
+    assert [1, 2] == sorted(len(of.modules) for of in found.projects)
+
+
+def test_folder_that_only_looks_like_a_drive() -> None:
+    """Robots called R1 and R2 with backups of their own are three projects, not one."""
+    paths = ("R1/old/KRC/R1/Program/a.src", "R1/new/KRC/R1/Program/a.src", "R2/KRC/R1/a.src")
+    found = workspace({path: src("A()") for path in paths})
+    assert {"R1/old/KRC", "R1/new/KRC", "R2/KRC"} == set(roots(found))
+
+
+def test_backup_inside_a_backup() -> None:
+    """The innermost drive counts."""
+    paths = ("KRC/R1/Program/a.src", "KRC/R1/Program/save/KRC/R1/Program/a.src")
+    assert 2 == len(workspace({path: src("A()") for path in paths}).projects)
+
+
+def test_loose_files_are_one_project() -> None:
+    """Files without the layout of a controller see each other across folders."""
+    of = project({"lib/b.src": src("B()"), "main/a.src": src("A()", "B()"), "c.src": src("C()")})
+    assert not of.is_controller
+    assert "lib/b.src" == declared_in(use(of, "main/a.src", "B"))
+
+
+def test_loose_files_with_several_configs() -> None:
+    """A $CONFIG begins a project where there are several of them."""
+    config = dat("$CONFIG", "INT N=1")
+    found = workspace(
+        {
+            "one/System/$config.dat": config,
+            "one/a.src": src("A()"),
+            "two/$config.dat": config,
+            "two/deep/a.src": src("A()"),
+            "c.src": src("C()"),
+        }
+    )
+    assert {"one": 2, "two": 2, "": 1} == {of.root: len(of.modules) for of in found.projects}
+
+
+def test_origins_are_never_mixed() -> None:
+    """Files of two origins are two projects, whatever their paths."""
+    files = [file("a.src", src("A()", "B()"), "one"), file("b.src", src("B()"), "two")]
+    first, second = link(files).projects
+    assert isinstance(use(first, "a.src", "B"), MaybeElsewhere)
+    assert "two" not in {module.path for module in second.modules}
+
+
+def test_data_list_without_a_program() -> None:
+    """A data list alone is a module: its GLOBAL data count, and its own names are looked up."""
+    of = project({"points.dat": dat("POINTS PUBLIC", "DECL GLOBAL INT N=1", "DECL INT M=2")})
+    assert () == resolved(of, "points.dat").open_uses
+    assert of.data_of(of.modules[0]) is None
+
+
+def test_same_module_in_two_folders() -> None:
+    """The nearer one counts; between two that are equally near nobody can tell."""
+    of = project(
+        {
+            "old/lib.src": src("LIB()"),
+            "new/lib.src": src("LIB(N:IN)"),
+            "new/deep/a.src": src("A()", "LIB(1)"),
+            "c.src": src("C()", "LIB(1)"),
+        }
+    )
+    assert "new/lib.src" == declared_in(use(of, "new/deep/a.src", "LIB"))
+    answer = use(of, "c.src", "LIB")
+    assert isinstance(answer, MaybeElsewhere)
+    assert (Reason.AMBIGUOUS, 2) == (answer.reason, len(answer.candidates))
+    (clash,) = of.clashes
+    assert ["old/lib.src", "new/lib.src"] == list(map(declared_in, clash.declarations))
+
+
+def test_data_lists_are_paired_within_their_folder() -> None:
+    """Of two modules with the same name each has the data list beside it."""
+    of = project(
+        {
+            **{f"{folder}/a.src": src("A()", "N=1") for folder in ("x", "y", "z")},
+            **{f"{folder}/a.dat": dat("A", "INT N=1") for folder in ("x", "y")},
+        },
+        is_complete=True,
+    )
+    assert ["x/a.dat", "y/a.dat"] == [declared_in(use(of, f"{at}/a.src", "N")) for at in "xy"]
+    assert isinstance(use(of, "z/a.src", "N"), NotFound)
+
+
+# -------------------------------------------------------------------------------- what is missing
+
+
+def test_backup_in_which_nothing_is_missing() -> None:
+    """With the lists of the controller, BAS, and all that is called, a missing name is missing."""
+    path = "KRC/R1/Program/a.src"
+    of = project(BACKUP | {path: src("A()", "N=1", "BAS()")})
+    assert of.is_complete
+    assert NotFound() == use(of, path, "N")
+
+
+@pytest.mark.parametrize("missing", BACKUP)
+def test_backup_without_one_of_its_files(missing: str) -> None:
+    """Without what every backup has, any name may be declared elsewhere."""
+    texts = {path: text for path, text in BACKUP.items() if path != missing}
+    path = "KRC/R1/Program/a.src"
+    of = project(texts | {path: src("A()", "N=1")})
+    assert MaybeElsewhere(Reason.MODULES_MISSING) == use(of, path, "N")
+
+
+def test_backup_that_calls_a_package_which_is_not_there() -> None:
+    """A package that is missing may bring the data that are not found: weaker, never wrong."""
+    path = "KRC/R1/Program/a.src"
+    of = project(BACKUP | {path: src("A()", "N=1", "PACKAGE()")})
+    assert not of.is_complete
+    assert MaybeElsewhere(Reason.MODULES_MISSING) == use(of, path, "N")
+
+
+def test_routine_that_no_controller_has() -> None:
+    """FCT-01: ROUND is no predefined function; where nothing is missing the call leads nowhere."""
+    texts = {"neg.src": src("NEG()", "DECL REAL R", "R=ROUND(2.5)")}
+    assert NotFound() == use(project(texts, is_complete=True), "neg.src", "ROUND")
+    assert isinstance(use(project(texts), "neg.src", "ROUND"), MaybeElsewhere)
+
+
+def test_unknown_system_variable() -> None:
+    """No table of system variables is complete, so none of them is certain to be missing."""
+    of = project({"a.src": src("A()", "$OF_SOME_RELEASE=1")}, is_complete=True)
+    assert MaybeElsewhere(Reason.SYSTEM) == use(of, "a.src", "$OF_SOME_RELEASE")
+
+
+def test_data_list_that_cannot_be_read() -> None:
+    """It may declare any variable of its module itself, and global ones of all others."""
+    of = project(
+        {
+            "a.src": src("A()", "N=1", "$OV_PRO=M", "$NUM_AX=1", "B()", "GOTO X"),
+            "a.dat": BROKEN,
+            "$machine.dat": dat("$MACHINE PUBLIC", "INT $NUM_AX=6"),
+            "b.src": src("B()", "N=M"),
+            "g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"),
+        },
+        is_complete=True,
+    )
+    shadowed = use(of, "a.src", "N")
+    assert isinstance(shadowed, MaybeElsewhere)
+    assert ["g.dat"] == list(map(declared_in, shadowed.candidates))
+    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "a.src", "M")
+    assert declared_in(use(of, "a.src", "$OV_PRO")) is None
+    assert "$machine.dat" == declared_in(use(of, "a.src", "$NUM_AX"))
+    assert NotFound() == use(of, "a.src", "X")
+    assert "b.src" == declared_in(use(of, "a.src", "B"))
+    assert "g.dat" == declared_in(use(of, "b.src", "N"))
+    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "b.src", "M")
+
+
+def test_program_that_cannot_be_read() -> None:
+    """It may hold any routine, but no data of others."""
+    texts = {"a.src": src("A()", "N=B()"), "b.src": BROKEN}
+    of = project(texts, is_complete=True)
+    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "a.src", "B")
+    assert NotFound() == use(of, "a.src", "N")
+
+
+def test_every_use_of_an_unknown_name_is_open() -> None:
+    """A name that is missing everywhere has an open use wherever it stands, in the file's order."""
+    of = project({"a.src": src("A()", "VENDOR(1)", "N=1", "vendor(2)")})
+    uses = resolved(of, "a.src").open_uses
+    assert ["VENDOR", "N", "vendor"] == [use.name.text for use in uses]
+    assert {"a.src"} == {use.module.path for use in uses}
+
+
+def test_labels_and_members_are_open_too() -> None:
+    """A label has its space; a member that its structure does not have has none."""
+    of = project({"a.src": src("A()", "DECL FRAME F", "GOTO NOWHERE", "F.Q=1")})
+    uses = resolved(of, "a.src").open_uses
+    assert [(Space.LABEL, "NOWHERE"), (None, "Q")] == [(use.space, use.name.text) for use in uses]
+
+
+def test_vendor_call_with_ext_counts_as_unknown() -> None:
+    """What EXT announces and no file has is unknown as a whole, though its signature is known."""
+    of = project({"a.src": src("A()", "EXT WORK (INT :IN)", "WORK(1)")})
+    assert 1 == len(resolved(of, "a.src").open_uses)  # the announcement itself is no use
+
+
+# ------------------------------------------------------------------------------- laws and costs
+
+
+def test_tables_from_a_cache() -> None:
+    """A file takes part with its tables alone; it can be referred to and is not resolved."""
+    kept = file("b.src", src("B()"))
+    assert kept.syntax is not None
+    files = [file("a.src", src("A()", "B()")), File("b.src", None, table=table_of(kept.syntax))]
+    (of,) = link(files).projects
+    assert "b.src" == declared_in(use(of, "a.src", "B"))
+
+
+def test_equal_files_share_their_tables() -> None:
+    """Two copies of a module may share one table and remain two modules."""
+    text = file("x/a.src", src("A()"))
+    assert text.syntax is not None
+    table = table_of(text.syntax)
+    files = [File(f"{folder}/a.src", text.syntax, folder, table) for folder in ("x", "y")]
+    paths = [declared_in(use(of, of.modules[0].path, "A")) for of in link(files).projects]
+    assert ["x/a.src", "y/a.src"] == paths
+
+
+def test_own_corpus_has_no_unresolved_names(corpus: Mapping[Path, str]) -> None:
+    """Open are only calls of packages that a cell does not hold; whole backups have none at all."""
+    programs = CORPUS / "programs"
+    files = []
+    for path, text in corpus.items():
+        if programs in path.parents:
+            place, read = path.relative_to(programs), read_module(text)
+            tree = read if isinstance(read, ast.Module) else None
+            files.append(File(place.as_posix(), tree, place.parts[0]))
+    found = link(files)
+    for of in found.projects:
+        uses = [use for module in of.modules for use in resolve(of, module).open_uses]
+        assert {Space.ROUTINE} >= {use.space for use in uses}, of.root
+        assert not of.is_complete or not uses
+    assert 3 <= sum(of.is_complete for of in found.projects)
+
+
+def test_every_use_has_an_answer() -> None:
+    """Variables, calls, types and labels all have answers, wherever in a statement they stand."""
+    lines = (
+        *("DECL T_T V", "INTERRUPT DECL 20+V WHEN V DO F(V)", "PTP V:V C_PTP", "WAIT FOR V"),
+        *("TRIGGER WHEN PATH=V DELAY=V DO V=V PRIO=-1", "FOR V=V TO V STEP V", "ENDFOR", "F(,V)"),
+        *("SPLINE WITH V=V", "SPL V WITH V=V", "TIME_BLOCK PART=V", "ENDSPLINE", "V[V,V].V=-V"),
+        *("SWITCH V", "CASE V", "V[]=(V)", "DEFAULT", "RETURN V", "ENDSWITCH", "GOTO L", "L:"),
+    )
+    of = project({"a.src": src("A()", *lines)})
+    tree = of.modules[0].syntax
+    assert tree is not None
+    answers = resolved(of, "a.src").answers
+    names = [
+        node.name if isinstance(node, ast.Variable | ast.Call | ast.Label) else node.label
+        for node in walk(tree)
+        if isinstance(node, ast.Variable | ast.Call | ast.Label | ast.Goto)
+    ]
+    assert len(lines) < len(names)
+    assert all(name in answers for name in names)
+
+
+@pytest.mark.parametrize(("release", "expected"), [("8.6", Array(REAL, (6,))), ("8.5", UNKNOWN)])
+def test_release_of_the_controller(release: str, expected: Type) -> None:
+    """What is predefined is that of the release which is asked for."""
+    (of,) = link([file("a.src", src("A()", "$ACC_AXIS[1]=1"))], System.load(release)).projects
+    found = use(of, "a.src", "$ACC_AXIS")
+    assert isinstance(found, Found)
+    assert expected == of.types.of(found)
+
+
+def seconds(files: list[File]) -> float:
+    """How long it takes to link files and to look up all their names, at best."""
+    taken = []
+    for _ in range(3):
+        start = perf_counter()
+        for of in link(files).projects:
+            for one in of.modules:
+                resolve(of, one)
+        taken.append(perf_counter() - start)
+    return min(taken)
+
+
+def test_cost_of_a_long_file() -> None:
+    """Ten times the text takes ten times as long to link and resolve, and not a hundred times."""
+    names = [f"DECL INT N{number}" for number in range(50)]
+
+    def of(count: int) -> list[File]:
+        body = [f"N{number % 50}=N{number % 49}+F(B.X)" for number in range(count)]
+        return [file("a.src", src("A()", *names, "DECL FRAME B", *body))]
+
+    assert 60 * seconds(of(300)) > seconds(of(3_000))
+
+
+def test_cost_of_many_copies() -> None:
+    """Ten times as many copies of a module, and callers, take ten times as long and not more."""
+    lib, caller = file("lib.src", src("LIB()")), file("a.src", src("A()", *["LIB()"] * 20))
+
+    def of(count: int) -> list[File]:
+        return [
+            File(f"{folder}/{number}/{name}", some.syntax)
+            for folder, name, some in (("copies", "lib.src", lib), ("callers", "a.src", caller))
+            for number in range(count)
+        ]
+
+    assert 60 * seconds(of(40)) > seconds(of(400))

@@ -1,0 +1,957 @@
+"""What programs do on the machine: written by hand, one fact each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from grammar.semantics.types import CHAR, INT, REAL, Array, Member, Structure
+from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.verifier.verify import verify
+from interp.bytecode.vm.executor import Machine
+from interp.port.events import Event
+from interp.port.requests import (
+    At,
+    Code,
+    Crash,
+    DeclareInterrupt,
+    End,
+    Fail,
+    Invoke,
+    Read,
+    SetTrigger,
+    Slice,
+    Wait,
+    Write,
+)
+from interp.program.load import Limits
+from interp.values.faults import BudgetExhausted, Fault, LinkError, RuntimeFailure, fault
+from interp.values.values import ArrayValue, StructureValue
+
+Runner = Callable[..., list[Any]]
+Starter = Callable[..., Machine]
+
+HEAD = """\
+bytecode 2
+struct POINT X:REAL Y:REAL
+struct FRAME X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL
+struct POS X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL S:INT T:INT
+ask SHOW Write ("$SHOWN") in:INT
+ask SHOW_REAL Write ("$SHOWN") in:REAL
+ask SHOW_BOOL Write ("$SHOWN") in:BOOL
+ask SHOW_POINT Write ("$SHOWN") ref:POINT
+ask SHOW_POS Write ("$SHOWN") ref:POS
+ask SHOW_TEXT Write ("$SHOWN") view:CHAR[]
+ask SHOW_ROW Write ("$SHOWN") view:INT[]
+ask READ Read ("$ASKED" in:INT) -> INT
+ask READ_POINT Read ("$ASKED") -> POINT
+ask WAIT Wait in:REAL
+ask RAISE Invoke "ERR_RAISE" (in:INT ref:INT=)
+"""
+
+
+def routine(
+    body: str, variables: str = "", name: str = "MAIN", head: str = "", behind: str = "END"
+) -> str:
+    return (
+        f'code {name} routine "main.src" 1\n{head}\n{variables}\nbegin\nLINE 2 {behind}\n{body}\n'
+        "END:\n  RETURN\nend\n"
+    )
+
+
+def shown(requests: list[Any]) -> list[Any]:
+    """The values that were written; the program must have ended well."""
+    assert isinstance(requests[-1], End), requests[-1]
+    return [request.value for request in requests if isinstance(request, Write)]
+
+
+def failed(requests: list[Any]) -> str:
+    """The slug of the fault that ended the program."""
+    assert isinstance(requests[-1], Fail), requests[-1]
+    assert isinstance(requests[-1].fault, Fault)
+    return requests[-1].fault.slug
+
+
+# ------------------------------------------------------------------------------- computing
+
+
+def test_loop_counts_to_its_limit(run: Runner) -> None:
+    """A FOR loop adds its step until the counter is beyond the limit, where it stays [CTL-05]."""
+    body = """
+  PUSH_INT 0
+  STORE_LOCAL SUM
+  PUSH_INT 9
+  STORE_LOCAL I
+  PUSH_INT 1
+  STORE_LOCAL LAST
+L:
+  LINE 3 N
+  LOAD_LOCAL SUM
+  LOAD_LOCAL I
+  ADD_INT
+  STORE_LOCAL SUM
+N:
+  LINE 4 END
+  FOR_LOCAL I LAST -3 L
+  LOAD_LOCAL SUM
+  ASK SHOW
+  LOAD_LOCAL I
+  ASK SHOW
+"""
+    text = HEAD + routine(body, "local I INT\nlocal LAST INT\nlocal SUM INT")
+    assert [9 + 6 + 3, 0] == shown(run(text))
+
+
+def test_counter_in_a_data_list(run: Runner) -> None:
+    """The counter of a loop may be in a data list."""
+    body = """
+  PUSH_INT 3
+  STORE_LOCAL LAST
+L:
+  LINE 4 END
+  LOAD_DATA M.I
+  ASK SHOW
+  FOR_DATA M.I LAST 2 L
+"""
+    text = HEAD + "data M.I INT = 1\n" + routine(body, "local LAST INT")
+    assert [1, 3] == shown(run(text))
+
+
+def test_counter_overflows(run: Runner) -> None:
+    """Beyond the largest INT a counter does not wrap [ARI-12]."""
+    body = "LINE 3 END\nFOR_DATA M.I I 1 END"
+    text = (
+        HEAD
+        + "data M.I INT = 2147483647\n"
+        + routine("PUSH_INT 0\nSTORE_LOCAL I\n" + body, "local I INT")
+    )
+    assert "overflow" == failed(run(text))
+
+
+def test_recursion_has_frames_of_its_own(run: Runner) -> None:
+    """Each call has its own cells: fib 10 is 55."""
+    text = (
+        HEAD
+        + routine("PUSH_INT 10\nCALL FIB\nASK SHOW")
+        + """
+code FIB routine "main.src" 8
+  in N INT
+  result INT
+begin
+  LINE 9 L2
+  LOAD_LOCAL N
+  PUSH_INT 2
+  UNLESS_LT_INT L2
+  LOAD_LOCAL N
+  RETURN_VALUE
+L2:
+  LINE 12 END
+  LOAD_LOCAL N
+  ADD_CONSTANT -1
+  CALL FIB
+  LOAD_LOCAL N
+  ADD_CONSTANT -2
+  CALL FIB
+  ADD_INT
+  RETURN_VALUE
+END:
+  FAIL no_result
+end
+"""
+    )
+    assert [55] == shown(run(text))
+
+
+def test_reals_are_singles(run: Runner) -> None:
+    """Every result is rounded to single, and a REAL to the nearest INT [TYP-02, ARI-03]."""
+    body = """
+  PUSH_REAL 0.1
+  PUSH_REAL 0.2
+  ADD_REAL
+  ASK SHOW_REAL
+  PUSH_INT 16777217
+  INT_TO_REAL
+  ASK SHOW_REAL
+  PUSH_REAL -7.5
+  REAL_TO_INT
+  ASK SHOW
+"""
+    assert [0.30000001192092896, 16777216.0, -8] == shown(run(HEAD + routine(body)))
+
+
+def test_enumerations_and_letters_choose(run: Runner) -> None:
+    """CASE takes the constant that is on the stack, and drops it only then."""
+    text = (
+        HEAD
+        + "enum E ONE TWO THREE\n"
+        + routine(
+            """
+  PUSH_ENUM E TWO
+  CASE 0 A
+  CASE 1 B
+  DROP
+A:
+  FAIL domain
+B:
+  PUSH_CHAR "x"
+  CASE 121 A
+  CHAR_TO_INT
+  ASK SHOW
+"""
+        )
+    )
+    assert [120] == shown(run(text))
+
+
+# ------------------------------------------------------------------------------- references
+
+
+def test_out_parameter_changes_the_variable(run: Runner) -> None:
+    """A reference leads to the caller's cell, through as many calls as there are [SCO-06]."""
+    text = HEAD + routine(
+        "PUSH_INT 1\nSTORE_LOCAL X\nREF_LOCAL X INT\nCALL OUTER\nLOAD_LOCAL X\nASK SHOW",
+        "local X INT",
+    )
+    text += routine("LOAD_REF R\nCALL INNER", name="OUTER", head="ref R INT")
+    text += routine(
+        "LOAD_REF R\nLOAD_REF R\nLOAD\nADD_CONSTANT 41\nSTORE", name="INNER", head="ref R INT"
+    )
+    assert [42] == shown(run(text))
+
+
+def test_in_parameter_is_a_copy(run: Runner) -> None:
+    """A structure passed :IN is copied with the parts that have no value."""
+    text = HEAD + routine(
+        """
+  PUSH_REAL 1.5
+  STORE_LOCAL P.Y
+  REF_LOCAL P POINT
+  CALL SUB
+  REF_LOCAL P POINT
+  ASK SHOW_POINT
+""",
+        "local P POINT",
+    )
+    text += routine(
+        "PUSH_REAL 2.5\nSTORE_LOCAL P.Y\nREF_LOCAL P POINT\nASK SHOW_POINT",
+        name="SUB",
+        head="in P POINT",
+    )
+    inner, outer = shown(run(text))
+    assert ([None, 2.5], [None, 1.5]) == (inner.members, outer.members)
+
+
+def test_argument_left_out_has_no_value(run: Runner) -> None:
+    """What is left out in a call has no value in the routine [SCO-13]."""
+    text = HEAD + routine("PUSH_NOTHING\nCALL SUB")
+    text += routine("LOAD_LOCAL I\nASK SHOW", name="SUB", head="in I INT")
+    assert "uninitialised" == failed(run(text))
+
+
+def test_array_without_sizes_knows_them(run: Runner) -> None:
+    """A view has the sizes of the array that was handed over, and checks indices by them."""
+    text = HEAD + routine(
+        """
+  PUSH_INT 7
+  STORE_LOCAL A[2,3]
+  REF_LOCAL A INT[2,3]
+  VIEW INT[2,3]
+  PUSH_INT {0}
+  PUSH_INT 3
+  CALL AT
+  ASK SHOW
+""",
+        "local A INT[2,3]",
+    )
+    text += """
+code AT routine "main.src" 20
+  view A INT[,]
+  in I INT
+  in J INT
+  result INT
+begin
+  LINE 21 END
+  LOAD_LOCAL I
+  LOAD_LOCAL J
+  INDEX_VIEW A
+  LOAD
+  RETURN_VALUE
+END:
+  FAIL no_result
+end
+"""
+    assert [7] == shown(run(text.format(2)))
+    assert "index" == failed(run(text.format(3)))
+    assert "index" == failed(run(text.format(0)))
+
+
+@pytest.mark.parametrize("index", [0, 5, -1, 2147483647])
+@pytest.mark.parametrize(
+    "access",
+    [
+        "ELEMENT_LOCAL A INT[4]\nDROP",
+        "INDEX_LOCAL A INT[4]\nPUSH_INT 1\nSTORE",
+        "ELEMENT_DATA M.A INT[4]\nDROP",
+        "INDEX_DATA M.A INT[4]\nPUSH_INT 1\nSTORE",
+    ],
+)
+def test_index_outside_the_array_faults(run: Runner, index: int, access: str) -> None:
+    """Indices count from 1 to the size [TYP-09]."""
+    text = HEAD + "data M.A INT[4]\n" + routine(f"PUSH_INT {index}\n{access}", "local A INT[4]")
+    assert "index" == failed(run(text))
+
+
+def test_rows_are_views(run: Runner) -> None:
+    """A row of an array shares its cells [TYP-11]."""
+    body = """
+  REF_LOCAL A INT[2,3]
+  PUSH_INT 2
+  ROW INT[2,3] 1
+  CALL SET
+  REF_LOCAL A INT[2,3]
+  PUSH_INT 2
+  ROW INT[2,3] 1
+  ASK SHOW_ROW
+  LOAD_LOCAL A[2,3]
+  ASK SHOW
+"""
+    text = HEAD + routine(body, "local A INT[2,3]")
+    text += routine("PUSH_INT 3\nINDEX_VIEW R\nPUSH_INT 8\nSTORE", name="SET", head="view R INT[]")
+    row, last = shown(run(text))
+    assert (ArrayValue(Array(INT, (3,)), [None, None, 8]), 8) == (row, last)
+
+
+def test_rows_of_parameters(run: Runner) -> None:
+    """A row can be taken of a parameter as of an array."""
+    body = "REF_DATA M.A INT[2,2,2]\nVIEW INT[2,2,2]\nCALL SUB"
+    text = HEAD + "data M.A INT[2,2,2] = 1 2 3 4 5 6 7 8\n" + routine(body)
+    text += routine(
+        "PUSH_INT 2\nPUSH_INT 1\nROW_VIEW A 2\nASK SHOW_ROW", name="SUB", head="view A INT[,,]"
+    )
+    assert [[5, 6]] == [list(row) for row in shown(run(text))]
+
+
+_PASSED = """
+  CALL SUB
+  PUSH_INT 1
+  ASK SHOW
+"""
+_INNER = routine("PASS_VIEW A\nCALL LAST", name="SUB", head="view A INT[,]")
+
+
+def test_view_left_out_can_be_passed_on(run: Runner) -> None:
+    """Only where it is used it is missed [SCO-13]."""
+    text = HEAD + routine(f"PUSH_NO_VIEW INT 2{_PASSED}") + _INNER
+    assert [1] == shown(run(text + routine("", name="LAST", head="view A INT[,]")))
+    for body in ("PUSH_INT 1\nPUSH_INT 1\nINDEX_VIEW A\nLOAD\nDROP", "LOAD_VIEW A\nCALL LAST"):
+        assert "uninitialised" == failed(
+            run(text + routine(body, name="LAST", head="view A INT[,]"))
+        )
+
+
+def test_copy_of_a_view(run: Runner) -> None:
+    """A copy has the sizes of what it is of, and cells of its own; without room it faults."""
+    body = """
+  REF_DATA M.A INT[2,2]
+  VIEW INT[2,2]
+  COPY_VIEW ROOM INT[{0},1]
+  CALL SUB
+  LOAD_DATA M.A[2,1]
+  ASK SHOW
+"""
+    text = HEAD + "data M.A INT[2,2] = 1 2 3 4\n" + routine(body, "local ROOM INT[{0},1]")
+    text += routine(
+        "PUSH_INT 2\nPUSH_INT 1\nINDEX_VIEW V\nPUSH_INT 9\nSTORE\n"
+        "PUSH_INT 2\nROW_VIEW V 1\nASK SHOW_ROW",
+        name="SUB",
+        head="view V INT[,]",
+    )
+    row, kept = shown(run(text.format(4)))
+    assert (ArrayValue(Array(INT, (2,)), [9, 4]), 3) == (row, kept)
+    assert "stack" == failed(run(text.format(3)))
+
+
+def test_text_is_cut_and_padded(run: Runner) -> None:
+    """What does not fit is cut off, the rest has no value; STRADD joins [TYP-11, FCT-06]."""
+    text = HEAD.replace(
+        "ask SHOW ",
+        'text LONG "abcdef"\ntext SHORT "xy"\n'
+        'builtin ADD STRADD view:CHAR[]= "z" -> INT\nask SHOW ',
+        1,
+    ) + routine(
+        """
+  REF_LOCAL T CHAR[4]
+  VIEW CHAR[4]
+  SET_TEXT LONG
+  REF_LOCAL T CHAR[4]
+  VIEW CHAR[4]
+  ASK SHOW_TEXT
+  REF_LOCAL T CHAR[4]
+  VIEW CHAR[4]
+  SET_TEXT SHORT
+  REF_LOCAL T CHAR[4]
+  VIEW CHAR[4]
+  BUILTIN ADD
+  ASK SHOW
+  REF_LOCAL T CHAR[4]
+  VIEW CHAR[4]
+  ASK SHOW_TEXT
+""",
+        "local T CHAR[4]",
+    )
+    long, length, short = shown(run(text))
+    assert (list("abcd"), 3, ["x", "y", "z", None]) == (list(long), length, list(short))
+    assert Array(CHAR, (4,)) == long.type
+
+
+@pytest.mark.parametrize(
+    ("target", "source", "expected"),
+    [("A", "B", [5, 6]), ("B", "A", [1, 2, 3]), ("C", "A", [1, 2, 3, None])],
+)
+def test_arrays_are_filled(run: Runner, target: str, source: str, expected: list[Any]) -> None:
+    """An array of one dimension takes what it can hold; the rest has no value."""
+    sizes = {"A": 3, "B": 2, "C": 4}
+    expected = (expected + [None] * 4)[: sizes[target]]
+    text = HEAD + "data M.A INT[3] = 1 2 3\ndata M.B INT[2] = 5 6\ndata M.C INT[4] = 9 9 9 9\n"
+    text += routine(
+        f"""
+  REF_DATA M.{target} INT[{sizes[target]}]
+  VIEW INT[{sizes[target]}]
+  REF_DATA M.{source} INT[{sizes[source]}]
+  VIEW INT[{sizes[source]}]
+  FILL_ARRAY INT 1
+  REF_DATA M.{target} INT[{sizes[target]}]
+  VIEW INT[{sizes[target]}]
+  ASK SHOW_ROW
+"""
+    )
+    assert [expected] == [list(row) for row in shown(run(text))]
+
+
+def test_arrays_of_more_dimensions_need_equal_sizes(run: Runner) -> None:
+    """Sizes of parameters are only known while the program runs."""
+    text = (
+        HEAD
+        + "data M.A INT[2,3] = 1 2 3 4 5 6\ndata M.B INT[{0},3]\n"
+        + routine(
+            """
+  REF_DATA M.B INT[{0},3]
+  VIEW INT[{0},3]
+  REF_DATA M.A INT[2,3]
+  VIEW INT[2,3]
+  FILL_ARRAY INT 2
+  LOAD_DATA M.B[2,3]
+  ASK SHOW
+"""
+        )
+    )
+    assert [6] == shown(run(text.format(2)))
+    assert "inadmissible" == failed(run(text.format(3)))
+
+
+def test_positions_take_what_both_have(run: Runner) -> None:
+    """A position of another type of its family gives what both have; the rest has no value."""
+    text = HEAD + "data M.F FRAME = 1.0 2.0 3.0 10.0 20.0 30.0\ndata M.P POS = 9.0 @6 5 6\n"
+    text += routine(
+        "REF_DATA M.P POS\nREF_DATA M.F FRAME\nFILL_POSE POS FRAME\nREF_DATA M.P POS\nASK SHOW_POS"
+    )
+    assert [1.0, 2.0, 3.0, 10.0, 20.0, 30.0, None, None] == shown(run(text))[0].members
+
+
+def test_poses_are_composed(run: Runner) -> None:
+    """The right pose keeps its type, Status and Turn [ARI-08]."""
+    text = HEAD + "data M.F FRAME = 1.0 2.0 3.0 90.0 0.0 0.0\n"
+    text += "data M.P POS = 1.0 0.0 0.0 0.0 0.0 0.0 2 10\n" + routine(
+        """
+  REF_LOCAL R POS
+  REF_DATA M.F FRAME
+  REF_DATA M.P POS
+  COMPOSE FRAME POS
+  REF_LOCAL R POS
+  ASK SHOW_POS
+""",
+        "local R POS",
+    )
+    assert [1.0, 3.0, 3.0, 90.0, 0.0, 0.0, 2, 10] == shown(run(text))[0].members
+
+
+# ------------------------------------------------------------------------------- requests
+
+
+def test_replies_are_converted(run: Runner) -> None:
+    """What the world gives is converted as an assignment does it; structures go into cells."""
+    point = StructureValue(Structure("POINT", (Member("X", REAL), Member("Y", REAL))), [1.0, None])
+    body = "PUSH_INT 4\nASK READ\nASK SHOW\nREF_LOCAL P POINT\nASK READ_POINT\nREF_LOCAL P POINT\n"
+    text = HEAD + routine(body + "ASK SHOW_POINT", "local P POINT")
+    requests = run(text, 7.6, None, point)
+    assert [8, point] == shown(requests)
+    assert Read(At("main.src", 2, 0), ("$ASKED", 4)) == requests[0]
+
+
+@pytest.mark.parametrize(
+    ("reply", "slug"),
+    [(None, "uninitialised"), (True, "inadmissible"), (fault("invalid"), "invalid")],
+)
+def test_replies_that_do_not_fit_fault(run: Runner, reply: Any, slug: str) -> None:
+    """No value, a wrong one, or a fault: the program stops at the statement that asked."""
+    assert slug == failed(run(HEAD + routine("PUSH_INT 4\nASK READ\nASK SHOW"), reply))
+
+
+def test_arguments_come_back(run: Runner) -> None:
+    """An argument :OUT of a routine of the controller has the value that it has after the call."""
+    body = (
+        "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 5\nREF_LOCAL X INT\nASK RAISE\nLOAD_LOCAL X\nASK SHOW"
+    )
+    requests = run(HEAD + routine(body, "local X INT"), (None, (5, 9)))
+    assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1), (None, None)) == requests[0]
+    assert [9] == shown(requests)
+
+
+def test_fault_ends_the_program_for_good(start: Starter) -> None:
+    """After a fault the same request comes again and again."""
+    machine = start(HEAD + routine("LOAD_DATA M.X\nASK SHOW").replace("code", "data M.X INT\ncode"))
+    first = machine.advance()
+    assert isinstance(first, Fail)
+    assert first is machine.advance()
+
+
+def test_changed_system_variables_are_written(run: Runner) -> None:
+    """An argument :OUT that is a copy of a system variable is written back if it has changed."""
+    text = HEAD + 'ask CLEAR Invoke "ERR_CLEAR" (ref:INT=("$ERRORS" in:INT "N") ref:INT=)\n'
+    text += routine(
+        "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 3\nREF_LOCAL X INT\nREF_LOCAL Y INT\n"
+        "ASK CLEAR\nLOAD_LOCAL Y\nASK SHOW",
+        "local X INT\nlocal Y INT",
+    )
+    requests = run(text, (None, (5.6, 7)))
+    assert (1, None) == requests[0].arguments
+    assert Write(At("main.src", 2, 0), ("$ERRORS", 3, "N"), 6) == requests[1]
+    assert [6, 7] == shown(requests)
+    assert [7] == shown(run(text, (None, (None, 7))))
+
+
+def test_what_cannot_be_run_is_told_when_it_is_reached(run: Runner) -> None:
+    """A routine without a file, or a type that nobody knows: the program ends with the reason."""
+    text = HEAD + 'text WHY "SUB is a routine that no file has"\n'
+    requests = run(text + routine("PUSH_INT 1\nASK SHOW\nUNLINKED WHY"))
+    assert isinstance(requests[-1], Fail)
+    assert isinstance(requests[-1].fault, LinkError)
+    assert "SUB is a routine that no file has" == str(requests[-1].fault)
+
+
+def test_statements_may_go_on_at_other_lines(run: Runner) -> None:
+    """A request names the line that its part of the statement stands in."""
+    body = "PUSH_INT 1\nASK SHOW\nAT 5 END\nPUSH_INT 2\nASK SHOW"
+    assert [2, 5, 5] == [one.at.line for one in run(HEAD + routine(body), per_slice=1)]
+
+
+def test_end_is_where_the_last_statement_was(run: Runner) -> None:
+    """The end of the program has the place of its last statement."""
+    assert [End(At("main.src", 2, 0))] == run(HEAD + routine(""))
+
+
+def test_error_is_taken_by_the_statement_behind_on_error_proceed(run: Runner) -> None:
+    """A fault of the next statement is noted in $ERR, and the routine goes on behind it."""
+    body = """
+  PROCEED
+  LINE 3 L4
+  LOAD_LOCAL X
+  ASK SHOW
+L4:
+  LINE 4 L5
+  PUSH_INT 4
+  ASK SHOW
+L5:
+  LINE 5 END
+  LOAD_LOCAL X
+  ASK SHOW
+"""
+    requests = run(HEAD + routine(body, "local X INT"))
+    assert Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1422) == requests[0]
+    assert 4 == requests[1].value
+    assert "uninitialised" == failed(requests)
+    assert 5 == requests[-1].at.line
+
+
+def test_on_error_proceed_takes_faults_of_replies(run: Runner) -> None:
+    """What the world answers with is a fault of the statement that asked [TYP-13]."""
+    body = "PROCEED\nLINE 3 L\nPUSH_INT 1\nASK READ\nASK SHOW\nL:\nLINE 4 END\nPUSH_INT 4\nASK SHOW"
+    requests = run(HEAD + routine(body), fault("invalid"))
+    assert [Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1422), 4] == [
+        requests[1],
+        requests[2].value,
+    ]
+
+
+def test_on_error_proceed_holds_for_one_statement(run: Runner) -> None:
+    """A statement of a routine that is called is a next statement too."""
+    body = "PROCEED\nLINE 3 END\nCALL SUB"
+    text = (
+        HEAD
+        + routine(body)
+        + routine("", name="SUB").replace("END:", "L:\nLINE 5 END\nFAIL domain\nEND:")
+    )
+    assert "domain" == failed(run(text))
+
+
+# ------------------------------------------------------------------------------- limits
+
+ENDLESS = HEAD + routine("L:\nLINE 3 END\nJUMP L")
+
+
+def test_endless_program_ends_with_its_budget(run: Runner) -> None:
+    """So many statements begin, and the next one does not."""
+    requests = run(ENDLESS, statements=100, per_slice=1000)
+    assert isinstance(requests[-1], Fail)
+    assert isinstance(requests[-1].fault, BudgetExhausted)
+    assert 1 == len(requests)
+
+
+@pytest.mark.parametrize(("statements", "slices"), [(10, 0), (11, 1), (20, 1), (21, 2), (35, 3)])
+def test_time_passes_after_a_slice(run: Runner, statements: int, slices: int) -> None:
+    """A slice is asked before the statement that would be one too many."""
+    requests = run(ENDLESS, statements=statements, per_slice=10)
+    found = [request for request in requests if isinstance(request, Slice)]
+    assert slices == len(found)
+
+
+def test_a_request_begins_a_slice(run: Runner) -> None:
+    """Statements are counted from the last request on, whatever it was."""
+    body = "PUSH_INT 1\nASK SHOW\n" + "".join(f"L{n}:\nLINE {n} END\n" for n in range(3, 8))
+    kinds = [type(request) for request in run(HEAD + routine(body), per_slice=4)]
+    assert [Write, Slice, End] == kinds
+    kinds = [type(request) for request in run(HEAD + routine(body), per_slice=5)]
+    assert [Write, End] == kinds
+
+
+def test_slice_is_asked_where_the_statement_is(run: Runner) -> None:
+    """The statement that has to wait is the one that the slice names."""
+    slices = run(ENDLESS, statements=5, per_slice=1)
+    assert [3, 3, 3, 3] == [request.at.line for request in slices[:-1]]
+
+
+def test_endless_recursion_ends_with_a_fault(run: Runner) -> None:
+    """Calls go as deep as the profile says [SCO-11]."""
+    text = HEAD + routine("CALL MAIN2") + routine("CALL MAIN2", name="MAIN2")
+    requests = run(text, depth=20)
+    assert "stack" == failed(requests)
+    assert 20 == requests[-1].at.depth
+
+
+def test_large_frames_end_with_a_fault(run: Runner) -> None:
+    """Frames together have no more cells than there are, however deep calls may go."""
+    text = HEAD + routine("CALL BIG") + routine("CALL BIG", "local A INT[300000]", name="BIG")
+    requests = run(text, depth=1000)
+    assert "stack" == failed(requests)
+    assert 3 == requests[-1].at.depth
+
+
+def test_program_begins_with_a_routine_without_parameters() -> None:
+    """What is nowhere, or needs arguments, cannot be begun with."""
+    verified = verify(assemble(HEAD + routine("", head="in X INT") + routine("", name="SUB")))
+    assert isinstance(Machine(verified, "sub").advance(), End)
+    with pytest.raises(LinkError, match="has parameters"):
+        Machine(verified, "MAIN")
+    with pytest.raises(LinkError, match="no routine NOTHING"):
+        Machine(verified, "NOTHING")
+
+
+# ------------------------------------------------------------------------------- actions
+
+ACTIONS = """\
+ask TRIGGER SetTrigger "DISTANCE" 0.0 FALSE 0.0 &ACT nil nil
+ask DECLARE DeclareInterrupt 3 FALSE &WHEN &ACT
+"""
+INTERRUPTED = (
+    HEAD
+    + ACTIONS
+    + routine("CALL SUB\nL3:\nLINE 3 END\nPUSH_INT 3\nASK SHOW", behind="L3")
+    + routine(
+        """
+  PUSH_INT 5
+  STORE_LOCAL X
+  ASK DECLARE
+L3:
+  LINE 13 L4
+  PUSH_INT 1
+  ASK READ
+  PUSH_INT 1
+  ASK READ
+  ADD_INT
+  LOAD_LOCAL X
+  ADD_INT
+  ASK SHOW
+L4:
+  LINE 14 END
+  PUSH_INT 14
+  ASK SHOW
+""",
+        "local X INT",
+        name="SUB",
+    )
+    + """
+code ACT action of SUB "main.src" 12
+  ref X INT from 0
+begin
+  LINE 12 E
+  LOAD_REF X
+  CALL HANDLE
+E:
+  RETURN
+end
+code WHEN condition of SUB "main.src" 12
+  ref X INT from 0
+  result BOOL
+begin
+  PUSH_INT 7
+  ASK READ
+  LOAD_REF X
+  LOAD
+  EQ_INT
+  RETURN_VALUE
+end
+"""
+    + routine(
+        "LOAD_REF R\nLOAD_REF R\nLOAD\nADD_CONSTANT 100\nSTORE\nPUSH_REAL 1.0\nASK WAIT",
+        name="HANDLE",
+        head="ref R INT",
+    )
+)
+
+
+def at(line: int, depth: int) -> At:
+    return At("main.src", line, depth)
+
+
+def test_action_runs_within_a_statement(start: Starter) -> None:
+    """What is interrupted goes on as if nothing had been, but for what the action changed."""
+    machine = start(INTERRUPTED)
+    declared = machine.advance()
+    assert isinstance(declared, DeclareInterrupt)
+    machine.advance()
+    second = machine.advance(10)
+    assert Read(at(13, 1), ("$ASKED", 1)) == second
+    machine.enter(declared.action)
+    assert Wait(at(2, 2), 1.0) == machine.advance()
+    assert 2 == machine.depth
+    assert End(at(12, 1)) == machine.advance()
+    assert second == machine.advance()
+    assert Write(at(13, 1), ("$SHOWN",), 10 + 20 + 105) == machine.advance(20)
+
+
+def test_actions_may_be_entered_one_on_top_of_the_other(start: Starter) -> None:
+    """The last one runs first, then the one before, then the request is asked again."""
+    machine = start(INTERRUPTED)
+    declared: Any = machine.advance()
+    asked = machine.advance()
+    machine.enter(declared.action)
+    machine.enter(declared.action)
+    kinds = [type(machine.advance()) for _ in range(5)]
+    assert [Wait, End, Wait, End, Read] == kinds
+    assert asked == machine._open.request
+    machine.advance(1)
+    assert 207 == machine.advance(1).value  # type: ignore[union-attr]
+
+
+def test_condition_is_evaluated_without_a_request(start: Starter) -> None:
+    """It sees the variables of the routine that declared it, and reads the world at once."""
+    machine = start(INTERRUPTED)
+    declared: Any = machine.advance()
+    machine.advance()
+    paths = []
+
+    def read(path: Any) -> int:
+        paths.append(path)
+        return len(paths) + 3
+
+    assert [False, True, False] == [machine.evaluate(declared.condition, read) for _ in range(3)]
+    assert [("$ASKED", 7)] * 3 == paths
+    with pytest.raises(Fault, match="cannot be assigned"):
+        machine.evaluate(declared.condition, lambda _path: True)
+    assert (1, 0) == (machine.depth, len(machine._state.stack))
+    assert isinstance(machine.advance(1), Read)
+
+
+def test_resume_goes_on_behind_the_call(start: Starter) -> None:
+    """All routines below the level are left, those in the middle of a request too [INT-10]."""
+    machine = start(INTERRUPTED)
+    declared: Any = machine.advance()
+    machine.advance()
+    machine.enter(declared.action)
+    assert isinstance(machine.advance(), Wait)
+    machine.unwind(0)
+    assert 0 == machine.depth
+    assert Write(at(3, 0), ("$SHOWN",), 3) == machine.advance()
+    assert isinstance(machine.advance(), End)
+
+
+def test_resume_leaves_the_action_but_not_its_level(start: Starter) -> None:
+    """What the action interrupted in the level itself is not asked again."""
+    machine = start(INTERRUPTED)
+    declared: Any = machine.advance()
+    machine.advance()
+    machine.enter(declared.action)
+    machine.advance()
+    machine.unwind(1)
+    assert Write(at(14, 1), ("$SHOWN",), 14) == machine.advance()
+
+
+def test_action_outlives_no_variable(start: Starter) -> None:
+    """An action that uses a variable of a routine that has ended faults."""
+    machine = start(INTERRUPTED.replace("ASK DECLARE", "ASK TRIGGER"))
+    trigger = machine.advance()
+    assert isinstance(trigger, SetTrigger)
+    for reply in (None, 1, 1, None):
+        last = machine.advance(reply)
+    assert isinstance(machine.advance(), Write)
+    assert isinstance(last, Write)
+    machine.enter(trigger.action)
+    requests = [machine.advance()]
+    assert "uninitialised" == failed(requests)
+    assert at(12, 0) == requests[-1].at
+
+
+CALLING = INTERRUPTED.replace(
+    "  LOAD\n  EQ_INT\n  RETURN_VALUE", "  LOAD\n  EQ_INT\n  DROP\n  CALL {0}\n  RETURN_VALUE"
+)
+
+
+@pytest.mark.parametrize(
+    ("body", "outcome"),
+    [
+        ("PUSH_INT 1\nASK READ\nPUSH_INT 7\nEQ_INT\nRETURN_VALUE", True),
+        ("PUSH_INT 1\nASK SHOW", "a condition can only compute and read"),
+        ("PUSH_REAL 1.0\nASK WAIT", "a condition can only compute and read"),
+        ("FAIL domain", "the function has no value there"),
+        ("CALL ENDLESS\nPUSH_BOOL TRUE\nRETURN_VALUE", "the program does not end"),
+        ("CALL ASKING\nRETURN_VALUE", "the program stack overflows"),
+        ("PROCEED\nLINE 3 E\nFAIL domain\nE:", "a condition can only compute and read"),
+    ],
+)
+def test_conditions_may_call_what_only_computes(
+    start: Starter, body: str, outcome: bool | str
+) -> None:
+    """What a condition calls is counted, but time does not pass; nothing is left of it."""
+    text = CALLING.format("ASKING") + routine("L:\nLINE 4 L\nJUMP L", name="ENDLESS")
+    function = routine(body, name="ASKING", head="result BOOL").replace("RETURN\nend", "X\nend")
+    text += function.replace("  X\n", "  FAIL no_result\n")
+    machine = start(text, statements=500, per_slice=20, depth=7)
+    declared: Any = machine.advance()
+    machine.advance()
+    if isinstance(outcome, bool):
+        assert outcome is machine.evaluate(declared.condition, lambda _path: 7)
+    else:
+        with pytest.raises(RuntimeFailure, match=outcome):
+            machine.evaluate(declared.condition, lambda _path: 7)
+    assert (1, 0) == (machine.depth, len(machine._state.stack))
+
+
+def test_what_was_not_handed_over_is_refused(start: Starter) -> None:
+    """A condition is not entered, an action not evaluated."""
+    machine = start(INTERRUPTED)
+    declared: Any = machine.advance()
+    with pytest.raises(ValueError, match="is no action"):
+        machine.enter(declared.condition)
+    with pytest.raises(ValueError, match="is no condition"):
+        machine.evaluate(declared.action, lambda _path: 0)
+    with pytest.raises(ValueError, match="is no action"):
+        machine.enter(Code(0))
+
+
+# ------------------------------------------------------------------------------- the trace
+
+
+def test_trace_tells_what_happens_in_order(start: Starter, recorder: Any) -> None:
+    """Statements, calls, assignments by their paths, ways taken, returns."""
+    text = (
+        HEAD
+        + "data M.P POINT[2]\n"
+        + routine(
+            """
+  REF_DATA M.P POINT[2]
+  PUSH_INT 2
+  INDEX POINT[2]
+  MEMBER 1 REAL
+  PUSH_REAL 1.5
+  STORE
+  TELL REAL 0
+  PUSH_BOOL TRUE
+  JUMP_UNLESS END
+  TELL_BRANCH 1
+  REF_LOCAL A INT[3]
+  VIEW INT[3]
+  CALL SUB
+  PUSH_INT 3
+  STORE_LOCAL A[1]
+  TELL_LOCAL A[1] INT
+""",
+            "local A INT[3]",
+        )
+    )
+    text += routine(
+        "PUSH_INT 2\nINDEX_VIEW V\nPUSH_INT 7\nSTORE\nTELL_REF V INT 0\n"
+        "LOAD_VIEW V\nLOAD_VIEW V\nFILL_ARRAY INT 1\nTELL_REF V INT 1",
+        name="SUB",
+        head="view V INT[]",
+    )
+    machine = start(text, sink=recorder)
+    assert isinstance(machine.advance(), End)
+    whole = ArrayValue(Array(INT, (3,)), [None, 7, None])
+    main, sub = at(2, 0), at(2, 1)
+    assert [
+        Event("line", main),
+        Event("assign", main, path=("P", 2, "Y"), value=1.5),
+        Event("branch", main, way=1),
+        Event("call", main, "SUB"),
+        Event("line", sub),
+        Event("assign", sub, path=("V", 2), value=7),
+        Event("assign", sub, path=("V",), value=whole),
+        Event("return", sub, "SUB"),
+        Event("assign", main, path=("A", 1), value=3),
+        Event("return", main, "MAIN"),
+    ] == recorder.events
+
+
+def test_trace_changes_nothing(run: Runner, everything: str, recorder: Any) -> None:
+    """With and without a trace a program asks the same."""
+    assert run(everything) == run(everything, sink=recorder)
+    assert recorder.events
+
+
+def test_trace_may_tell_what_was_not_assigned(start: Starter, recorder: Any) -> None:
+    """A program that tells something else than it has assigned is told nothing, and goes on."""
+    text = HEAD + "data M.P POINT\n" + routine("TELL BOOL 0\nTELL INT 3", "local X INT")
+    assert isinstance(start(text, sink=recorder).advance(), End)
+    assert ["line", "return"] == [event.kind for event in recorder.events]
+
+
+def test_defect_is_told_as_one(start: Starter) -> None:
+    """Whatever goes wrong in the machine itself ends the program with one line."""
+    machine = start(HEAD + routine("PUSH_INT 4\nASK READ\nASK SHOW"))
+    machine.advance()
+    machine._state.stack = None  # type: ignore[assignment]
+    crash = machine.advance(4)
+    assert isinstance(crash, Crash)
+    assert crash is machine.advance()
+
+
+@pytest.mark.parametrize("steps", range(0, 40, 3))
+def test_limits_do_not_change_what_is_done(run: Runner, everything: str, steps: int) -> None:
+    """Slices come in between, and nothing else differs."""
+    expected = run(everything)
+    found = run(everything, per_slice=1 + steps)
+    if steps == 0:
+        assert any(isinstance(request, Slice) for request in found)
+    ends = [request for request in found if not isinstance(request, Slice)]
+    assert expected[-1] == ends[-1]
+
+
+def test_limits_of_a_machine_are_its_own() -> None:
+    """Nothing is shared between two machines of one program."""
+    verified = verify(assemble(ENDLESS))
+    first = Machine(verified, "MAIN", Limits(statements=5, per_slice=2))
+    second = Machine(verified, "MAIN", Limits(statements=5, per_slice=2))
+    kinds = [type(one.advance()) for _ in range(3) for one in (first, second)]
+    assert [Slice, Slice, Slice, Slice, Fail, Fail] == kinds

@@ -1,0 +1,234 @@
+"""Scripts of inputs: their language, their errors, and what they do."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from interp.controller import Script, ScriptError
+from interp.controller.input_script import (
+    Answer,
+    Asked,
+    Assign,
+    At,
+    Becomes,
+    Halted,
+    Press,
+    Received,
+    Send,
+    Shown,
+    Step,
+    Word,
+)
+
+Go = Callable[..., Any]
+
+
+def test_language() -> None:
+    """Every form of a line."""
+    text = """
+    ; a comment
+    # another
+    t=0.5 IN[1]=TRUE, $ANIN[2]=-0.4   ; behind it
+    t=1 MODE_OP=#T1
+    T=2 in[1..8]=17
+    on OUT[3]=TRUE after 0.2 IN[7]=TRUE
+    on HALT after 1 press START
+    on message 1442 press CONFIRM
+    on message press CONFIRM 1442
+    on dialogue answer 2
+    on channel SER_1 gets "ping" after 0.1 channel :SER_1 sends "pong"
+    fulfil waits after 1.5
+    stop at 10
+    """
+    script = Script.read(text)
+    found = [(one.cause, one.delay, one.actions) for one in script.steps]
+    assert [
+        (At(500_000), 0, (Assign(("$IN", 1), True), Assign(("$ANIN", 2), -0.4))),
+        (At(1_000_000), 0, (Assign(("$MODE_OP",), Word("T1")),)),
+        (At(2_000_000), 0, (Assign(("$IN", 1, "TO", 8), 17),)),
+        (Becomes(("$OUT", 3), True), 200_000, (Assign(("$IN", 7), True),)),
+        (Halted(), 1_000_000, (Press("START"),)),
+        (Shown(1442), 0, (Press("CONFIRM"),)),
+        (Shown(None), 0, (Press("CONFIRM", 1442),)),
+        (Asked(), 0, (Answer(2),)),
+        (Received("SER_1", "ping"), 100_000, (Send("SER_1", "pong"),)),
+    ] == found
+    assert (10_000_000, 1_500_000) == (script.stop, script.fulfils)
+    assert 0 == Script.read("FULFIL WAITS").fulfils
+
+
+def test_where_it_stands() -> None:
+    """A step knows its line."""
+    assert (
+        Step("io:2", At(0), 0, (Press("STOP"),)) == Script.read("\nt=0 press STOP", "io").steps[0]
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("IN[1]=TRUE", "a line begins with t=SECONDS, with on, with fulfil waits, or with stop at"),
+        ("t=1", "a variable is missing at the end"),
+        ("t=x IN[1]=TRUE", "a time in seconds is missing before 'x'"),
+        ("t=-1 IN[1]=TRUE", "-1 is no time in seconds"),
+        ("t=1 IN[1]", "'=' is missing at the end"),
+        ("t=1 IN[1]=", "a value is missing at the end"),
+        ("t=1 IN[1]=YES", "'YES' is no value"),
+        ("t=1 IN[x]=TRUE", "an index is missing before 'x'"),
+        ("t=1 IN[1]=TRUE IN[2]=TRUE", "'IN' is not expected here"),
+        ("t=1 press HELP", "there is no button HELP; there are START, STOP, CONFIRM"),
+        ("t=1 channel A says", "'SENDS' is missing before 'says'"),
+        ("t=1 IN[1]=TRUE ?", "'?' is not expected here"),
+        ("stop 3", "'AT' is missing before '3'"),
+    ],
+)
+def test_errors(line: str, words: str) -> None:
+    """What cannot be understood is told in one line that names the place."""
+    with pytest.raises(ScriptError) as caught:
+        Script.read("; first\n" + line, "io.txt")
+    assert f"io.txt:2: {words}" == str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("t=1 NOSUCH[1]=TRUE", "script:1: there is no system variable $NOSUCH"),
+        ("t=1 IN[0]=TRUE", "script:1: an array index lies outside the array"),
+        ("t=1 IN[9999]=TRUE", "script:1: an array index lies outside the array"),
+        ("t=1 IN[1]=3", "script:1: 3 is no value for $IN"),
+        ("t=1 IN[1]=#ON", "script:1: #ON is given to what is no enumeration"),
+        ("t=1 MODE_OP=#WRONG", "script:1: MODE_OP has no constant #WRONG that is known"),
+        ("on OUT[0]=TRUE IN[1]=TRUE", "script:1: an array index lies outside the array"),
+    ],
+)
+def test_what_is_not_there(go: Go, line: str, words: str) -> None:
+    """Variables, indices and values are tried before the program begins."""
+    with pytest.raises(ScriptError) as caught:
+        go("DEF main()\nEND\n", line)
+    assert words == str(caught.value)
+
+
+@given(st.text(max_size=40))
+def test_any_text(text: str) -> None:
+    """Any text is a script, or a `ScriptError` of one line."""
+    words = ""
+    try:
+        Script.read(text)
+    except ScriptError as error:
+        words = str(error)
+    assert len(words.splitlines()) <= 1
+
+
+PROGRAM = "DEF main()\nINT I\n{}END\n"
+
+
+def test_events_repeat(go: Go) -> None:
+    """An event acts each time that it happens; only an edge is one."""
+    body = (
+        "FOR I=1 TO 3\n$OUT[1]=TRUE\nWAIT FOR $IN[1]\n$OUT[1]=FALSE\nWAIT FOR NOT $IN[1]\nENDFOR\n"
+    )
+    script = "on OUT[1]=TRUE after 0.1 IN[1]=TRUE\non OUT[1]=FALSE after 0.1 IN[1]=FALSE"
+    ran = go(PROGRAM.format(body), script)
+    assert [True, False] * 3 == [one.fields["value"] for one in ran.told("in")]
+    assert [0.1, 0.208] == ran.times("in")[:2]
+
+
+@pytest.mark.parametrize(
+    ("condition", "changes"),
+    [
+        ("$IN[3]", [(3, True)]),
+        ("$IN[5] AND NOT $IN[3]", [(5, True)]),
+        ("NOT $IN[3] AND $IN[5]", [(3, True), (5, True), (3, False)]),
+        ("WORD==2", [(8, True), (9, True), (8, False)]),
+        ("$IN[3] AND $FLAG[1]", [(3, True), (3, False)]),
+        (
+            "$IN[3] AND $IN[4] AND $FLAG[1]",
+            [(3, True), (4, True), (3, False), (4, False)],
+        ),
+        ("$FLAG[1]", []),
+    ],
+)
+def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bool]]) -> None:
+    """The inputs of a condition change through all combinations until it holds, or back."""
+    text = f"DEF main()\nSIGNAL WORD $IN[8] TO $IN[10]\nWAIT FOR {condition}\nEND\n"
+    ran = go(text, "fulfil waits after 1", until=3.0)
+    assert changes == [(one.fields["number"], one.fields["value"]) for one in ran.told("in")]
+    cycles = [1.008 + 0.012 * place for place in range(len(changes))]
+    assert cycles == pytest.approx(ran.times("in"))
+    assert ("time" if "FLAG" in condition else "end") == ran.outcome.ending
+    assert len(changes) == ran.controller.fulfilling.count
+
+
+def test_scripted_inputs_are_not_fulfilled(go: Go) -> None:
+    """What a script sets itself comes when the script says."""
+    ran = go("DEF main()\nWAIT FOR $IN[3]\nEND\n", "fulfil waits\nt=2 IN[3]=TRUE")
+    assert [2.0] == ran.times("in")
+    assert 0 == ran.controller.fulfilling.count
+
+
+def test_waits_begin_anew(go: Go) -> None:
+    """The time of a wait counts from where the program comes to it."""
+    body = "FOR I=1 TO 2\nWAIT FOR $IN[1]\nWAIT FOR NOT $IN[1]\nENDFOR\n"
+    ran = go(PROGRAM.format(body), "fulfil waits after 0.5")
+    assert [0.504, 1.02, 1.536, 2.052] == ran.times("in")
+
+
+def test_inputs_are_told(go: Go) -> None:
+    """An input is an event of the trace that comes from no line."""
+    ran = go(PROGRAM.format("WAIT SEC 1\n"), "t=0.5 IN[3]=TRUE, ANIN[1]=0.5")
+    assert [("$IN", 3, True), ("$ANIN", 1, 0.5)] == [
+        tuple(one.fields.values()) for one in ran.told("in")
+    ]
+    assert [None, None] == [one.place for one in ran.told("in")]
+
+
+def test_values_are_converted(go: Go) -> None:
+    """A whole number is a REAL where the variable is one, and a flag any system variable."""
+    body = "WAIT SEC 0.1\nIF ($ANIN[1]==1.0) AND $FLAG[7] THEN\nI=1\nENDIF\n"
+    assert 1 == go(PROGRAM.format(body), "t=0 ANIN[1]=1, FLAG[7]=TRUE").last("I")
+
+
+def test_write_protected_variables(go: Go) -> None:
+    """A script may set what programs may not; a value out of range is told with its line."""
+    with pytest.raises(ScriptError, match="script:1: the value is not valid"):
+        go(PROGRAM.format("WAIT SEC 1\n"), "t=0.5 OV_PRO=101")
+
+
+CHANNEL = """DEF main()
+INT H,OFFSET,N
+DECL STATE_T STATE
+DECL MODUS_T MODE
+REAL LIMIT
+COPEN(:SER_1,H)
+MODE=#SYNC
+CWRITE(H,STATE,MODE,"%d parts",5)
+OFFSET=0
+LIMIT=2.0
+CREAD(H,STATE,MODE,LIMIT,OFFSET,"%d",N)
+IF STATE.RET1==#CMD_TIMEOUT THEN
+N=-1
+ENDIF
+CCLOSE(H,STATE)
+END
+"""
+
+
+def test_channel(go: Go) -> None:
+    """A peer answers what the program writes; the program waits for it [FCT-08]."""
+    ran = go(CHANNEL, 'on channel SER_1 gets "5 parts" after 0.5 channel SER_1 sends "42"')
+    assert (42, [0.5]) == (ran.last("N"), ran.times("end"))
+
+
+def test_channel_times_out(go: Go) -> None:
+    """Without an answer CREAD ends with its timeout [FCT-08]."""
+    ran = go(CHANNEL)
+    assert (-1, [2.0]) == (ran.last("N"), ran.times("end"))
+
+
+def test_channel_that_is_not_open(go: Go) -> None:
+    """A handle that leads nowhere is a fault."""
+    ran = go('DEF main()\nDECL STATE_T S\nDECL MODUS_T M\nM=#SYNC\nCWRITE(99,S,M,"x")\nEND\n')
+    assert "channel" == ran.outcome.error.slug

@@ -1,0 +1,106 @@
+"""Sinks that want some kinds of events: every executor tells these and no others."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+
+from grammar.syntax.source import Source
+from interp.bench.stub_world import StubWorld
+from interp.bytecode.compiler import compile_program
+from interp.bytecode.verifier.verify import Verified, verify
+from interp.bytecode.vm.executor import Machine
+from interp.controller import Trace
+from interp.native import AVAILABLE
+from interp.port.events import EVERY_KIND, Event, Kind, Recorder
+from interp.port.executor import Executor
+from interp.port.requests import End, Request
+from interp.program.load import CheckedProgram, load
+from interp.tree import TreeExecutor
+
+_TEXT = """DEF main()
+  DECL INT I,A[2,2],G
+  DECL CHAR s[4]
+  s[]="ab"
+  FOR I=1 TO 2
+    A[I,I]=Twice(I)
+    IF A[I,I]>2 THEN
+      G=STRADD(s[],"c")
+      $OUT[I]=TRUE
+    ENDIF
+  ENDFOR
+  Change(A[,],s[])
+END
+DEFFCT INT Twice(n:IN)
+  DECL INT n
+  SWITCH n
+    CASE 1
+      RETURN 2
+    DEFAULT
+      RETURN 2*n
+  ENDSWITCH
+ENDFCT
+DEF Change(p[,]:OUT,t[]:OUT)
+  DECL INT p[,]
+  DECL CHAR t[]
+  DECL BOOL B
+  p[2,1]=5
+  B=STRCLEAR(t[])
+END
+"""
+_SOME: list[frozenset[Kind]] = [
+    frozenset(some) for count in range(3) for some in combinations(sorted(EVERY_KIND), count)
+]
+
+
+@pytest.fixture(scope="module")
+def program() -> CheckedProgram:
+    """A program that tells events of every kind."""
+    return load([Source(_TEXT, "main.src")], "main.src")
+
+
+@pytest.fixture(scope="module")
+def verified(program: CheckedProgram) -> Verified:
+    """The same as bytecode."""
+    return verify(compile_program(program).program)
+
+
+def _executor(name: str, program: CheckedProgram, verified: Verified, sink: Recorder) -> Executor:
+    if name == "tree":
+        return TreeExecutor(program, sink=sink)
+    if name == "vm":
+        return Machine(verified, "MAIN", sink=sink)
+    if not AVAILABLE:
+        pytest.skip("the machine in C was not built")
+    from interp.native.machine import Machine as Native
+
+    return Native(verified, "MAIN", sink=sink)
+
+
+def _run(executor: Executor, recorder: Recorder) -> tuple[list[Event], list[Request]]:
+    world, requests = StubWorld(), [executor.advance()]
+    while not isinstance(requests[-1], End):
+        requests.append(executor.advance(world.reply(requests[-1])))
+    return recorder.events, requests
+
+
+@pytest.mark.parametrize("name", ["tree", "vm", "native"])
+def test_only_what_is_wanted_is_told(
+    program: CheckedProgram, verified: Verified, name: str
+) -> None:
+    """Each choice of kinds gives the events of these kinds, and the same requests."""
+    everything = Recorder()
+    events, requests = _run(TreeExecutor(program, sink=everything), everything)
+    assert EVERY_KIND == {one.kind for one in events}
+    for kinds in [*_SOME, EVERY_KIND]:
+        recorder = Recorder(kinds=kinds)
+        told, asked = _run(_executor(name, program, verified, recorder), recorder)
+        assert [one for one in events if one.kind in kinds] == told
+        assert requests == asked
+
+
+def test_a_trace_wants_what_its_level_has() -> None:
+    """Lines and assignments are for the full trace only, for each task."""
+    assert {"call", "return", "branch"} == Trace().sink().kinds
+    assert EVERY_KIND == Trace(is_full=True).sink("submit").kinds

@@ -1,0 +1,319 @@
+"""Approximate positioning: where a blend is, what it looks like, and when there is none."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from interp.port.requests import At
+from interp.robot.arm import Approximation, Motion, Settings
+from interp.robot.kinematics.frames import Pose
+from interp.robot.kinematics.placement import Placement
+from interp.robot.path.axis_path import BlendedAxes
+from interp.robot.path.pose_path import Blend
+from interp.robot.path.targets_in_force import Programmed
+from interp.robot.planning.blending import Zone, blend_of
+from interp.robot.planning.tracks import Tracks
+from interp.values.faults import Fault
+
+if TYPE_CHECKING:
+    from interp.robot.planning.timeline import Section
+    from tests.interp.robot.conftest import Driver
+
+START = {"A1": 0.0, "A2": -90.0, "A3": 100.0, "A4": 0.0, "A5": 60.0, "A6": 0.0}
+FIRST = {"X": 500.0, "Y": 200.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
+CORNER = {**FIRST, "Y": -100.0}
+LAST = {**CORNER, "X": 400.0}
+
+
+def corner(driver: Driver, criteria: tuple[str, ...], **values: Any) -> None:
+    """A line of 300 mm, and across it one of 100 mm."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    driver.move("LIN", CORNER, criteria=criteria, approximation=Approximation(**values))
+    driver.move("LIN", LAST)
+
+
+def blend(driver: Driver) -> Section:
+    """The section of the only blend."""
+    sections = [leg.section for leg in driver.arm.path() if leg.section.following]
+    (found,) = {section.key: section for section in sections}.values()
+    return found
+
+
+def test_a_blend_of_lines_is_a_parabola(driver: Driver) -> None:
+    """The path is the Bézier curve of the ends of the zone and the point, to a nanometre."""
+    corner(driver, ("C_DIS",), cdis=40.0)
+    driver.play()
+    section = blend(driver)
+    assert isinstance(section.curve.course, Blend)
+    points = section.curve.course.points
+    wanted = [(500.0, -60.0, 600.0), (500.0, -100.0, 600.0), (460.0, -100.0, 600.0)]
+    assert np.allclose(wanted, points, atol=1e-9)
+    begin, end = driver.time("blend_start", 2), driver.time("blend_end", 3)
+    places = np.array([driver.tool(time) for time in range(begin, end, 2000)])
+    # On that parabola the roots of the distances from both lines add to that of the zone.
+    across, along = 500.0 - places[:, 0], places[:, 1] + 100.0
+    roots = np.sqrt(np.clip(across, 0, None)) + np.sqrt(np.clip(along, 0, None))
+    assert np.allclose(np.sqrt(40.0), roots, atol=1e-6)
+    driver.check_limits()
+
+
+def test_the_point_is_not_passed(driver: Driver) -> None:
+    """At the apex the path is a quarter of the zone away, on the inner side [BLD-08]."""
+    corner(driver, ("C_DIS",), cdis=40.0)
+    driver.play()
+    assert (490.0, -90.0, 600.0) == pytest.approx(
+        driver.tool(driver.time("blend_apex", 2)), abs=0.01
+    )
+
+
+def test_not_more_than_half_of_either_path(driver: Driver) -> None:
+    """A zone larger than half of a path is reduced to it, on each side by itself [BLD-07]."""
+    corner(driver, ("C_DIS",), cdis=800.0)
+    points = blend(driver).curve.course.points  # type: ignore[union-attr]
+    assert np.allclose([(500, 50, 600), (500, -100, 600), (450, -100, 600)], points, atol=1e-9)
+    driver.play()
+    driver.check_limits()
+
+
+def test_events_of_a_blend(driver: Driver) -> None:
+    """The first motion ends and the second begins at the apex, between start and end."""
+    corner(driver, ("C_DIS",), cdis=40.0)
+    driver.play()
+    kinds = [(event.kind, event.motion) for event in driver.events if event.motion > 1]
+    assert kinds == [
+        ("motion_start", 2),
+        ("blend_start", 2),
+        ("blend_apex", 2),
+        ("motion_end", 2),
+        ("motion_start", 3),
+        ("blend_end", 3),
+        ("motion_end", 3),
+    ]
+    times = [event.time for event in driver.events]
+    assert times == sorted(times)
+    assert driver.time("blend_apex", 2) == driver.time("motion_start", 3)
+    assert not any(event.is_exact_unwanted for event in driver.events)
+
+
+@pytest.mark.parametrize(
+    ("criterion", "values", "before"),
+    [
+        ("C_DIS", {"cdis": 30.0}, 30.0),
+        ("C_ORI", {"cori": 5.0}, 75.0),
+        ("C_VEL", {"cvel": 100.0}, 40.0),
+        ("C_VEL", {"cvel": 50.0}, 15.0),
+    ],
+)
+def test_where_a_blend_begins(
+    driver: Driver, criterion: str, values: dict[str, Any], before: float
+) -> None:
+    """By distance, by the angle that is left, by the speed that braking has left [BLD-13]."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    target = {**CORNER, "B": 140.0}
+    settings: dict[str, Any] = {"approximation": Approximation(**values)}
+    driver.move("LIN", target, criteria=(criterion,), velocity=0.25, acceleration=1.0, **settings)
+    driver.move("LIN", {**target, "X": 300.0, "B": 160.0}, velocity=0.25, acceleration=1.0)
+    start, point, _ = blend(driver).curve.course.points  # type: ignore[union-attr]
+    assert before == pytest.approx(float(np.linalg.norm(point - start)), rel=0.35)
+
+
+def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
+    """Between PTP the path is a parabola of all axes, its zone that of $APO_DIS_PTP [BLD-03]."""
+    values = {"approximation": Approximation(cptp=50)}
+    driver.move("PTP", {"A1": 100.0}, criteria=("C_PTP",), **values)
+    driver.move("PTP", {"A2": 0.0}, **values)
+    curve = blend(driver).curve
+    assert isinstance(curve, BlendedAxes)
+    axes = curve.axes(np.array([0.0, 0.5, 1.0]))[:, :2]
+    # 50 % of 90 degrees on the first side; half of the path is that on the second.
+    assert np.allclose([(55.0, -90.0), (88.75, -78.75), (100.0, -45.0)], axes)
+    driver.play()
+    driver.check_limits()
+
+
+@pytest.mark.parametrize(("first", "second"), [(100, 50), (50, 100), (20, 20)])
+def test_cptp_counts_for_each_side(driver: Driver, first: float, second: float) -> None:
+    """The first motion's CPTP says where the blend starts, the second's where it ends [BLD-04]."""
+    driver.move("PTP", {"A1": 160.0}, criteria=("C_PTP",), approximation=Approximation(cptp=first))
+    driver.move("PTP", {"A1": -20.0}, approximation=Approximation(cptp=second))
+    curve = blend(driver).curve
+    assert isinstance(curve, BlendedAxes)
+    wanted = (min(first * 0.9, 80.0), min(second * 0.9, 90.0))
+    assert wanted == pytest.approx((curve.before * 160.0, curve.after * 180.0))
+
+
+def test_cdis_of_a_ptp_counts_for_both_sides(driver: Driver) -> None:
+    """With C_DIS it is the way of the tool, and the first motion's value for both [BLD-05]."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    driver.move("PTP", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=25.0))
+    driver.move("PTP", LAST, approximation=Approximation(cdis=1.0))
+    section = blend(driver)
+    assert isinstance(section.curve, BlendedAxes)
+    one, other = section.curve.first, section.curve.second
+    points = np.array([CORNER[name] for name in "XYZ"])
+    for curve, u in ((one, 1.0 - section.curve.before), (other, section.curve.after)):
+        (axes,) = curve.axes(np.array([u]))
+        place = curve.arm.forward(axes[:6])[:3, 3]
+        assert 25.0 == pytest.approx(float(np.linalg.norm(place - points)), rel=0.02)
+
+
+@pytest.mark.parametrize("kinds", [("PTP", "LIN"), ("LIN", "PTP")])
+def test_mixed_blends(driver: Driver, kinds: tuple[str, str]) -> None:
+    """Between PTP and a path of the tool the axes blend, tangent to both [BLD-12]."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    values = {"approximation": Approximation(cdis=30.0, cptp=20)}
+    criteria = ("C_PTP", "C_DIS") if kinds[0] == "PTP" else ("C_DIS", "C_PTP")
+    driver.move(kinds[0], CORNER, criteria=criteria, velocity=0.5, **values)
+    driver.move(kinds[1], LAST, velocity=0.5, **values)
+    curve = blend(driver).curve
+    assert isinstance(curve, BlendedAxes)
+    share = curve.after if kinds[1] == "LIN" else curve.before
+    assert 30.0 / (100.0 if kinds[1] == "LIN" else 300.0) == pytest.approx(share)
+    rates, _ = curve.rates(np.array([0.0, 1.0]))
+    leaving, _ = curve.first.rates(np.array([1.0 - curve.before]))
+    joining, _ = curve.second.rates(np.array([curve.after]))
+    assert np.allclose(rates, [2 * curve.before * leaving[0], 2 * curve.after * joining[0]])
+    driver.play()
+    driver.check_limits()
+
+
+def test_other_frames_blend_in_the_space_of_axes(driver: Driver) -> None:
+    """Where $BASE changes at the point there is no common path, and the axes blend."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    values = {"approximation": Approximation(cdis=30.0)}
+    driver.move("LIN", CORNER, criteria=("C_DIS",), **values)
+    driver.move("LIN", {**LAST, "X": 390.0}, placement=Placement(base=Pose.of(10.0)), **values)
+    assert isinstance(blend(driver).curve, BlendedAxes)
+    driver.play()
+    assert (400.0, -100.0, 600.0) == pytest.approx(driver.tool(driver.now))
+    driver.check_limits()
+
+
+@pytest.mark.parametrize("others", [{"circle": "#BASE"}, {"circle": "#PATH"}])
+def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
+    """The blend leaves the line and joins the circle where the zone ends, in their directions."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    values = {"approximation": Approximation(cdis=20.0), "velocity": 0.5}
+    driver.move("LIN", CORNER, criteria=("C_DIS",), **values)
+    driver.move(
+        "CIRC", {"X": 400.0, "Y": -200.0}, auxiliary={"X": 430.0, "Y": -130.0}, **values, **others
+    )
+    course = blend(driver).curve.course
+    assert isinstance(course, Blend)
+    (start, end), _ = course.at(np.array([0.0, 1.0]))
+    assert (500.0, -80.0, 600.0) == pytest.approx(start)
+    assert np.allclose(course.second.at(np.array([course.after]))[0][0], end)
+    tangents = course.tangents(np.array([0.0, 1.0]))
+    wanted = np.stack(
+        (course.first.tangents(np.ones(1))[0], course.second.tangents(np.array([course.after]))[0])
+    )
+    cosines = (tangents * wanted).sum(axis=1)
+    lengths = np.linalg.norm(tangents, axis=1) * np.linalg.norm(wanted, axis=1)
+    assert np.allclose(1.0, cosines / lengths)
+    driver.play()
+    driver.check_limits()
+
+
+def test_the_path_does_not_depend_on_the_speed(driver: Driver) -> None:
+    """The blend is where it is under any override."""
+    corner(driver, ("C_DIS",), cdis=40.0)
+    whole = blend(driver).curve.axes(np.linspace(0, 1, 20))
+    driver.arm.override(driver.now, 10.0)
+    assert np.array_equal(whole, blend(driver).curve.axes(np.linspace(0, 1, 20)))
+
+
+def test_a_motion_that_comes_too_late(driver: Driver) -> None:
+    """Appended when the zone has begun, a motion finds an exact stop, which is told [BLD-10]."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    begin = driver.now
+    driver.move("LIN", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=40.0))
+    driver.play(until=begin + 100_000)
+    ahead = driver.arm.mark()
+    driver.move("LIN", LAST)
+    assert blend(driver).following == 3
+    driver.arm.rewind(ahead)
+    driver.play(until=begin + 600_000)
+    driver.move("LIN", LAST)
+    driver.play()
+    assert [True] == [
+        e.is_exact_unwanted for e in driver.events if e.kind == "motion_end" and e.motion == 2
+    ]
+    assert tuple(CORNER[name] for name in "XYZ") == pytest.approx(
+        driver.tool(driver.time("motion_end", 2))
+    )
+    driver.check_limits()
+
+
+def test_appended_on_the_way(driver: Driver) -> None:
+    """A motion appended on the way is blended into, without a jump of speed or acceleration."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    begin = driver.now
+    driver.move("LIN", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=40.0))
+    driver.play(until=begin + 270_000)
+    driver.move("LIN", LAST)
+    driver.play()
+    assert driver.time("blend_apex", 2) < driver.time("blend_end", 3)
+    driver.check_limits()
+
+
+@pytest.mark.parametrize(("criteria", "cdis"), [((), 40.0), (("C_DIS",), 0.0)])
+def test_no_blend_is_wanted(driver: Driver, criteria: tuple[str, ...], cdis: float) -> None:
+    """Without a criterion, or with a zone of nothing, an exact stop is what was asked for."""
+    corner(driver, criteria, cdis=cdis)
+    driver.play()
+    ends = [e for e in driver.events if e.kind == "motion_end" and e.motion == 2]
+    assert [False] == [e.is_exact_unwanted for e in ends]
+    assert tuple(CORNER[name] for name in "XYZ") == pytest.approx(driver.tool(ends[0].time))
+
+
+def test_identical_points_prevent_blending(driver: Driver) -> None:
+    """A motion of length zero is not blended into [BLD-14]."""
+    corner(driver, (), cdis=40.0)
+    driver.move("LIN", {}, criteria=("C_DIS",), approximation=Approximation(cdis=10.0))
+    driver.move("LIN", FIRST)
+    driver.play()
+    assert "blend_start" not in {event.kind for event in driver.events}
+
+
+def test_blends_that_use_up_a_motion(driver: Driver) -> None:
+    """Two blends that each take half of a motion follow one another."""
+    values = {"approximation": Approximation(cdis=500.0), "criteria": ("C_DIS",)}
+    driver.move("PTP", FIRST)
+    driver.play()
+    for target in (CORNER, LAST, FIRST):
+        driver.move("LIN", target, **values)
+    driver.play()
+    assert driver.time("blend_end", 3) == driver.time("blend_start", 3)
+    driver.check_limits()
+
+
+def test_a_blend_of_axes_keeps_within_software_limits(driver: Driver) -> None:
+    """Beside a line axes may swing, so the blend itself is looked at; else it is none [MOT-15]."""
+    tracks = Tracks(driver.machine)
+    here = Programmed(tracks.arm, np.array(driver.machine.standing(tuple(START.values()))))
+    turn = Motion(1, At("test.src", 1, 0), "PTP", Settings(), {"A1": 30.0}, criteria=("C_DIS",))
+    line = Motion(2, At("test.src", 2, 0), "LIN", Settings(), {"Y": -100.0})
+    first, there = tracks.track(turn, here)
+    second, _ = tracks.track(line, there)
+    zone = Zone(0.4, 0.4)
+    curve, _ = blend_of(first, second, zone, driver.machine, tracks.limits)
+    most = float(curve.axes(np.linspace(0.0, 1.0, 500))[:, 0].max())
+    axis = driver.machine.axes[0]
+    for upper, is_beyond in ((most + 0.01, False), (most - 0.5, True)):
+        axes = (replace(axis, upper=upper), *driver.machine.axes[1:])
+        machine = replace(driver.machine, axes=axes)
+        with pytest.raises(Fault) if is_beyond else nullcontext():
+            blend_of(first, second, zone, machine, tracks.limits)

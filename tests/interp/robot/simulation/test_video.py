@@ -1,0 +1,54 @@
+"""A moving picture of the arm, where there is something to draw it with."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from interp.robot.models import default_machine
+from interp.robot.simulation.video import VideoError, frame_count, write_video
+
+pytest.importorskip("mujoco")
+image = pytest.importorskip("PIL.Image")
+
+TIMES = np.arange(0, 240_001, 12_000, dtype=np.int64)
+AXES = np.linspace((0.0, -90.0, 90.0, 0.0, 0.0, 0.0), (40.0, -60.0, 90.0, 0.0, 0.0, 0.0), 21)
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp"])
+def test_a_video(tmp_path: Path, suffix: str) -> None:
+    """It has a frame each 40 ms, and they differ, since the arm moves."""
+    path, told = tmp_path / f"arm{suffix}", []
+    try:
+        write_video(
+            path, default_machine(), TIMES, AXES, size=(160, 120), on_frame=lambda: told.append(1)
+        )
+    except VideoError as error:
+        pytest.skip(str(error))
+    with image.open(path) as video:
+        assert (7, (160, 120)) == (video.n_frames, video.size)
+        frames = []
+        for number in range(video.n_frames):
+            video.seek(number)
+            frames.append(np.asarray(video.convert("RGB"), dtype=np.int16))
+            assert 40 == video.info["duration"]
+    assert 7 == len(told) == frame_count(TIMES)
+    orange = [(frame[..., 0] - frame[..., 2] > 80).sum() for frame in frames]
+    assert min(orange) > 200
+    assert all(np.abs(a - b).max() > 40 for a, b in pairwise(frames))
+
+
+def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nothing can be drawn, one line says so."""
+    monkeypatch.setenv("MUJOCO_GL", "nothing-of-the-kind")
+    with pytest.raises(VideoError, match="no renderer works here") as caught:
+        write_video(tmp_path / "arm.gif", default_machine(), TIMES, AXES, size=(16, 12))
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "arm.gif").exists()
+
+
+def test_another_form(tmp_path: Path) -> None:
+    """A suffix that nothing writes is told, with those that something does."""
+    with pytest.raises(VideoError, match=r"one of \.gif, \.webp, \.png"):
+        write_video(tmp_path / "arm.mp4", default_machine(), TIMES, AXES)

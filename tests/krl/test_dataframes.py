@@ -1,0 +1,53 @@
+"""Results as tables."""
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pandas")
+
+from krl import dataframes
+
+
+def test_a_survey_becomes_tables(tmp_path: Path) -> None:
+    """Clusters, proposals and failures belong together by the id of the cluster."""
+    (tmp_path / "a.src").write_text("DEF A()\nWAT 1\nEND\n", encoding="utf-8")
+    (tmp_path / "none").mkdir()
+    survey = dataframes.record(
+        "recover", tmp_path / "a.src", "--no-start", "--out", tmp_path / "out",
+        "--negatives", tmp_path / "none", "--jobs", "1",
+    )  # fmt: skip
+    found = dataframes.clusters(survey)
+    assert [1] == found["files"].tolist()
+    assert ["WAT 1"] == dataframes.failures(survey)["text"].str.strip().tolist()
+    assert set(dataframes.proposals(survey)["cluster"]) <= set(found["id"])
+
+
+def test_findings_become_a_table(tmp_path: Path) -> None:
+    """A row a finding; without any, the columns are there all the same."""
+    for name, text in (("good", "DEF GOOD()\nEND\n"), ("bad", "DEF BAD()\nn = 1\nEND\n")):
+        (tmp_path / f"{name}.src").write_text(text, encoding="utf-8")
+    found = dataframes.findings(dataframes.record("check", tmp_path / "bad.src"))
+    assert 2 in found["line"].tolist()
+    none = dataframes.findings(dataframes.record("check", tmp_path / "good.src"))
+    assert (0, True) == (len(none), "code" in none.columns)
+
+
+def test_what_cannot_be_done_is_told(tmp_path: Path) -> None:
+    """Status 2 is an error with the line that the command said."""
+    with pytest.raises(dataframes.CommandError, match="missing"):
+        dataframes.record("recover", tmp_path / "missing")
+
+
+def test_a_trace_and_nights_become_tables(tmp_path: Path) -> None:
+    """Lines of JSON become rows, whatever fields their events have."""
+    trace = tmp_path / "t.jsonl"
+    trace.write_text(
+        '{"t":0,"task":"robot","kind":"out","at":"a:1","number":2,"value":true}\n'
+        '{"t":5,"task":"robot","kind":"end","at":"a:2"}\n',
+        encoding="utf-8",
+    )
+    assert [0, 5] == dataframes.trace(trace)["t"].tolist()
+    history = tmp_path / "h.jsonl"
+    history.write_text('{"date":"2031-05-06","bench":{"vm.x":2.5}}\nbroken\n', encoding="utf-8")
+    assert [2.5] == dataframes.nights(history)["bench.vm.x"].tolist()

@@ -1,0 +1,84 @@
+"""Causes are one when one edit mends what the edits of each mend."""
+
+from collections.abc import Sequence
+
+from grammar.notation.edits import Edit, Widen
+from grammar.notation.g4 import read
+from grammar.parser.recognizer import Recognizer
+from recovery.clustering.cause import Cause, Judge, Proposal, no_judge
+from recovery.clustering.cause_merging import joined, sought_together
+from recovery.clustering.search import Search
+from recovery.proposals.candidates import Line
+from recovery.survey.survey import survey_texts
+
+GRAMMAR = read("""grammar S;
+program : line* EOF ;
+line : IF NAME '=' NAME NEWLINE | LIN NAME NEWLINE ;
+IF : 'IF' ;
+LIN : 'LIN' ;
+EQUAL : '=' ;
+LESS : '<' ;
+MORE : '>' ;
+NAME : [A-Z]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+""")
+LESS = Widen("line", (1, 3), "'<'")
+MORE = Widen("line", (1, 3), "'>'")
+
+
+def search(judge: Judge = no_judge) -> Search:
+    """A search for four lines: two with a sign that is missing, two with another."""
+    texts = [f"IF {name} {sign} B\n" for sign in "<>" for name in "AC"]
+    found = survey_texts(list(zip("1234", texts, strict=True)), GRAMMAR)
+    lines = [Line(found.forms[file.failures[0].form], ()) for file in found.files]
+    return Search(Recognizer(GRAMMAR), lines, [1] * 4, judge)
+
+
+def apart(searched: Search) -> list[Cause]:
+    """Each sign a cause of its own."""
+    proposals = [searched.proposal((edit,), 0) for edit in (LESS, MORE)]
+    assert [{0, 1}, {2, 3}] == [p.mended for p in proposals]
+    return [Cause((0, 1), (proposals[0],)), Cause((2, 3), (proposals[1],))]
+
+
+def mends_all(proposal: Proposal) -> bool:
+    return {0, 1, 2, 3} == proposal.mended
+
+
+def test_words_at_one_place_have_one_cause() -> None:
+    """Two signs that are missing in one place become a choice of both, in place of the first."""
+    searched = search()
+    [one] = joined(searched, apart(searched))
+    assert (0, 1, 2, 3) == one.lines
+    assert (Widen("line", (1, 3), "('<' | '>')"),) == one.proposals[0].edits
+    assert mends_all(one.proposals[0])
+    assert (LESS,) == one.proposals[1].edits
+
+
+def test_lines_that_begin_alike_are_searched_together() -> None:
+    """What mends all of them is found though each cause had an edit of its own."""
+    searched = search()
+    [one] = sought_together(searched, apart(searched))
+    assert (0, 1, 2, 3) == one.lines
+    assert mends_all(one.proposals[0])
+
+
+def test_causes_stay_apart_where_the_edit_for_both_lets_in_more() -> None:
+    """An edit that costs negatives which neither cost is no reason to make two causes one."""
+
+    def judge(edits: Sequence[Edit]) -> int:
+        return any("'<'" in str(edit) and "'>'" in str(edit) for edit in edits)
+
+    searched = search(judge)
+    causes = apart(searched)
+    assert causes == joined(searched, causes)
+
+
+def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
+    """Without a proposal there is nothing to compare."""
+    searched = search()
+    hopeless = Cause((3,), ())
+    first, _ = apart(searched)
+    assert [first, hopeless] == joined(searched, [first, hopeless])
+    assert [first, hopeless] == sought_together(searched, [first, hopeless])

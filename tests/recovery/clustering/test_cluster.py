@@ -1,0 +1,275 @@
+"""Failures are grouped by cause, and what mending them brings is what counting brings."""
+
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from random import Random
+
+import pytest
+
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from recovery.clustering.cluster import Cluster, Clusters, cluster
+from recovery.survey.survey import Survey, SurveyedFile, survey_texts
+
+PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
+#: Pieces of programs: some are fine, some fail, some fail and make others follow.
+PIECES = (
+    "A=1",
+    "PTP HOME",
+    "IF A THEN\nHALT\nENDIF",
+    "FOR I=1 TO 9 STEP 2\nA=1\nENDFOR",
+    "FOR I=1 TO N STEP K\nENDFOR",
+    "X[1,2]=3",
+    "A=Y[I,J]",
+    "SWITCH X\nCASE 1\nA=1\nCASE 2\nENDSWITCH",
+    "SWITCH MODE\nCASE #T1\nHALT\nDEFAULT\nENDSWITCH",
+    "RETURN 1",
+    "LIN P1 C_VEL",
+    "A ? B",
+    "IF A THEN",
+    "ENDLOOP",
+)
+
+
+def program(*pieces: str) -> str:
+    return "\n".join(["DEF A()", *pieces, "END", ""])
+
+
+def surveyed(*programs: str) -> Survey:
+    return survey_texts([(f"{n:03}.src", text) for n, text in enumerate(programs)], PRELIMINARY)
+
+
+def clusters_of(*pieces: str) -> Clusters:
+    """Clusters of programs of one piece each."""
+    return cluster(surveyed(*map(program, pieces)))
+
+
+def files(found: Cluster) -> set[str]:
+    return {file.path for file in found.files}
+
+
+# ----------------------------------------------------------------------- causes and no less
+
+
+def test_failures_mended_by_one_edit_are_one_cluster() -> None:
+    """What a person would call one missing construct is one cluster, whatever the names in it."""
+    found = clusters_of("DECL INT A,B", "DECL REAL X,Y,Z", "DECL BOOL ON_OFF,OLD", "HALT")
+    assert [{"000.src", "001.src", "002.src"}] == [files(c) for c in found.ranked]
+    assert ["DECL … ,"] == [c.title for c in found.ranked]
+
+
+def test_failures_mended_by_different_edits_are_different_clusters() -> None:
+    """Two missing constructs are two clusters, in one file too."""
+    both = "DECL INT A,B\nRETURN 1"
+    found = clusters_of("DECL INT A,B", "RETURN 1", both)
+    assert [{"000.src", "002.src"}, {"001.src", "002.src"}] == sorted(
+        (files(c) for c in found.ranked), key=sorted
+    )
+
+
+def test_a_line_of_another_shape_joins_when_the_same_edit_mends_it() -> None:
+    """A second index fails in assignments, conditions and waits; it is one cause all the same."""
+    pieces = ("X[1,2]=3", "A=X[I,J]", "IF X[1,2]==3 THEN\nENDIF", "WAIT FOR Y[1,J]")
+    (found,) = clusters_of(*pieces).ranked
+    assert 4 == len(found.files)
+
+
+def test_a_program_without_failures_is_in_no_cluster() -> None:
+    """Nothing failed, nothing is grouped, and there is nothing to mend."""
+    found = clusters_of("HALT", "A=1")
+    assert ((), (), {}) == (found.ranked, found.order, found.cluster_of)
+
+
+def test_what_only_follows_belongs_to_its_cause() -> None:
+    """A block that is not known is one cluster: its opener, what is in it, and its closer."""
+    found = clusters_of("SWITCH X\nCASE 1\nA=1\nCASE 2\nENDSWITCH")
+    (only,) = found.ranked
+    follows = [member.failed.follows for member in only.members]
+    assert [False, True, True, True] == follows
+    assert 1 == only.unlocks
+
+
+# ----------------------------------------------------------------- laws, on corpora by chance
+
+
+@pytest.fixture(scope="module", params=range(3))
+def corpus(request: pytest.FixtureRequest) -> tuple[Survey, Clusters]:
+    """A small corpus of random programs, some of them alike, and its clusters."""
+    chance = Random(request.param)
+    programs = [program(*chance.choices(PIECES, k=chance.randint(0, 4))) for _ in range(14)]
+    found = surveyed(*programs)
+    return found, cluster(found)
+
+
+def wanted(file: SurveyedFile, clusters: Clusters) -> set[str]:
+    """The clusters that have to be mended for a file to parse."""
+    return {clusters.cluster_of[file.digest, index] for index, _ in enumerate(file.failures)}
+
+
+def count(found: Survey, clusters: Clusters, mended: set[str]) -> int:
+    """Files that parse when these clusters are mended."""
+    return sum(len(f.places) for f in found.files if wanted(f, clusters) <= mended)
+
+
+def test_every_failure_is_in_one_cluster(corpus: tuple[Survey, Clusters]) -> None:
+    """No failure is lost, none counted twice, and who asks by failure gets the same answer."""
+    found, clusters = corpus
+    grouped = Counter(
+        (cluster.id, m.file.digest, m.failed.line, m.failed.column)
+        for cluster in clusters.ranked
+        for m in cluster.members
+    )
+    expected = Counter(
+        (clusters.cluster_of[file.digest, index], file.digest, failed.line, failed.column)
+        for file in found.files
+        for index, failed in enumerate(file.failures)
+    )
+    assert expected == grouped
+
+
+def test_followers_are_where_their_cause_is(corpus: tuple[Survey, Clusters]) -> None:
+    """A failure that follows is in the cluster of the direct failure before it."""
+    found, clusters = corpus
+    for file in found.files:
+        cause = None
+        for index, failed in enumerate(file.failures):
+            own = clusters.cluster_of[file.digest, index]
+            cause = cause if failed.follows else own
+            assert cause == own
+
+
+def test_no_cluster_is_of_followers_only(corpus: tuple[Survey, Clusters]) -> None:
+    """What follows makes no cluster of its own, and no example is taken from it."""
+    _, clusters = corpus
+    for found in clusters.ranked:
+        assert not all(m.failed.follows for m in found.members)
+        assert not found.example.failed.follows
+        assert found.example in found.members
+
+
+def test_unlocks_counts_the_files_that_fail_for_nothing_else(
+    corpus: tuple[Survey, Clusters],
+) -> None:
+    """Mending one cluster lets so many more files parse."""
+    found, clusters = corpus
+    parsed = count(found, clusters, set())
+    assert [count(found, clusters, {c.id}) - parsed for c in clusters.ranked] == [
+        c.unlocks for c in clusters.ranked
+    ]
+
+
+def test_what_holds_back_most_comes_first(corpus: tuple[Survey, Clusters]) -> None:
+    """Clusters are ranked by what they unlock, then by the files they are in."""
+    _, clusters = corpus
+    keys = [(c.unlocks, sum(len(f.places) for f in c.files)) for c in clusters.ranked]
+    assert sorted(keys, reverse=True) == keys
+
+
+def test_the_order_of_mending_counts_right(corpus: tuple[Survey, Clusters]) -> None:
+    """After each step as many files parse as counting from scratch says, at last all of them."""
+    found, clusters = corpus
+    mended: set[str] = set()
+    for step, parsed in clusters.order:
+        assert step.id not in mended
+        mended.add(step.id)
+        assert count(found, clusters, mended) == parsed
+    assert {c.id for c in clusters.ranked} == mended
+    assert not clusters.order or len(found.files) == clusters.order[-1][1]
+
+
+def test_the_order_of_mending_is_greedy(corpus: tuple[Survey, Clusters]) -> None:
+    """No other cluster would have let more files parse at any step."""
+    found, clusters = corpus
+    mended: set[str] = set()
+    for step, parsed in clusters.order:
+        left = {c.id for c in clusters.ranked} - mended
+        assert max(count(found, clusters, mended | {other}) for other in left) == parsed
+        mended.add(step.id)
+
+
+def test_identities_and_titles_are_unique(corpus: tuple[Survey, Clusters]) -> None:
+    """A cluster can be named by its identity or its title."""
+    _, clusters = corpus
+    assert len({c.id for c in clusters.ranked}) == len(clusters.ranked)
+    assert len({c.title for c in clusters.ranked}) == len(clusters.ranked)
+
+
+def test_copies_count() -> None:
+    """A file that lies in three places is three files to be mended."""
+    found = surveyed(program("RETURN 1"), program("DECL INT A,B"), program("HALT"))
+    first, *others = found.files
+    copies = tuple((f"{n}/a.src", f"{n}") for n in range(3))
+    more = replace(found, files=(replace(first, places=copies), *others))
+    clusters = cluster(more)
+    assert [3, 1] == [c.unlocks for c in clusters.ranked]
+    assert [4, 5] == [parsed for _, parsed in clusters.order]
+    assert [1, 1] == [len(c.files) for c in clusters.ranked]
+
+
+# --------------------------------------------------------------------------- the same result
+
+TELL = """
+import json, sys
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from recovery.clustering.cluster import cluster
+from recovery.survey.survey import survey_texts
+
+grammar = read_file(GRAMMAR.with_name("preliminary.g4"))
+found = survey_texts([tuple(pair) for pair in json.load(sys.stdin)], grammar)
+clusters = cluster(found)
+print(json.dumps([
+    [
+        [c.id, c.title, c.unlocks, len(c.members), [repr(p.edits) for p in c.proposals]]
+        for c in clusters.ranked
+    ],
+    [[c.id, parsed] for c, parsed in clusters.order],
+]))
+"""
+
+
+def told(clusters: Clusters) -> object:
+    """What a program in another process tells of clusters."""
+    ranked = []
+    for c in clusters.ranked:
+        edits = [repr(p.edits) for p in c.proposals]
+        ranked.append([c.id, c.title, c.unlocks, len(c.members), edits])
+    return [ranked, [[c.id, parsed] for c, parsed in clusters.order]]
+
+
+def varied() -> Sequence[tuple[str, str]]:
+    chance = Random(11)
+    return [(f"{n}.src", program(*chance.choices(PIECES, k=2))) for n in range(10)]
+
+
+@pytest.fixture(scope="module")
+def usual() -> object:
+    """What this process tells of the varied programs."""
+    return told(cluster(survey_texts(varied(), PRELIMINARY)))
+
+
+def test_ten_runs_give_the_same(usual: object) -> None:
+    """The same failures give the same clusters, proposals and order, time after time."""
+    found = survey_texts(varied(), PRELIMINARY)
+    for _ in range(9):
+        assert usual == told(cluster(found))
+
+
+@pytest.mark.parametrize("seed", ["0", "1", "4711"])
+def test_hashing_does_not_matter(usual: object, seed: str) -> None:
+    """Python's hashing is another in every process; the clusters are not."""
+    done = subprocess.run(
+        [sys.executable, "-c", TELL],
+        input=json.dumps(varied()),
+        env=os.environ | {"PYTHONHASHSEED": seed},
+        capture_output=True,
+        text=True,
+        check=True,
+        encoding="utf-8",
+    )
+    assert usual == json.loads(done.stdout)

@@ -1,0 +1,213 @@
+"""The facts of KRL, and the cutting of lines they rest on."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from recovery.negatives.language_facts import adjacent, violation
+from recovery.negatives.negatives import load
+from recovery.negatives.tokens import lines
+from support.files.decode import Source, decode
+
+CORPUS = Path(__file__).parents[3] / "corpus"
+SPELLINGS = {
+    "name": "COUNT",
+    "number": "7",
+    "string": '"A"',
+    "bits": "'B1'",
+    "enum": "#ON",
+    "truth": "TRUE",
+    "type": "INT",
+    "any": "COUNT",
+    "start": "",
+    "end": "",
+}
+
+
+def in_routine(body: str) -> str:
+    return f"DEF NEG()\n{body}\nEND\n"
+
+
+def test_own_programs_break_no_fact() -> None:
+    """The facts hold for every program of the own corpus."""
+    broken = {}
+    checked = 0
+    for path in (CORPUS / "programs").rglob("*"):
+        if path.suffix.lower() in (".src", ".dat", ".sub"):
+            source = decode(path.read_bytes())
+            assert isinstance(source, Source), path
+            checked += 1
+            if found := violation(source.text):
+                broken[path.name] = found
+    assert {} == broken
+    assert checked > 50
+
+
+def test_grammatical_negatives_break_no_fact() -> None:
+    """What only the checker or the run can reject breaks no fact of the syntax."""
+    grammatical = [n for n in load(CORPUS / "negatives") if n.phase != "parse"]
+    assert len(grammatical) > 50
+    assert [] == [(n.path, violation(n.text)) for n in grammatical if violation(n.text)]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "STEP = STEP + 1",
+        "FOR STEP = STEP TO STEP STEP STEP\nENDFOR",
+        "FOR I = STEP TO 9 STEP -2\nENDFOR",
+        "WAIT FOR DELAY",
+        "TRIGGER WHEN PATH = PATH DELAY = DELAY DO PRIO = 1 PRIO = -1",
+        "INTERRUPT DECL WHEN WHEN DO DO ON()",
+        "MODE = #DEFAULT\nMODE = #ENDIF\nMODE = # STOP",
+        "SETUP.END = LIMITS.LOOP\nSETUP.IF = TO",
+        'RECORD = {END 1, DEFAULT -2, INT {IF TRUE, ELSE "THEN"}}',
+        "TIME_BLOCK END = 3\nCONST_VEL END = -4 ONSTART",
+        "STOP WHEN PATH = 50 IF $IN[1] == FALSE",
+        "SPLINE = 7\nSLIN.X = 8\nSPL[1] = 9",
+        'MESSAGE("THEN ENDIF (", , , TEXT[])',
+        'X[1,] = Y[,2]\nTEXT[] = "a;b" ; ENDIF (',
+        "IF A=>B THEN\nENDIF",
+        "MASK = 'B 110' B_AND B_NOT 'HFF'",
+        "A = -B * -C - -1\nA = NOT -B",
+        "LIN (A:B):C C_DIS\nPTP (A)\nPTP_REL {X 1} C_PTP C_DIS",
+        "LIN_REL {X 1} #BASE\nCIRC A, B, CA 90 C_ORI",
+        "SPTP P WITH $VEL.CP = 1, $ACC.CP = 2 C_SPL",
+        "SPLINE WITH $VEL.CP = 1\nSPL A\nENDSPLINE C_SPL",
+        "REPEAT\nUNTIL DONE",
+        "SWITCH N\n\n; none yet\nCASE 1, -2\nDEFAULT\nENDSWITCH",
+        "AGAIN:\nGOTO AGAIN",
+        "INTERRUPT DECL 5 WHEN NOT $IN[1] DO WORK()\nGLOBAL INTERRUPT DECL N WHEN X DO Y = 1",
+        'MOVE_IT DEVICE[] "A" "B" 0',
+        "A = .5 + 1. * 1E-3",
+        "BRAKE F\nCONTINUE\nHALT\nRESUME\nRETURN -X",
+        "DECL INT I, A[2,3]\nGLOBAL E6POS P\nPOS Q\nSTRUC S INT END, REAL IF[2]\nENUM E ON, ELSE",
+        "COPEN(:CHANNEL_1, HANDLE)",
+    ],
+)
+def test_valid_text_breaks_no_fact(body: str) -> None:
+    """Soft keywords, old spellings and rare forms of KRL break no fact."""
+    assert violation(in_routine(body)) is None
+
+
+def test_files_may_hold_little_or_much() -> None:
+    """Empty files, headers, comments, several routines and any line ends break no fact."""
+    assert violation("") is None
+    assert violation("&ACCESS RVP\n&REL 3 ) = (\n; nothing (\n") is None
+    assert violation("GLOBAL DEF A ( )\rEND\r\r\nDEFFCT INT[] B(X:IN)\r\nENDFCT") is None
+    assert violation('DEFDAT A PUBLIC\nINT I = 3, J = 4\nTEXT[] = "x"\nENDDAT\n') is None
+
+
+@pytest.mark.parametrize(
+    ("body", "line", "fact"),
+    [
+        ("X = 1 * / 2", 2, "an operator has an operand behind it"),
+        ("X = 1\nX = (1", 3, "a bracket is closed on its line"),
+        ("X = [1)", 2, "a closing bracket belongs to an opening one"),
+        ('X = "1', 2, "a string is closed on its line"),
+        ("IF X = 1 THEN\nENDIF", 2, "an expression has no equals sign"),
+        ("IF X == 1\nENDIF", 2, "THEN ends the line of IF"),
+        ("IF X THEN Y = 1\nENDIF", 2, "nothing follows this word"),
+        ("WHILE X THEN\nENDWHILE", 2, "THEN ends the line of IF"),
+        ("WHILE X DO\nENDWHILE", 2, "two operands have an operator"),
+        ("FOR I = 1 STEP 2\nENDFOR", 2, "FOR has TO"),
+        ("FOR I == 1 TO 2\nENDFOR", 2, "an equals sign gives the counter"),
+        ("FOR I = 1 TO 2 STEP = 2\nENDFOR", 2, "an expression has no equals sign"),
+        ("FOR I = 1 TO 2 BY 2\nENDFOR", 2, "two operands have an operator"),
+        ("WAIT X", 2, "FOR or SEC follows WAIT"),
+        ("WAIT SEC", 2, "WAIT waits for something"),
+        ("INTERRUPT 5 ON", 2, "INTERRUPT is followed by"),
+        ("INTERRUPT DECL 5 DO X()", 2, "INTERRUPT DECL has WHEN"),
+        ("INTERRUPT ON = 5", 2, "an equals sign has no place"),
+        ("TRIGGER DISTANCE = 0 DELAY = 0 DO X()", 2, "WHEN follows TRIGGER"),
+        ("TRIGGER WHEN DISTANCE = 0 DELAY = 0 X()", 2, "TRIGGER has DO"),
+        ("GOTO A B", 2, "GOTO names one label"),
+        ("PTP P X = 1", 2, "a motion gives values only behind WITH"),
+        ("A = B = C", 2, "an expression has no equals sign"),
+        ("A = B HALT", 2, "two operands have an operator"),
+        ("A = 1 + ENDIF", 2, "a reserved word is no operand"),
+        ("A = INT", 2, "a predefined type is no operand"),
+        ("A = MAX(REAL)", 2, "a reserved word is no operand"),
+        ("A[1] TRUE", 2, "a line that begins with a variable"),
+        ("$OUT[1]", 2, "a line that begins with a variable"),
+        ("A.B + 1", 2, "a line that begins with a variable"),
+        ("A == 1", 2, "an expression is no statement"),
+        ("A() B()", 2, "a call is followed by nothing"),
+        ("A(1) = 2", 2, "a call is followed by nothing"),
+        ("IF X THEN\nLOOP\nENDIF\nENDLOOP", 4, "ENDLOOP closes its block"),
+        ("IF X THEN\nELSE\nELSE\nENDIF", 4, "ELSE stands once"),
+        ("LOOP\nELSE\nENDLOOP", 3, "ELSE stands once"),
+        ("CASE 1", 2, "CASE stands in a SWITCH"),
+        ("SWITCH X\nA = 1\nCASE 1\nENDSWITCH", 3, "SWITCH is followed by its first CASE"),
+        ("SPLINE\nEND", 3, "ENDSPLINE closes its block"),
+        ("END\nA = 1", 3, "nothing stands outside"),
+        ("DEF B()\nEND", 2, "END closes its block before the next DEF"),
+        ("END\nDEF B", 3, "the head of a routine ends with its parentheses"),
+        ("END\nDEF B()\nREPEAT", 5, "UNTIL closes its block"),
+        ("END\nDEFDAT B\nLOOP\nENDLOOP\nENDDAT\nDEF C()", 4, "a data list has no statements"),
+        ("END\nDEF B()\nEND\nDEFDAT C", 6, "ENDDAT closes its block"),
+    ],
+)
+def test_broken_facts_are_named(body: str, line: int, fact: str) -> None:
+    """Every kind of fact is noticed, at its line and by its name."""
+    found = violation(in_routine(body))
+    assert found is not None
+    assert line == found.line
+    assert found.fact.startswith(fact)
+
+
+def test_the_last_line_tells_that_a_block_is_open() -> None:
+    """A program that ends too early breaks a fact."""
+    found = violation("DEF A()\nX = 1\n")
+    assert found is not None
+    assert "END closes its block" == found.fact
+
+
+def test_every_pair_of_the_table_can_occur() -> None:
+    """Each pair of kinds is met when its tokens are written side by side, and breaks a fact."""
+    for left, right in adjacent():
+        text = f"{SPELLINGS.get(left, left)} {SPELLINGS.get(right, right)}".strip()
+        (line,) = lines(text)
+        kinds = ["start", *line.kinds, "end"]
+        wanted = (left, "name" if right == "any" else right)
+        assert wanted in pairwise(kinds), text
+        assert violation(in_routine(text)) is not None, text
+
+
+def test_table_is_in_its_form() -> None:
+    """The table has three columns, a reason in every row, and no pair twice."""
+    path = Path(__file__).parents[3] / "recovery" / "negatives" / "adjacent.tsv"
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    assert "left\tright\treason" == head
+    assert [] == [row for row in rows if len(row.split("\t")) != 3 or not row.split("\t")[2]]
+    pairs = [(a, b) for row in rows for a in row.split("\t")[0].split() for b in _right(row)]
+    assert len(pairs) == len(set(pairs))
+
+
+def _right(row: str) -> list[str]:
+    return row.split("\t")[1].split()
+
+
+@pytest.mark.parametrize(
+    ("text", "lead", "kinds"),
+    [
+        ("", "", ""),
+        ("  ; IF", "", ""),
+        (" &ACCESS RVP", "", ""),
+        ('x = "a;b" ; c', "X", "name = string"),
+        ("global interrupt decl 3", "INTERRUPT", "name name DECL number"),
+        ("DECL GLOBAL ENUM E IF, END", "ENUM", "DECL name name name name , name"),
+        ("R = {IF 1, X: THEN 'B1'}", "R", "name = { name number , name : name bits }"),
+        ("A.ENDIF=#IF", "A", "name . name = enum"),
+        ("END END", "END", "END name"),
+        ("a=<b<>c>=1.5E-3", "A", "name =< name <> name >= number"),
+        ("True int", "TRUE", "truth type"),
+        ('("', "", "( other"),
+    ],
+)
+def test_lines_are_cut_into_kinds(text: str, lead: str, kinds: str) -> None:
+    """Words are reserved only where they cannot be names; comments and headers have no tokens."""
+    (line,) = lines(text)
+    assert lead == line.lead
+    assert kinds == " ".join(line.kinds)

@@ -1,0 +1,86 @@
+"""Which rules read a few tokens, as a whole sentence or as the beginning of one."""
+
+import pytest
+
+from grammar.notation.g4 import read, read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.parser.lexer import SKIPPED
+from grammar.parser.recognizer import Recognizer
+from recovery.proposals.rule_matcher import Readers
+
+RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
+READERS = Readers(RECOGNIZER)
+
+
+def kinds_of(text: str) -> tuple[int, ...]:
+    lexer = RECOGNIZER.lexer
+    return tuple(kind for x in lexer.lexemes(text) if (kind := lexer.kinds[x]) != SKIPPED)
+
+
+@pytest.mark.parametrize(
+    ("text", "inside", "outside"),
+    [
+        ("1", {"literal", "primary", "factor", "sum", "expression"}, {"variable", "index", "call"}),
+        ("A", {"variable", "target", "type", "expression"}, {"literal", "call", "relation"}),
+        ("[ 1 ]", {"index"}, {"variable", "expression"}),
+        ("F ( )", {"call", "expression", "interruptAction"}, {"variable", "statement"}),
+        ("A 1", {"component"}, {"expression", "variable"}),
+        ("1 +", set(), {"sum", "expression"}),
+    ],
+)
+def test_rules_are_those_of_which_the_tokens_are_a_sentence(
+    text: str, inside: set[str], outside: set[str]
+) -> None:
+    """A rule is found when the tokens are the whole of it, no more and no less."""
+    found = READERS.rules_for(kinds_of(text))
+    assert inside <= found
+    assert not outside & found
+
+
+def test_a_block_is_known_by_the_line_that_opens_it() -> None:
+    """The rules of several lines that begin with a line, and no others."""
+    opened = READERS.opened_by(kinds_of("IF A THEN\n"))
+    assert "ifStatement" in opened
+    assert not {"forStatement", "simpleStatement", "expression"} & set(opened)
+    assert "loopStatement" in READERS.opened_by(kinds_of("LOOP\n"))
+    assert "ifStatement" not in READERS.opened_by(kinds_of("IF A\n"))
+    assert "halt" not in READERS.opened_by(kinds_of("HALT"))
+
+
+def test_what_carries_a_value_is_an_operand() -> None:
+    """Names and numbers are operands, words and signs are none."""
+    [name], [number], [word], [sign] = map(kinds_of, ("A", "1", "PTP", "="))
+    assert [True, True, False, False] == [READERS.is_operand(k) for k in (name, number, word, sign)]
+
+
+def test_rules_of_values_read_names_and_more() -> None:
+    """A rule of names alone is none of them, nor one that reads no name."""
+    assert {"expression", "primary"} <= READERS.of_values
+    assert not {"literal", "variable"} & READERS.of_values
+
+
+def test_a_list_of_all_words_tells_nothing() -> None:
+    """That a rule which reads any keyword reads this one is no meaning of its own."""
+    listed = Readers(
+        Recognizer(
+            read("""grammar S;
+program : (word '=' value NEWLINE)* EOF ;
+value : NAME | truth ;
+truth : TRUE ;
+word : OFF | ON | STOP | TRUE | TURN ;
+OFF : 'OFF' ;
+ON : 'ON' ;
+STOP : 'STOP' ;
+TRUE : 'TRUE' ;
+TURN : 'TURN' ;
+ASSIGN : '=' ;
+NAME : [A-Z]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+""")
+        )
+    )
+    true, stop = (listed.recognizer.lexer.kind_of[word] for word in ("TRUE", "STOP"))
+    assert {"word"} == listed.careless
+    assert [True, False] == [listed.means_more((kind,)) for kind in (true, stop)]
+    assert [True, False] == [listed.may_be_a_name(kind) for kind in (true, stop)]

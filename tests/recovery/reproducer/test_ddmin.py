@@ -1,0 +1,78 @@
+"""Shrinking: what is left passes, and nothing of it can go."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from recovery.reproducer.ddmin import shrunk, without_loops, without_stretches
+
+
+def test_stretches_go_that_the_test_does_not_need() -> None:
+    """Of a hundred items the two that the test asks for are left, in their order."""
+    assert without_stretches(list(range(100)), lambda left: {17, 80} <= set(left)) == [17, 80]
+
+
+def test_a_whole_stretch_goes_where_no_part_of_it_can() -> None:
+    """Items that can only go all at once go."""
+    block = {3, 4, 5, 6}
+
+    def all_or_none(left: list[int]) -> bool:
+        return 0 in left and (block <= set(left) or not block & set(left))
+
+    assert without_stretches(list(range(10)), all_or_none) == [0]
+
+
+def test_pairs_go_together() -> None:
+    """Brackets around something that stays go, though neither can go alone."""
+
+    def balanced(left: list[str]) -> bool:
+        return "x" in left and left.count("(") == left.count(")")
+
+    assert shrunk(list("a(b(x)c)"), [], balanced) == ["x"]
+
+
+def test_a_substitute_takes_the_place_of_a_stretch() -> None:
+    """An operand stands for an expression where something has to stand."""
+
+    def an_operand_between(left: list[str]) -> bool:
+        text = "".join(left)
+        return text in {"[x]", "[a+b]", "[a+b+c]"}
+
+    assert shrunk(list("[a+b+c]"), ["x"], an_operand_between) == ["[", "x", "]"]
+
+
+def test_a_substitute_of_the_same_length_is_left_alone() -> None:
+    """A single item is not exchanged: the result would be no shorter."""
+    assert shrunk(["a"], ["x"], lambda left: len(left) == 1) == ["a"]
+
+
+def test_what_cannot_be_made_shorter_stays() -> None:
+    """Where nothing else passes, the items come back."""
+    items = list("abc")
+    assert shrunk(items, ["x"], lambda left: left == items) == ["a", "b", "c"]
+
+
+@given(
+    st.lists(st.integers(0, 9), max_size=60),
+    st.lists(st.frozensets(st.integers(0, 9), min_size=1, max_size=3), max_size=4),
+)
+def test_the_result_passes_and_is_minimal(items: list[int], wanted: list[frozenset[int]]) -> None:
+    """Whatever is asked of the items, the result has it and has it no longer without one item."""
+
+    def passes(left: list[int]) -> bool:
+        return all(want & set(left) for want in wanted)
+
+    if not passes(items):
+        return
+    left = shrunk(items, [], passes)
+    assert passes(left)
+    assert [i for i in range(len(left)) if passes(left[:i] + left[i + 1 :])] == []
+
+
+def test_loops_go_in_one_pass() -> None:
+    """Of what leads from a place back to it nothing is left."""
+    assert without_loops("1+2+3;", [0, 1, 0, 1, 0, 1]) == ["3", ";"]
+
+
+def test_without_equal_places_nothing_goes() -> None:
+    """A line that never comes back to where it was stays as it is."""
+    assert without_loops("abc", [0, 1, 2]) == ["a", "b", "c"]

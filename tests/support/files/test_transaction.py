@@ -1,0 +1,126 @@
+"""Several files written together: all of them, or none."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from support.files.transaction import JournalError, finish, write_together
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
+
+
+def test_files_are_made_changed_and_removed(tmp_path: Path) -> None:
+    """What is as it was is not touched, and nothing is left beside the files."""
+    for name in ("old.txt", "same.txt", "gone.txt"):
+        (tmp_path / name).write_bytes(b"1")
+    before = (tmp_path / "same.txt").stat().st_mtime_ns
+    new = tmp_path / "folder" / "new.txt"
+    changed = write_together(
+        {
+            tmp_path / "gone.txt": None,
+            tmp_path / "never.txt": None,
+            new: b"2",
+            tmp_path / "old.txt": b"3",
+            tmp_path / "same.txt": b"1",
+        }
+    )
+    assert {"folder/new.txt": b"2", "old.txt": b"3", "same.txt": b"1"} == content(tmp_path)
+    assert [tmp_path / "gone.txt", new, tmp_path / "old.txt"] == changed
+    assert before == (tmp_path / "same.txt").stat().st_mtime_ns
+
+
+def test_where_one_fails_none_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was exchanged before the failure is put back, what was made is removed."""
+    (tmp_path / "a.txt").write_bytes(b"1")
+    (tmp_path / "b.txt").write_bytes(b"2")
+    (tmp_path / "d.txt").write_bytes(b"4")
+    before = content(tmp_path)
+    exchange = Path.replace
+
+    def failing(self: Path, target: Path) -> Path:
+        if target.name == "c.txt":
+            raise OSError(28, "No space left on device")
+        return exchange(self, target)
+
+    monkeypatch.setattr(Path, "replace", failing)
+    with pytest.raises(OSError, match="No space"):
+        write_together(
+            {
+                tmp_path / "a.txt": b"new",
+                tmp_path / "b.txt": None,
+                tmp_path / "new.txt": b"new",
+                tmp_path / "c.txt": b"new",
+                tmp_path / "d.txt": b"new",
+            }
+        )
+    assert before == content(tmp_path)
+
+
+def test_where_nothing_can_be_laid_ready_nothing_is_touched(tmp_path: Path) -> None:
+    """A folder that cannot be made stops it before the first exchange."""
+    (tmp_path / "a.txt").write_bytes(b"1")
+    with pytest.raises(OSError, match=r"a\.txt"):
+        write_together({tmp_path / "a.txt": b"2", tmp_path / "a.txt" / "b.txt": b"3"})
+    assert {"a.txt": b"1"} == content(tmp_path)
+
+
+KILLED = """
+import os, sys
+from pathlib import Path
+from support.files.transaction import write_together
+left = int(sys.argv[2])
+exchange = Path.replace
+def dying(self, target):
+    global left
+    if left == 0:
+        os._exit(9)
+    left -= 1
+    return exchange(self, target)
+Path.replace = dying
+folder = Path(sys.argv[1])
+write_together({folder / "a": b"2", folder / "b": b"2", folder / "gone": None},
+               journal=folder / ".journal")
+"""
+
+
+@pytest.mark.parametrize("exchanges", range(5))
+def test_a_killed_process_has_changed_all_or_nothing(tmp_path: Path, exchanges: int) -> None:
+    """Killed at any exchange: what `finish` then leaves is all old or all new."""
+    for name in ("a", "b", "gone"):
+        (tmp_path / name).write_bytes(b"1")
+    command = [sys.executable, "-c", KILLED, str(tmp_path), str(exchanges)]
+    done = subprocess.run(command, check=False)
+    assert (9 if exchanges < 3 else 0) == done.returncode
+    finish(tmp_path / ".journal")
+    after = {p.name: p.read_bytes() for p in tmp_path.iterdir() if not p.name.endswith(".part")}
+    old, new = {"a": b"1", "b": b"1", "gone": b"1"}, {"a": b"2", "b": b"2"}
+    assert (old if exchanges == 0 else new) == after
+
+
+@pytest.mark.parametrize("wanted", ["[", "[1]", '{"relative": null}', "[" * 50_000])
+def test_a_damaged_journal_is_not_followed(tmp_path: Path, wanted: str) -> None:
+    """It is named, and stays for somebody to look at."""
+    journal = tmp_path / "ledger" / ".journal"
+    journal.parent.mkdir()
+    journal.write_text(wanted, encoding="utf-8")
+    with pytest.raises(JournalError, match=r"\.journal"):
+        finish(journal)
+    assert journal.is_file()
+
+
+def test_a_journal_has_no_power_outside(tmp_path: Path) -> None:
+    """A ledger that somebody sends may not remove or exchange files elsewhere."""
+    journal = tmp_path / "grammar" / "ledger" / ".journal"
+    journal.parent.mkdir(parents=True)
+    outside = tmp_path / "outside"
+    outside.write_bytes(b"1")
+    for name in (outside, journal.parent / ".." / ".." / "outside"):
+        journal.write_text(json.dumps({str(name): None}), encoding="utf-8")
+        with pytest.raises(JournalError):
+            finish(journal)
+    assert b"1" == outside.read_bytes()

@@ -1,0 +1,133 @@
+"""Work in other processes: every result once, in order, whoever dies."""
+
+import os
+import signal
+import socket
+import threading
+import time
+from contextlib import nullcontext
+from pathlib import Path
+
+import pytest
+
+from krl.cli import main
+from support.parallel import executor
+from support.parallel.executor import WorkersError, code_digest, in_order, meet
+
+
+def _double(number: int, folder: str) -> int:
+    """Twice the number; the first process that is given 3 dies of it."""
+    mark = Path(folder, "died")
+    if number == 3 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60)
+    return 2 * number
+
+
+def test_results_come_in_order_though_a_process_dies(tmp_path: Path) -> None:
+    """A process that is killed loses no result, and none comes twice."""
+    tasks = ((number, str(tmp_path)) for number in range(12))
+    assert [2 * n for n in range(12)] == list(in_order(_double, tasks, jobs=2))
+    assert (tmp_path / "died").exists()
+
+
+def _deadly(number: int) -> int:
+    """Twice the number; whoever is given 4 dies of it."""
+    if number == 4:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60)
+    return 2 * number
+
+
+def test_work_that_kills_every_process_is_given_up() -> None:
+    """A task that kills each process it is given to ends with one clear line."""
+    with pytest.raises(WorkersError, match="workers die again and again over the same work"):
+        list(in_order(_deadly, [(4,)], jobs=2))
+
+
+def test_what_kills_is_told_from_what_was_beside_it() -> None:
+    """Where a lost result can be replaced, only that of the task that kills is."""
+    done = in_order(_deadly, ((number,) for number in range(7)), jobs=2, lost=lambda n: -n)
+    assert [0, 2, 4, 6, -4, 10, 12] == list(done)
+
+
+@pytest.mark.parametrize("command", ["recover corpus/programs --no-start", "conform", "fuzz"])
+def test_no_scheduler_is_one_clear_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """An address where no scheduler answers is told as that."""
+    pytest.importorskip("distributed")
+    assert 2 == main([*command.split(), "--scheduler", "tcp://127.0.0.1:9"])
+    assert "krl: no Dask scheduler answers at tcp://127.0.0.1:9\n" == capsys.readouterr().err
+
+
+def test_release_is_told_by_code_and_tables() -> None:
+    """Two processes of one checkout have the same digest."""
+    (there,) = in_order(code_digest, [()], jobs=2)
+    assert code_digest() == there
+
+
+@pytest.mark.parametrize("answer", [b"", b"\xff" * 64, b"\x00" * 64, b"HTTP/1.1 400 Bad\r\n\r\n"])
+def test_what_answers_and_is_no_scheduler_is_told(
+    monkeypatch: pytest.MonkeyPatch, answer: bytes
+) -> None:
+    """A server that says nothing, or something else than a scheduler, is not waited for."""
+    monkeypatch.setattr("support.parallel.executor._GREETING", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        callers: list[socket.socket] = []
+
+        def reply() -> None:
+            callers.append(server.accept()[0])
+            callers[0].sendall(answer)
+
+        replying = threading.Thread(target=reply)
+        replying.start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        began = time.monotonic()
+        with pytest.raises(WorkersError, match=f"^no Dask scheduler answers at {address}$"):
+            meet(address)
+        assert time.monotonic() - began < 5
+        replying.join()
+        callers[0].close()
+
+
+class _Death(Exception):
+    """Whoever did a task has died."""
+
+
+class _Told:
+    """Takes tasks and tells of it; whoever is first given 0 dies of it."""
+
+    ahead = 4
+    chances = 1
+    broken: tuple[type[BaseException], ...] = (_Death,)
+
+    def __init__(self) -> None:
+        self.log: list[tuple[str, int]] = []
+
+    def submit(self, _function: object, task: tuple[int]) -> "_Result":
+        is_deadly = task == (0,) and ("out", 0) not in self.log
+        self.log.append(("out", task[0]))
+        return _Result(self.log, task[0], is_deadly)
+
+    def renew(self) -> None:
+        """Nobody new is needed."""
+
+
+class _Result:
+    def __init__(self, log: list[tuple[str, int]], number: int, is_deadly: bool) -> None:
+        self._log, self._number, self._is_deadly = log, number, is_deadly
+
+    def result(self) -> int:
+        self._log.append(("back", self._number))
+        if self._is_deadly:
+            raise _Death
+        return self._number
+
+
+def test_what_died_is_tried_again_when_nothing_else_is_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then it is known whether the task itself kills, and nobody beside it is taken along."""
+    crew = _Told()
+    monkeypatch.setattr(executor, "_crew", lambda _jobs, _scheduler: nullcontext(crew))
+    assert [0, 1, 2] == list(in_order(abs, ((n,) for n in range(3)), jobs=2))
+    again = len(crew.log) - 1 - crew.log[::-1].index(("out", 0))
+    assert {("back", 1), ("back", 2)} <= set(crew.log[:again])
