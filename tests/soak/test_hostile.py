@@ -155,7 +155,7 @@ def test_nothing_breaks_and_nothing_escapes(
     scratch = tmp_path / "reports" / "scratch"
     scratch.mkdir(parents=True)
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
-    monkeypatch.setattr(grammar.g4, "read", cache(g4.read))  # the same text thousandfold
+    monkeypatch.setattr(g4, "read", cache(g4.read))  # the same text thousandfold
     canary = put(tmp_path, "canary", b"alive")
     foundry, watch, guard = Foundry(), Watch(), Guard(tmp_path)
     went, kinds, worked = Counter[tuple[str, int]](), Counter[str](), dict.fromkeys(ENTRIES, 0.0)
