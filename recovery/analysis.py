@@ -18,9 +18,10 @@ from recovery.clustering.negative_score import judge_of
 from recovery.growth.answers import answered
 from recovery.growth.growth import Steps
 from recovery.negatives.negatives import Negative
-from recovery.survey.result_cache import Memory, key_of
+from recovery.survey.result_cache import key_of
 from recovery.survey.survey import Survey
 from recovery.survey_record import record_of
+from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, unheard
 
 __all__ = ["analyse", "with_answers"]
@@ -42,11 +43,11 @@ def analyse(
     if cache is None:
         return _worked_out(found, negatives, grammar_name, on_found, on_done)
     digest = _digest(found, negatives, grammar_name)
-    with Memory(cache, key_of(found.grammar)) as memory:
-        record = memory.recall_record(digest)
+    with ResultStore(cache, key_of(found.grammar)) as store:
+        record = store.get_record(digest)
         if record is None:
             record = _worked_out(found, negatives, grammar_name, on_found, on_done)
-            memory.keep_record(digest, record)
+            store.put([(digest, record)])
     return {**record, "seconds": round(found.seconds, 3)}
 
 

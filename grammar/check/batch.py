@@ -24,9 +24,9 @@ from grammar.check.result_cache import Outcome, read_outcome, state_of, written_
 from grammar.check.suppression_comments import silenced
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.link import File, link
-from recovery.survey.result_cache import Memory
 from support.files import archives
 from support.files.discovery import Found, Skipped, discover, read
+from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, unheard
 from support.parallel.sticky_pool import Lanes
 
@@ -83,15 +83,15 @@ def checkup(
     size = sum(candidate.size for candidate in found)
     wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     outcomes = []
-    with _memory(cache) as memory, Lanes(wanted) as lanes:
-        for outcome in _run(_projects(found), lanes, memory, wishes):
+    with _store(cache) as store, Lanes(wanted) as lanes:
+        for outcome in _run(_projects(found), lanes, store, wishes):
             outcomes.append(outcome)
             on_done(outcome.files + len(outcome.skipped))
     return _together(outcomes, skipped)
 
 
-def _memory(cache: Path | None) -> AbstractContextManager[Memory | None]:
-    return nullcontext() if cache is None else Memory(cache, "checkup")
+def _store(cache: Path | None) -> AbstractContextManager[ResultStore | None]:
+    return nullcontext() if cache is None else ResultStore(cache, "checkup")
 
 
 def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
@@ -219,7 +219,7 @@ class _Project:
 
 
 def _run(
-    projects: Iterator[list[Found]], lanes: Lanes, memory: Memory | None, wishes: Wishes
+    projects: Iterator[list[Found]], lanes: Lanes, store: ResultStore | None, wishes: Wishes
 ) -> Iterator[Outcome]:
     """The outcomes of projects, in their order; only so many wait for their turn."""
     waiting: deque[_Project | Outcome] = deque()
@@ -232,13 +232,13 @@ def _run(
             return project
         size -= project.size
         outcome = project.outcome()
-        if memory is not None:
-            memory.keep_record(project.place, written_outcome(outcome, project.state))
+        if store is not None:
+            store.put([(project.place, written_outcome(outcome, project.state))])
         return outcome
 
     for number, members in enumerate(projects):
         project = _Project(members, wishes)
-        record = memory.recall_record(project.place) if memory is not None else None
+        record = store.get_record(project.place) if store is not None else None
         known = None if record is None else read_outcome(record, project.state)
         if known is not None:
             waiting.append(known)

@@ -7,21 +7,16 @@ worked out again.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
-from functools import cache
-from importlib import resources
-from importlib.resources.abc import Traversable
 from typing import Any
 
 from grammar.check.project_check import Content, Wishes
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
+from support.files.code_digest import code_digest
 from support.files.discovery import Skipped, digest
 
 __all__ = ["Outcome", "read_outcome", "state_of", "written_outcome"]
-
-#: What findings are made of. Any change to it counts: a stale finding is worse than none.
-_SUFFIXES = (".py", ".tsv", ".g4", ".lark")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,29 +36,11 @@ class Outcome:
 
 def state_of(contents: Sequence[Content], wishes: Wishes) -> str:
     """What an outcome depends on: all files of the project, our code and tables, the wishes."""
-    state = hashlib.sha256(f"{_ours()} {wishes}".encode())
+    state = hashlib.sha256(f"{code_digest('support', 'grammar')} {wishes}".encode())
     for content in contents:
         line = f"\n{digest(content.data)} {content.origin}\t{content.path}"
         state.update(line.encode("utf-8", "surrogatepass"))
     return state.hexdigest()
-
-
-@cache
-def _ours() -> str:
-    """The digest of our own code and tables."""
-    code = hashlib.sha256()
-    for package in ("grammar", "recovery"):
-        for file in sorted(_below(resources.files(package)), key=str):
-            code.update(file.read_bytes())
-    return code.hexdigest()
-
-
-def _below(folder: Traversable) -> Iterator[Traversable]:
-    for entry in folder.iterdir():
-        if entry.is_dir():
-            yield from _below(entry)
-        elif entry.name.endswith(_SUFFIXES):
-            yield entry
 
 
 def written_outcome(outcome: Outcome, state: str) -> dict[str, Any]:

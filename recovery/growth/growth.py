@@ -21,8 +21,9 @@ from recovery.ledger.construct import Construct
 from recovery.ledger.construct_record import START_RECORD, construct_record
 from recovery.ledger.lookahead import decisions, share_decided
 from recovery.ledger.metrics import MEANINGS, metrics
-from recovery.survey.result_cache import Memory, key_of
+from recovery.survey.result_cache import key_of
 from support.files.discovery import Skipped
+from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, unheard
 
 __all__ = ["Steps", "growth"]
@@ -60,11 +61,11 @@ def growth(
         record = _record(read, skipped, start, steps)
     else:
         digest = _digest(read, skipped, start, steps)
-        with Memory(cache, key_of(start)) as memory:
-            kept = memory.recall_record(digest)
+        with ResultStore(cache, key_of(start)) as store:
+            kept = store.get_record(digest)
             record = kept or _record(read, skipped, start, steps)
             if kept is None:
-                memory.keep_record(digest, record)
+                store.put([(digest, record)])
     return {**record, "seconds": round(time.perf_counter() - began, 3)}
 
 

@@ -22,8 +22,9 @@ from grammar.notation.g4 import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.inclusion import fixed_texts_added, occurs
-from recovery.survey.result_cache import Memory, key_of
+from recovery.survey.result_cache import key_of
 from support.files.discovery import Found, Skipped, Source, decode, digest, discover, read
+from support.files.result_store import ResultStore
 from support.parallel.executor import in_order
 from support.parallel.progress import Progress, unheard
 
@@ -117,8 +118,8 @@ def read_through(
     if not grammars:
         raise ValueError("there is no grammar to read under")
     names = [grammar.sha256 for grammar in grammars]
-    with _memory(cache, grammars[0]) as memory:
-        known = [_recalled(memory, content, names) for content in contents]
+    with _store(cache, grammars[0]) as store:
+        known = [_recalled(store, content, names) for content in contents]
         blocks = list(_blocks(contents, known))
         on_found(sum(len(block.members) * len(block.missing) for block in blocks))
         jobs = jobs or _processes(blocks)
@@ -131,8 +132,8 @@ def read_through(
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
-            if memory is not None:  # after each run, so that a killed growth goes on from there
-                memory.keep_records(
+            if store is not None:  # after each run, so that a killed growth goes on from there
+                store.put(
                     (_key(member.content), known[member.index].record(names))
                     for member in block.members
                     if known[member.index].lasting
@@ -144,9 +145,9 @@ def read_through(
     ]
 
 
-def _memory(cache: Path | None, start: Grammar) -> AbstractContextManager[Memory | None]:
+def _store(cache: Path | None, start: Grammar) -> AbstractContextManager[ResultStore | None]:
     """Results hang on the first grammar of the row, which is the one that seldom changes."""
-    return nullcontext() if cache is None else Memory(cache, key_of(start))
+    return nullcontext() if cache is None else ResultStore(cache, key_of(start))
 
 
 def _processes(blocks: Iterable[_Block]) -> int:
@@ -194,9 +195,9 @@ def _key(content: Content) -> str:
     return f"timeline {content.digest}"
 
 
-def _recalled(memory: Memory | None, content: Content, names: Sequence[str]) -> _Known:
+def _recalled(store: ResultStore | None, content: Content, names: Sequence[str]) -> _Known:
     """What was found under these grammars before, in whatever row they stood."""
-    kept = memory.recall_record(_key(content)) if memory is not None else None
+    kept = store.get_record(_key(content)) if store is not None else None
     if kept is None:
         return _Known({}, "", tuple(range(len(names))))
     try:

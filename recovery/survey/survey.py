@@ -20,8 +20,9 @@ from grammar.notation import g4
 from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.failing_line import Failed, failures_of, source_lines
-from recovery.survey.result_cache import Kept, Memory, key_of
+from recovery.survey.result_cache import Kept, keep, key_of, recall
 from support.files.discovery import Found, Skipped, decode, digest, discover, read
+from support.files.result_store import ResultStore
 from support.parallel.executor import in_order, meet
 from support.parallel.progress import Progress, unheard
 
@@ -97,8 +98,8 @@ def survey(
     candidates = list(discover(roots))
     on_found(len(candidates))
     meet(scheduler)  # before anything is written
-    with _memory(cache, grammar) as memory:
-        gathered = _Gathered(memory)
+    with _store(cache, grammar) as store:
+        gathered = _Gathered(store)
         tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
         count = jobs or _processes(candidates)
         for done in in_order(_perform, tasks, jobs=count, scheduler=scheduler):
@@ -114,8 +115,8 @@ def _processes(candidates: Iterable[Found | Skipped]) -> int:
     return 1 if size < _SMALL else os.cpu_count() or 1
 
 
-def _memory(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[Memory | None]:
-    return nullcontext() if cache is None else Memory(cache, key_of(grammar))
+def _store(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[ResultStore | None]:
+    return nullcontext() if cache is None else ResultStore(cache, key_of(grammar))
 
 
 def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Survey:
@@ -167,8 +168,8 @@ class _Content:
 class _Gathered:
     """Results so far, by content."""
 
-    def __init__(self, memory: Memory | None) -> None:
-        self.memory = memory
+    def __init__(self, store: ResultStore | None) -> None:
+        self.store = store
         self.contents: dict[str, _Content] = {}
         self.skipped: list[Skipped] = []
         self.forms: dict[Form, int] = {}
@@ -184,7 +185,7 @@ class _Gathered:
             known.places.append(place)
             return False
         self.contents[key] = _Content(found, [place], len(data))
-        kept = self.memory.recall(key) if self.memory else None
+        kept = recall(self.store, key) if self.store else None
         if kept is not None:
             self._take(key, kept)
             return False
@@ -194,8 +195,8 @@ class _Gathered:
     def add(self, done: list[Kept]) -> None:
         """Take the results of the next task."""
         keys = [self.submitted.popleft() for _ in done]
-        if self.memory:
-            self.memory.keep(zip(keys, done, strict=True))
+        if self.store:
+            keep(self.store, zip(keys, done, strict=True))
         for key, kept in zip(keys, done, strict=True):
             self._take(key, kept)
         self.read_now += len(done)

@@ -8,7 +8,6 @@ and a task that kills whoever is given it is found, since it is then done with n
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import logging
 import multiprocessing
 import platform
@@ -23,23 +22,21 @@ from concurrent.futures import (
     ThreadPoolExecutor,
 )
 from contextlib import contextmanager
-from functools import cache
-from importlib import resources
 from typing import Any, Final, Protocol, TypeVar, TypeVarTuple
 
+from support.files.code_digest import code_digest
 from support.parallel.parent_watch import end_with_parent
 
-__all__ = ["WorkersError", "code_digest", "in_order", "meet"]
+__all__ = ["WorkersError", "in_order", "meet"]
 
 _T = TypeVar("_T")
 _Ts = TypeVarTuple("_Ts")
 
-_PACKAGES: Final = ("grammar", "interp", "recovery", "conformance")
+_PACKAGES: Final = ("support", "grammar", "interp", "recovery", "conformance")
 #: Seconds after which it is asked whether anybody is left who could bring a result.
 _PATIENCE: Final = 20.0
 #: Seconds that a scheduler may take to greet us.
 _GREETING: Final = 5.0
-_SOURCES: Final = (".py", ".g4", ".lark", ".tsv", ".toml", ".dat", ".xml")
 
 
 class WorkersError(Exception):
@@ -259,7 +256,7 @@ class _Cluster:
             raise WorkersError(f"the scheduler at {address} has no workers")
         self.ahead = 2 * cores
         try:
-            client.run(_is_like, code_digest())
+            client.run(_is_like, _release())
         except WorkersError:
             raise
         except Exception as error:  # whatever a worker without us makes of it
@@ -267,7 +264,7 @@ class _Cluster:
 
     def submit(self, function: Callable[..., Any], task: tuple[Any, ...]) -> _Promise:
         # not pure: Dask would keep what it takes for the same and answer from memory
-        future = self._client.submit(_there, code_digest(), function, task, pure=False)
+        future = self._client.submit(_there, _release(), function, task, pure=False)
         return _Awaited(future, self._client, self._address)
 
     def renew(self) -> None:
@@ -316,20 +313,10 @@ def _there(code: str, function: Callable[..., _T], task: tuple[Any, ...]) -> _T:
 
 def _is_like(code: str) -> None:
     """Raises `WorkersError` where this worker has other code than who asks."""
-    if code != code_digest():
+    if code != _release():
         raise WorkersError(f"a worker on {platform.node()} has another release of krl than this")
 
 
-@cache
-def code_digest() -> str:
-    """The SHA-256 of all modules and tables that a result may depend on."""
-    code = hashlib.sha256()
-    for package in _PACKAGES:
-        todo = [resources.files(package)]
-        while todo:
-            for entry in sorted(todo.pop().iterdir(), key=lambda entry: entry.name):
-                if entry.name.endswith(_SOURCES):
-                    code.update(entry.name.encode() + entry.read_bytes())
-                elif entry.is_dir() and entry.name != "cases":
-                    todo.append(entry)
-    return code.hexdigest()
+def _release() -> str:
+    """What a result may depend on: all modules and tables of ours."""
+    return code_digest(*_PACKAGES)

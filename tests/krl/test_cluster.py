@@ -29,12 +29,12 @@ pytest.importorskip("distributed")
 
 
 #: What workers run first: whoever edits this checkout while it is tested is not another release.
-_SAME_RELEASE = "from recovery import workers; workers.code_digest = lambda: 'ours'"
+_SAME_RELEASE = "from support.parallel import executor; executor.code_digest = lambda *_: 'ours'"
 
 
 @pytest.fixture(autouse=True)
 def _same_release(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executor, "code_digest", lambda: "ours")
+    monkeypatch.setattr(executor, "code_digest", lambda *_: "ours")
 
 
 class _Cluster:
@@ -287,6 +287,6 @@ def test_workers_of_another_release_are_refused(
     cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What other code finds is not mixed with ours."""
-    monkeypatch.setattr(executor, "code_digest", lambda: "another")
+    monkeypatch.setattr(executor, "code_digest", lambda *_: "another")
     with pytest.raises(WorkersError, match="has another release of krl than this"):
         meet(cluster.address)

@@ -6,7 +6,6 @@ import pytest
 
 from grammar.notation import g4
 from recovery.survey import survey as survey_module
-from recovery.survey.result_cache import Memory, key_of
 from recovery.survey.survey import Survey, survey
 
 PRELIMINARY = g4.read_file(Path(g4.__file__).parents[1].joinpath("preliminary.g4"))
@@ -71,26 +70,3 @@ def test_a_damaged_file_is_put_aside(corpus: Path, tmp_path: Path, damage: bytes
     for file in cache.iterdir():
         file.write_bytes(damage)
     assert told(run(corpus, cache)) == told(run(corpus, None))
-
-
-def test_damage_that_sqlite_quotes_is_put_aside_too(tmp_path: Path) -> None:
-    """Its message holds the damaged bytes, which are no text."""
-    with Memory(tmp_path, "key"):
-        pass
-    base = tmp_path / "results.sqlite"
-    damaged = base.read_bytes().replace(b"PRIMARY KEY", b"PRIMARY K\xb5Y")
-    assert damaged != base.read_bytes()
-    base.write_bytes(damaged)
-    with Memory(tmp_path, "key") as memory:
-        memory.keep_record("a", {"files": 3})
-    with Memory(tmp_path, "key") as memory:
-        assert {"files": 3} == memory.recall_record("a")
-
-
-def test_records_come_back_whole(tmp_path: Path) -> None:
-    """A kept record is the record; another digest has none."""
-    record = {"clusters": [{"title": "FOR … STEP"}], "files": 3}
-    with Memory(tmp_path, key_of(PRELIMINARY)) as memory:
-        memory.keep_record("a", record)
-    with Memory(tmp_path, key_of(PRELIMINARY)) as memory:
-        assert (record, None) == (memory.recall_record("a"), memory.recall_record("b"))

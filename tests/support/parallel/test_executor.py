@@ -12,7 +12,7 @@ import pytest
 
 from krl.cli import main
 from support.parallel import executor
-from support.parallel.executor import WorkersError, code_digest, in_order, meet
+from support.parallel.executor import WorkersError, in_order, meet
 
 
 def _double(number: int, folder: str) -> int:
@@ -58,12 +58,6 @@ def test_no_scheduler_is_one_clear_line(command: str, capsys: pytest.CaptureFixt
     pytest.importorskip("distributed")
     assert 2 == main([*command.split(), "--scheduler", "tcp://127.0.0.1:9"])
     assert "krl: no Dask scheduler answers at tcp://127.0.0.1:9\n" == capsys.readouterr().err
-
-
-def test_release_is_told_by_code_and_tables() -> None:
-    """Two processes of one checkout have the same digest."""
-    (there,) = in_order(code_digest, [()], jobs=2)
-    assert code_digest() == there
 
 
 @pytest.mark.parametrize("answer", [b"", b"\xff" * 64, b"\x00" * 64, b"HTTP/1.1 400 Bad\r\n\r\n"])

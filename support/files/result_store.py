@@ -1,0 +1,92 @@
+"""Results kept from one run to the next, in one SQLite file a folder.
+
+A damaged or foreign file is put aside and begun anew, never trusted: what is in it can always be
+worked out again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+__all__ = ["ResultStore"]
+
+# What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
+_DAMAGE = (sqlite3.Error, UnicodeDecodeError)
+
+
+class ResultStore:
+    """JSON values by digest, below one key; a context manager.
+
+    The key says what all of them depend on besides what the digest is of: code, tables, a grammar.
+    What another key holds is not seen. A store that cannot be written to any more forgets.
+    """
+
+    def __init__(self, folder: Path, key: str) -> None:
+        self._key = key
+        self._file = folder / "results.sqlite"
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            self._base = self._opened()
+        except _DAMAGE:
+            with contextlib.suppress(OSError):
+                self._file.replace(self._file.with_suffix(".damaged"))
+            self._base = self._opened()
+
+    def _opened(self) -> sqlite3.Connection:
+        base = sqlite3.connect(self._file, timeout=30)
+        try:
+            base.execute("PRAGMA journal_mode=WAL")
+            base.execute(
+                "CREATE TABLE IF NOT EXISTS result"
+                " (key TEXT, digest TEXT, body BLOB, PRIMARY KEY (key, digest)) WITHOUT ROWID"
+            )
+            base.execute("SELECT key, digest, body FROM result LIMIT 1").fetchall()
+        except _DAMAGE:
+            base.close()
+            raise
+        return base
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._base.close()
+
+    def get(self, digest: str) -> object:
+        """The value kept under a digest; ``None`` where there is none that can be read."""
+        try:
+            row = self._base.execute(
+                "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
+            ).fetchone()
+            return None if row is None else json.loads(zlib.decompress(row[0]))
+        except (*_DAMAGE, zlib.error, ValueError, TypeError, RecursionError):
+            return None
+
+    def get_record(self, digest: str) -> dict[str, Any] | None:
+        """The value kept under a digest where it is an object of JSON, else ``None``."""
+        record = self.get(digest)
+        return record if isinstance(record, dict) else None
+
+    def put(self, values: Iterable[tuple[str, object]]) -> None:
+        """Keep values under their digests in place of what lay there: all of them, or none."""
+        with contextlib.suppress(*_DAMAGE), self._base:
+            self._base.executemany(
+                "INSERT OR REPLACE INTO result VALUES (?, ?, ?)",
+                ((self._key, digest, _packed(value)) for digest, value in values),
+            )
+
+
+def _packed(value: object) -> bytes:
+    return zlib.compress(json.dumps(value, separators=(",", ":")).encode(), 1)
