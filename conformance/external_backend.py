@@ -6,7 +6,7 @@
 
 An executor is made as ours are: ``MyExecutor(program, routine, limits, sink)`` gives an
 `interp.port.executor.Executor` for a checked program. A robot is made by ``MyRobot(machine,
-cycle)``, an `interp.robot.simulation.robots.Robot`. Each case is judged by what it expects, and
+cycle)``, an `interp.robot.simulation.robots.Robot`. Each case is evaluated by what it expects, and
 compared with the reference event by event: the tree interpreter, and the kinematic robot.
 """
 
@@ -16,8 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from conformance.judging.observation import Observation
-from conformance.judging.observe import (
+from conformance.evaluation.execution import (
     MakeExecutor,
     MakeRobot,
     Setup,
@@ -25,7 +24,8 @@ from conformance.judging.observe import (
     observe,
     observe_with,
 )
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import CaseResult, run_case
 from conformance.suite.case import CASES, Case, find_cases, selected
 
@@ -57,11 +57,11 @@ class Proof:
         ]
 
     def assert_conforms(self) -> None:
-        """Raise `NotConforming` where a case failed, or where none could be judged."""
-        judged = [result for one in self.results for result in one.results]
-        theirs = [one for one in judged if THEIRS in (one.executor, one.robot)]
+        """Raise `NotConforming` where a case failed, or where none could be evaluated."""
+        every = [result for one in self.results for result in one.results]
+        theirs = [one for one in every if THEIRS in (one.executor, one.robot)]
         if all(one.verdict == "skipped" for one in theirs):
-            raise NotConforming("no case could be judged")
+            raise NotConforming("no case could be evaluated")
         if self.failed:
             count = f"{len(self.failed)} of {len(self.results)} cases failed"
             raise NotConforming("\n".join([count, *self.failed]))

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from conformance.judging.observe import PROFILES
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.execution import PROFILES
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS
 from conformance.suite.registry import Rule, registry

@@ -14,8 +14,8 @@ from typing import Any, Final
 
 import pytest
 
-from conformance.judging.observe import EXECUTORS, FRONT, Setup, missing
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.execution import EXECUTORS, FRONT, Setup, missing
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import Result, run_case
 from conformance.suite.case import ENDINGS, Case, CaseError, read_case
 

@@ -1,4 +1,4 @@
-"""The record of a run of the judge: what ``krl conform --json`` writes and the page shows.
+"""The record of a conformance run: what ``krl conform --json`` writes and the page shows.
 
 CASES.md describes its fields. Others read it, so fields are added but not changed.
 """
@@ -12,9 +12,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from conformance.judging.observation import Observation
-from conformance.judging.path_geometry import drawn
-from conformance.judging.verdicts import VERDICTS
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.path_geometry import drawn
+from conformance.evaluation.verdicts import VERDICTS
 from conformance.lint import SUITES, coverage
 from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case

@@ -1,6 +1,6 @@
 """Recordings: what a real controller did with the cases, brought back as one JSON file.
 
-CASES.md tells how to make one, and what its fields are. A recording is judged as an executor is,
+CASES.md tells how to make one, and what its fields are. A recording is evaluated as an executor is,
 except for what it says that it did not watch: such expectations stay open. It can confirm or refute
 rules that are unconfirmed, which is what it is for.
 """
@@ -15,16 +15,16 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from conformance.judging.judge import judge
-from conformance.judging.observation import Event, Finding, Observation
-from conformance.judging.verdicts import verdict_of
+from conformance.evaluation.evaluator import evaluate
+from conformance.evaluation.observation import Event, Finding, Observation
+from conformance.evaluation.verdicts import verdict_of
 from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case
 from conformance.suite.registry import registry
 from interp.robot.simulation.tracking import PathRecord
 from support.files.untrusted import json_of, read_bytes
 
-__all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "judge_recording"]
+__all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "evaluate_recording"]
 
 FORMAT: Final = "krl-recording/1"
 #: Kinds of events that a recording may say it watched; docs/trace.md has all of them.
@@ -126,7 +126,7 @@ def _rows(
     return rows
 
 
-def judge_recording(
+def evaluate_recording(
     recording: Recording, cases: Sequence[Case]
 ) -> tuple[list[CaseResult], list[str]]:
     """The results of a recording, and what is wrong with it: cases that are unknown or changed."""
@@ -140,7 +140,7 @@ def judge_recording(
         if digest != case.digest:
             wrong.append(f"{name}: the case has changed since it was recorded")
             continue
-        checks = tuple(judge(case, seen))
+        checks = tuple(evaluate(case, seen))
         verdict, reason = verdict_of(case, checks)
         result = Result(recording.controller, seen.robot, verdict, reason, checks, 0.0, None, seen)
         results.append(CaseResult(case, (result,)))
@@ -157,7 +157,7 @@ class Answer:
 
 
 def answers(results: Iterable[CaseResult]) -> list[Answer]:
-    """What a recording answers of what was open, by rule; only where something was judged."""
+    """What a recording answers of what was open, by rule; only where something was evaluated."""
     met: dict[str, int] = {}
     against: dict[str, list[str]] = {}
     for one in results:

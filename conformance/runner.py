@@ -1,8 +1,8 @@
 """Runs cases: every executor with every robot, in parallel, the same results whoever runs them.
 
-Cases of phases parse and check have one front end and run once. Each result of phase run is judged
-by the case's expectations, and compared with that of the first executor on the same robot, and of
-the first robot: whatever the rule, executors that differ have failed.
+Cases of phases parse and check have one front end and run once. Each result of phase run is
+evaluated by the case's expectations, and compared with that of the first executor on the same
+robot, and of the first robot: whatever the rule, executors that differ have failed.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 from platform import node
 from typing import Final
 
-from conformance.judging.comparison import Divergence, first_divergence
-from conformance.judging.judge import Check, judge
-from conformance.judging.observation import Observation
-from conformance.judging.observe import FRONT, Setup, missing, observe
-from conformance.judging.verdicts import KnownFailures, Verdict, verdict_of
+from conformance.evaluation.evaluator import Check, evaluate
+from conformance.evaluation.execution import FRONT, Setup, missing, observe
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.trace_comparison import Divergence, first_divergence
+from conformance.evaluation.verdicts import KnownFailures, Verdict, verdict_of
 from conformance.suite.case import Case
 from support.parallel.executor import WorkersError, in_order
 
@@ -75,7 +75,7 @@ def run_case(
             continue
         begun = time.perf_counter()
         seen = _seen(see, case, setup)
-        checks = _judged(case, seen)
+        checks = _checks(case, seen)
         reason = known.reason(case.name, setup.executor, setup.robot)
         verdict, told = verdict_of(case, checks, reason)
         took = time.perf_counter() - begun
@@ -93,13 +93,13 @@ def _seen(see: Observe, case: Case, setup: Setup) -> Observation:
         return Observation(ending="crash", note=told, robot=setup.robot)
 
 
-def _judged(case: Case, seen: Observation) -> tuple[Check, ...]:
-    """The checks; an exception is a defect of the judge, and told as one."""
+def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
+    """The checks; an exception is a defect of the evaluation, and reported as one."""
     try:
-        return tuple(judge(case, seen))
+        return tuple(evaluate(case, seen))
     except Exception as error:
-        told = f"the judge has failed: {type(error).__name__}: {error}"
-        return (Check(case.main, 0, "the case can be judged", "unmet", told),)
+        told = f"the evaluation has failed: {type(error).__name__}: {error}"
+        return (Check(case.main, 0, "the case can be evaluated", "unmet", told),)
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:

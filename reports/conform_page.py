@@ -1,4 +1,4 @@
-"""The page of a run of the judge: suites by executor and robot, and each case with what it did."""
+"""The page of a conformance run: suites by executor and robot, and each case with what it did."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,7 +21,7 @@ Json = dict[str, Any]
 
 
 def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
-    """Write ``folder``/index.html, the page of one run of the judge, and return its path.
+    """Write ``folder``/index.html, the page of one conformance run, and return its path.
 
     ``record`` is what ``krl conform --json`` writes; every field may be absent. Its ``history``,
     where there is one, are the lines of ``history.jsonl`` with the nights before. The same record

@@ -1,4 +1,4 @@
-"""What the page of the judge says in words: headline figures, and the matrix of the suites."""
+"""The words of the page of a conformance run: headline figures, and the matrix of the suites."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

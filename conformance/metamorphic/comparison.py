@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from conformance.judging.observation import Event, Observation
+from conformance.evaluation.observation import Event, Observation
 
 __all__ = [
     "Compare",

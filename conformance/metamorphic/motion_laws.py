@@ -7,7 +7,7 @@ from dataclasses import replace
 from random import Random
 from typing import Final
 
-from conformance.judging.observation import Observation
+from conformance.evaluation.observation import Observation
 from conformance.metamorphic.comparison import (
     Compare,
     same_axes,

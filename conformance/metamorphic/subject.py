@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Final, Literal
 
 from conformance.differential import Sample
-from conformance.judging.observation import Observation
-from conformance.judging.observe import Setup, observe
+from conformance.evaluation.execution import Setup, observe
+from conformance.evaluation.observation import Observation
 from conformance.suite.case import Case
 from grammar.syntax import ast
 from grammar.syntax.build import read_module

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any, Final
 
-from conformance.judging.observe import Setup
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.execution import Setup
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
@@ -48,7 +48,7 @@ def measure(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> dict[str, Any]:
-    """Try the faults; ``on_done`` is told of each when it was judged."""
+    """Try the faults; ``on_done`` is called for each as soon as it has its verdict."""
     begun = time.perf_counter()
     verdicts = try_faults(faults, cases, jobs, on_done)
     return {**record_of(verdicts), "seconds": round(time.perf_counter() - begun, 3)}

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
-from conformance.judging.comparison import first_divergence
-from conformance.judging.observation import Observation
-from conformance.judging.observe import Setup, prepared
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.execution import Setup, prepared
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.trace_comparison import first_divergence
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity import (
     advance_run_faults,
@@ -73,8 +73,8 @@ def try_faults(
 ) -> list[Verdict]:
     """What becomes of each fault, in their order; the same whatever ``jobs`` is.
 
-    With more than one job the faults have to be among `all_faults`. ``on_done`` is told of each
-    fault when it was judged.
+    With more than one job the faults have to be among `all_faults`. ``on_done`` is called for
+    each fault as soon as it has its verdict.
     """
     running = [case for case in cases if case.phase == "run"]
     ordered = tuple(sorted(running, key=lambda case: (not case.may_fail, case.name)))
@@ -87,22 +87,22 @@ def try_faults(
 
 def _verdicts(faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int) -> Iterator[Verdict]:
     if jobs <= 1:
-        return (_judge(one, cases) for one in faults)
+        return (_verdict_of(one, cases) for one in faults)
     known = {id(one): number for number, one in enumerate(all_faults())}
     tasks = ((known[id(one)], _of_suites(one, cases)) for one in faults)
-    return in_order(_judge_known, tasks, jobs=jobs)
+    return in_order(_verdict_of_number, tasks, jobs=jobs)
 
 
 def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:
     return tuple(case for case in cases if not fault.suites or case.suite in fault.suites)
 
 
-def _judge_known(number: int, cases: tuple[Case, ...]) -> Verdict:
+def _verdict_of_number(number: int, cases: tuple[Case, ...]) -> Verdict:
     """Functions are not sent from process to process: a fault is known by its number there."""
-    return _judge(all_faults()[number], cases)
+    return _verdict_of(all_faults()[number], cases)
 
 
-def _judge(fault: Fault, cases: Sequence[Case]) -> Verdict:
+def _verdict_of(fault: Fault, cases: Sequence[Case]) -> Verdict:
     runs = 0
     setup = Setup(fault.executor, fault.robot)
     for case in _of_suites(fault, cases):

@@ -1,7 +1,7 @@
 """Expectations: what a case says beside its lines, ``;> out 2 TRUE at end 1 - 0.1``.
 
-`KINDS` lists the words an expectation can begin with, and what may follow them. CASES.md tells what
-each means to somebody who has a controller; `conformance.judging.judge` decides whether it is met.
+`KINDS` lists the words an expectation can begin with, and what may follow them. CASES.md says what
+each means on a real controller; `conformance.evaluation.evaluator` decides whether it is met.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ class Expectation:
 
     @property
     def needs(self) -> Literal["none", "kinematic", "mujoco"]:
-        """The robot that it takes at least to judge it."""
+        """The least robot that it can be evaluated with."""
         return KINDS[self.kind].robot
 
 

@@ -1,4 +1,4 @@
-"""The rules of KRL as the judge knows them: what each says, how sure that is, what may follow.
+"""The rules of KRL that cases state: what each says, how sure that is, what may follow.
 
 ``rules.toml`` is the registry. A case names the rules it is about by their IDs; whether it may fail
 depends on the first of them (`Rule.may_fail`).

@@ -68,7 +68,7 @@ recollection of a manual that could not be read again. `X`: a page of unknown or
 **What is done.** *grammar*: `KRL.g4` reads it, or refuses what is wrong. *tables*: it is in the
 tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` tells, with
 these codes. *lint*: `krl check --stops` tells. *running*: interpreters and controller act on it.
-What shows it are the cases of the judge: `krl conform RULE` runs them.
+What shows it are the conformance cases: `krl conform RULE` runs them.
 """
 
 _SOURCES = """\

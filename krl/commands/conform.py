@@ -1,4 +1,4 @@
-"""`krl conform`: the cases of the judge, on any executors and robots."""
+"""`krl conform`: the conformance cases, on any executors and robots."""
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -75,7 +75,7 @@ def conform(
 ) -> int:
     """Run conformance cases, compare each with what it expects and executors with one another.
 
-    Exit status 1 where a case failed. 'krl conform import FILE' judges a recording that was made
+    Exit status 1 where a case failed. 'krl conform import FILE' evaluates a recording that was made
     on a controller; conformance/CASES.md tells how to make one.
     """
     words = select or []
@@ -187,7 +187,7 @@ def _one_case(path: Path) -> "list[Case]":
 
 
 def _chosen(wanted: list[str] | None, what: str) -> list[str]:
-    from conformance.judging.observe import EXECUTORS, ROBOTS, Setup, missing
+    from conformance.evaluation.execution import EXECUTORS, ROBOTS, Setup, missing
 
     known = EXECUTORS if what == "executor" else ROBOTS
     if not wanted:
@@ -207,7 +207,7 @@ def _run(
     jobs: int | None,
     scheduler: str | None,
 ) -> "list[CaseResult]":
-    from conformance.judging.verdicts import KnownFailures
+    from conformance.evaluation.verdicts import KnownFailures
     from conformance.runner import run_cases
 
     try:
@@ -238,12 +238,9 @@ def _write(
         if json_file is not None:
             write_json(record, json_file)
         if html is not None:
-            import reports
+            from reports.conform_page import write_conformance_page
 
-            write_page = getattr(reports, "write_conformance_page", None)
-            if write_page is None:
-                raise Unusable("the page of the judge is not built yet; use --json")
-            typer.echo(one_line(f"page: {write_page(record, html)}"))
+            typer.echo(one_line(f"page: {write_conformance_page(record, html)}"))
     if junit is not None:
         from conformance.junit import write_junit
 
@@ -252,7 +249,7 @@ def _write(
 
 def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
     """What failed, case by case, then the figures."""
-    from conformance.judging.verdicts import VERDICTS
+    from conformance.evaluation.verdicts import VERDICTS
     from conformance.lint import coverage
 
     failed = [one for one in results if one.verdict == "fail"]
@@ -305,7 +302,7 @@ def _lint(words: Iterable[str]) -> int:
 def _import(words: Sequence[str], json_file: Path | None) -> int:
     """Judge a recording: what it fails, and what it says of rules that are unconfirmed."""
     from conformance.record import record_of
-    from conformance.recording import Recording, RecordingError, answers, judge_recording
+    from conformance.recording import Recording, RecordingError, answers, evaluate_recording
     from conformance.suite.case import CaseError, find_cases
 
     if len(words) != 1:
@@ -313,13 +310,13 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     begun = time.perf_counter()
     try:
         recording = Recording.read(Path(words[0]))
-        results, wrong = judge_recording(recording, find_cases())
+        results, wrong = evaluate_recording(recording, find_cases())
     except (RecordingError, CaseError) as error:
         raise Unusable(str(error)) from error
     for text in wrong:
         typer.echo(one_line(text), err=True)
     if not results:
-        raise Unusable(f"{words[0]}: none of its cases can be judged")
+        raise Unusable(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
     if json_file is not None:
         version = metadata.version("krl-workbench")

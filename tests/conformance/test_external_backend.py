@@ -43,9 +43,9 @@ def test_robot_that_does_as_ours_conforms() -> None:
     proof.assert_conforms()
 
 
-def test_cases_that_judge_nothing_prove_nothing() -> None:
+def test_cases_that_are_all_skipped_prove_nothing() -> None:
     """An executor alone has no path to show."""
-    with pytest.raises(NotConforming, match="no case could be judged"):
+    with pytest.raises(NotConforming, match="no case could be evaluated"):
         prove(executor=TreeExecutor, select=["motion/tracking_lin"]).assert_conforms()
     with pytest.raises(ValueError, match="give an executor"):
         prove()

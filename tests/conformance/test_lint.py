@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance.judging.verdicts import KnownFailures
+from conformance.evaluation.verdicts import KnownFailures
 from conformance.lint import SUITES, coverage, lint
 from conformance.suite.case import CASES, find_cases
 from conformance.suite.registry import registry

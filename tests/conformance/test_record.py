@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from junitparser import JUnitXml
 
-from conformance.judging.verdicts import Known, KnownFailures
+from conformance.evaluation.verdicts import Known, KnownFailures
 from conformance.junit import write_junit
 from conformance.record import record_of
 from conformance.runner import CaseResult, run_cases

@@ -1,4 +1,4 @@
-"""Recordings of a controller are judged as an executor is, and say what they did not watch."""
+"""Recordings of a controller are evaluated as an executor is, and say what they did not watch."""
 
 import json
 from pathlib import Path
@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from conformance.judging.observe import Setup, observe
-from conformance.recording import Recording, RecordingError, answers, judge_recording
+from conformance.evaluation.execution import Setup, observe
+from conformance.recording import Recording, RecordingError, answers, evaluate_recording
 from conformance.suite.case import Case, find_cases, selected
 
 NAMES = ("io/pulse_length", "control/for_end_once", "data/round_up", "syntax/declaration_late")
@@ -45,7 +45,7 @@ def written(tmp_path: Path, *entries: dict[str, Any], **changes: Any) -> Path:
 
 
 def verdicts(path: Path, cases: list[Case]) -> dict[str, str]:
-    results, wrong = judge_recording(Recording.read(path), cases)
+    results, wrong = evaluate_recording(Recording.read(path), cases)
     assert [] == wrong
     return {one.case.name: one.verdict for one in results}
 
@@ -90,12 +90,12 @@ def test_own_codes_are_any_complaint_about_the_line(tmp_path: Path, cases: list[
 def test_unconfirmed_rules_are_answered(tmp_path: Path, cases: list[Case]) -> None:
     """A recording says for each open rule which cases bear it out and which contradict it."""
     (case,) = selected(cases, ["control/for_end_once"])
-    right = judge_recording(Recording.read(written(tmp_path, entry(case))), cases)[0]
+    right = evaluate_recording(Recording.read(written(tmp_path, entry(case))), cases)[0]
     (answer,) = answers(right)
     assert ("CTL-05", 1, ()) == (answer.rule, answer.met, answer.against)
     told = entry(case)
     told["events"] = [event for event in told["events"] if event.get("value") != 3]
-    wrong = judge_recording(Recording.read(written(tmp_path, told)), cases)[0]
+    wrong = evaluate_recording(Recording.read(written(tmp_path, told)), cases)[0]
     (answer,) = answers(wrong)
     assert ("CTL-05", 0, (case.name,)) == (answer.rule, answer.met, answer.against)
 
@@ -104,7 +104,7 @@ def test_changed_and_unknown_cases_are_told(tmp_path: Path, cases: list[Case]) -
     """A recording of another text is of another case."""
     changed = entry(cases[0], digest="0" * 64)
     unknown = {**entry(cases[1]), "case": "io/nowhere"}
-    results, wrong = judge_recording(Recording.read(written(tmp_path, changed, unknown)), cases)
+    results, wrong = evaluate_recording(Recording.read(written(tmp_path, changed, unknown)), cases)
     assert [] == results
     assert 2 == len(wrong)
     assert f"{cases[0].name}: the case has changed since it was recorded" in wrong

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from conformance.judging.comparison import first_divergence
-from conformance.judging.observation import Event, Observation
-from conformance.judging.observe import Setup, missing, observe
-from conformance.judging.verdicts import Known, KnownFailures
+from conformance.evaluation.execution import Setup, missing, observe
+from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.trace_comparison import first_divergence
+from conformance.evaluation.verdicts import Known, KnownFailures
 from conformance.runner import run_case, run_cases
 from conformance.suite.case import Case, read_case
 

@@ -92,10 +92,10 @@ def test_lint_tells_each_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "control/again.src: it belongs to no case" in capsys.readouterr().out
 
 
-def test_recording_is_made_from_the_list_and_judged(
+def test_recording_is_made_from_the_list_and_evaluated(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """``--list --json`` has the digests that a recording needs; ``import`` judges it."""
+    """``--list --json`` has the digests that a recording needs; ``import`` evaluates it."""
     listed, recording = tmp_path / "list.json", tmp_path / "recording.json"
     assert 0 == run("data/round_half", "--list", "--json", listed)
     (case,) = json.loads(listed.read_text(encoding="utf-8"))["cases"]

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from conformance.judging.observation import Event, Observation
+from conformance.evaluation.observation import Event, Observation
 from interp.robot.simulation.tracking import PathRecord
 
 __all__ = ["Divergence", "Side", "first_divergence"]

@@ -5,7 +5,7 @@ pass            all that is expected was seen
 fail            it was not; or executors differ; or a known failure passes
 unconfirmed     it was not, but the rule is not sure enough to fail anybody (`Rule.may_fail`)
 known-failure   it was not, and ``known_failures.toml`` says why
-skipped         nothing could be judged, and why
+skipped         no expectation could be evaluated, and why
 ==============  ==================================================================================
 """
 
@@ -18,7 +18,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
-from conformance.judging.judge import Check
+from conformance.evaluation.evaluator import Check
 from conformance.suite.case import Case
 
 __all__ = ["VERDICTS", "Known", "KnownFailures", "Verdict", "verdict_of"]
@@ -75,10 +75,10 @@ def verdict_of(case: Case, checks: Sequence[Check], known: str = "") -> tuple[Ve
     unmet = [one for one in checks if one.state == "unmet"]
     if unmet:
         first = unmet[0]
-        told = f"line {first.line}: {first.text}; seen: {first.actual or 'nothing'}"
+        reason = f"line {first.line}: {first.text}; seen: {first.actual or 'nothing'}"
         if known:
             return "known-failure", known
-        return ("fail" if case.may_fail else "unconfirmed"), told
+        return ("fail" if case.may_fail else "unconfirmed"), reason
     if all(one.state == "open" for one in checks):
         return "skipped", checks[0].actual if checks else "nothing is expected"
     if known:

@@ -15,13 +15,13 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from conformance.judging.judge_trace import Judged, Marks, time_of
-from conformance.judging.observation import Observation
-from conformance.judging.path_geometry import between, from_arc, from_circle, from_line, refined
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.path_geometry import between, from_arc, from_circle, from_line, refined
+from conformance.evaluation.trace_expectations import Evaluated, Marks, time_of
 from conformance.suite.expectations import Expectation
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["judge_path"]
+__all__ = ["evaluate_on_path"]
 
 Array = npt.NDArray[np.float64]
 
@@ -67,7 +67,7 @@ class _Part:
         return kept
 
 
-def judge_path(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """Whether an expectation about the path is met."""
     if seen.path is None:
         return "open", "no path was recorded"
@@ -76,7 +76,7 @@ def judge_path(one: Expectation, seen: Observation, marks: Marks) -> Judged:
         return "unmet", "the motion did not begin and end"
     if one.kind in ("pose", "axes"):
         return _position(one, seen, part, marks)
-    return _JUDGES[one.kind](one, seen, part)
+    return _EVALUATORS[one.kind](one, seen, part)
 
 
 def _part(one: Expectation, seen: Observation, path: PathRecord) -> _Part | None:
@@ -110,12 +110,12 @@ def _numbers(one: Expectation) -> Array:
     return np.array(found)
 
 
-def _near(one: Expectation, off: float, unit: str = "mm", usual: float = _NEAR) -> Judged:
+def _near(one: Expectation, off: float, unit: str = "mm", usual: float = _NEAR) -> Evaluated:
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if off <= margin else "unmet"), f"{off:.4f} {unit} off"
 
 
-def _path(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _path(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     numbers = _numbers(one).reshape(-1, 3)
     match one.arguments[0]:
         case "joint":
@@ -134,7 +134,7 @@ def _path(one: Expectation, _seen: Observation, part: _Part) -> Judged:
     return _near(one, float(off.max()))
 
 
-def _joint(one: Expectation, part: _Part) -> Judged:
+def _joint(one: Expectation, part: _Part) -> Evaluated:
     """All axes have come the same share of their way [MOT-01]."""
     last = part.end if part.leave is None else part.leave
     axes = part.path.axes[part.within(part.entered, last)][:, :6]
@@ -156,18 +156,18 @@ def _distance(part: _Part, point: Array) -> float:
     return float(np.linalg.norm(points - point, axis=1).min())
 
 
-def _passes(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _passes(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     return _near(one, _distance(part, _numbers(one)))
 
 
-def _misses(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _misses(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     *point, wanted = _numbers(one)
     off = _distance(part, np.array(point))
     margin = wanted * 0.05 if one.tolerance is None else one.tolerance
     return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm away"
 
 
-def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     moment = part.leave if one.kind == "leaves" else part.join
     if moment is None:
         return "unmet", "there is no blend"
@@ -177,7 +177,7 @@ def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Judged:
     return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm before or behind it"
 
 
-def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) -> Judged:
+def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) -> Evaluated:
     moment = part.end
     if one.when is not None:
         try:
@@ -204,7 +204,7 @@ def _rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
     return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
 
 
-def _speed(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     kept = part.within(part.start, part.end if part.join is None else part.join)
     if one.arguments[0] == "drops":
         if part.leave is None or part.join is None:
@@ -225,7 +225,7 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Judged:
     return ("met" if slowest < wanted else "unmet"), f"{slowest:.4f} m/s"
 
 
-def _limits(one: Expectation, seen: Observation, part: _Part) -> Judged:
+def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     """No axis is faster than its machine data allow; ``smooth``: none changes its speed faster."""
     if seen.machine is None:
         return "open", "the limits of the arm are not known"
@@ -246,7 +246,7 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Judged:
     return ("met" if float(worst.max()) <= _MARGIN else "unmet"), told
 
 
-def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Judged:
+def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     """The measured tool is near the set-points."""
     measured = part.path.points_measured
     if measured is None:
@@ -256,7 +256,7 @@ def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Judged:
     return _near(one, float(off.max()), usual=_TRACKING)
 
 
-_JUDGES: Final[Mapping[str, Callable[[Expectation, Observation, _Part], Judged]]] = {
+_EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, _Part], Evaluated]]] = {
     "path": _path,
     "passes": _passes,
     "misses": _misses,

@@ -1,8 +1,8 @@
-"""What was seen of a case: findings, or a trace and a path. What expectations are judged against.
+"""What was seen of a case: findings, or a trace and a path. What expectations are evaluated on.
 
-It comes from our executors (`conformance.judging.observe`) or from a recording made on a controller
-(`conformance.recording`), and is judged the same. Values are as in the trace, that is as
-JSON has them (`interp.values.json_form`).
+It comes from our executors (`conformance.evaluation.execution`) or from a recording made on a
+controller (`conformance.recording`), and is evaluated the same way. Values are as in the trace,
+that is as JSON has them (`interp.values.json_form`).
 """
 
 from __future__ import annotations

@@ -8,13 +8,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from conformance.judging.observation import Event, Observation
+from conformance.evaluation.observation import Event, Observation
 from conformance.suite.expectations import Anchor, Expectation, When
 
-__all__ = ["Judged", "Marks", "judge_trace", "time_of", "unwatched"]
+__all__ = ["Evaluated", "Marks", "evaluate_on_trace", "time_of", "unwatched"]
 
 #: Whether it is met, and what was seen.
-Judged = tuple[Literal["met", "unmet", "open"], str]
+Evaluated = tuple[Literal["met", "unmet", "open"], str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +70,15 @@ def unwatched(one: Expectation, seen: Observation) -> str:
     return "" if kind in seen.watched or one.needs != "none" else kind
 
 
-def judge_trace(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+def evaluate_on_trace(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """Whether an expectation about the trace is met."""
-    return _JUDGES.get(one.kind, _happens)(one, seen, marks)
+    return _EVALUATORS.get(one.kind, _happens)(one, seen, marks)
 
 
 # ------------------------------------------------------------------------------------- values
 
 
-def _value(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _value(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     name, *wanted = one.arguments
     events = seen.on_line(one.file, one.line, "assign") or [*seen.of_kind("assign")]
     steps = _steps(name)
@@ -154,7 +154,7 @@ def _told(value: Any) -> str:
 # ------------------------------------------------------------------------------------- ways
 
 
-def _runs(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _runs(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     if one.arguments == ("on",):
         return ("met" if seen.ending == "running" else "unmet"), seen.ending
     times = len(seen.on_line(one.file, one.line, "line"))
@@ -162,7 +162,7 @@ def _runs(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     return ("met" if times == wanted else "unmet"), f"{times} times"
 
 
-def _order(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+def _order(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """The places of this line among all lines that have an order are those it names."""
     ordered = marks.ordered
     ways = [(event.file, event.line) for event in seen.of_kind("line")]
@@ -171,7 +171,7 @@ def _order(one: Expectation, seen: Observation, marks: Marks) -> Judged:
     return ("met" if tuple(found) == one.arguments else "unmet"), " ".join(found) or "never"
 
 
-def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     faults = [*seen.of_kind("fault")]
     told = "; ".join(
         f"{one_fault.fields.get('slug') or 'link'} {one_fault.fields.get('number') or ''}"
@@ -184,12 +184,12 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     return ("met" if one.arguments[0] in names else "unmet"), told or f"none: {seen.ending}"
 
 
-def _mark(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _mark(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     is_there = bool(seen.on_line(one.file, one.line, "line"))
     return ("met" if is_there else "unmet"), "" if is_there else "the line was never executed"
 
 
-def _stops(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _stops(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     stops = bool(seen.on_line(one.file, one.line, "advance_stop"))
     if not seen.on_line(one.file, one.line, "line", "advance_stop"):
         return "unmet", "the line was never executed"
@@ -197,7 +197,7 @@ def _stops(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     return ("met" if is_met else "unmet"), "stops" if stops else "runs ahead"
 
 
-def _blends(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _blends(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     if not seen.on_line(one.file, one.line, "motion_start"):
         return "unmet", "the motion never began"
     blends = bool(seen.on_line(one.file, one.line, "blend_start"))
@@ -205,7 +205,7 @@ def _blends(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
     return ("met" if is_met else "unmet"), "blends" if blends else "stops exactly"
 
 
-def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
+def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     start = seen.on_line(one.file, one.line, "motion_start")
     end = seen.on_line(one.file, one.line, "motion_end")
     if not start or not end or start[-1].time is None or end[-1].time is None:
@@ -219,7 +219,7 @@ def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Judged:
 # ------------------------------------------------------------------------------- what happens
 
 
-def _happens(one: Expectation, seen: Observation, marks: Marks) -> Judged:
+def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """An event is there, at its time; or never, or so often."""
     events = _events(one, seen)
     words = one.arguments
@@ -334,7 +334,7 @@ def _moments(when: When, seen: Observation, marks: Marks) -> str:
     return f" ({', '.join(f'{time_of(one, seen, marks) / 1e6:.6f} s' for one in anchors)} expected)"
 
 
-_JUDGES: Final[Mapping[str, Callable[[Expectation, Observation, Marks], Judged]]] = {
+_EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, Marks], Evaluated]]] = {
     "value": _value,
     "values": _value,
     "runs": _runs,

@@ -12,7 +12,7 @@ from functools import lru_cache
 from importlib.util import find_spec
 from typing import Final, Literal
 
-from conformance.judging.observation import Event, Finding, Observation
+from conformance.evaluation.observation import Event, Finding, Observation
 from conformance.suite.case import Case
 from grammar.check import advance_stops
 from grammar.check.context import Context

@@ -1,7 +1,7 @@
 """Whether expectations are met by what was seen.
 
 Each `Check` tells what became of one expectation: met, not met, or open, where what was seen cannot
-tell (a path without a robot, times that nobody measured). `judge` adds what every case expects
+tell (a path without a robot, times that nobody measured). `evaluate` adds what every case expects
 without saying so: that the front end says nothing graver, that the program ends.
 """
 
@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from conformance.judging.judge_path import judge_path
-from conformance.judging.judge_trace import Marks, judge_trace, unwatched
-from conformance.judging.observation import Finding, Observation
+from conformance.evaluation.observation import Finding, Observation
+from conformance.evaluation.path_expectations import evaluate_on_path
+from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import Expectation
 
-__all__ = ["Check", "judge"]
+__all__ = ["Check", "evaluate"]
 
 State = Literal["met", "unmet", "open"]
 
@@ -36,7 +36,7 @@ class Check:
 _ROBOTS = ("none", "kinematic", "mujoco")
 
 
-def judge(case: Case, seen: Observation) -> list[Check]:
+def evaluate(case: Case, seen: Observation) -> list[Check]:
     """All checks of a case, in the order of its lines; what every case expects comes last."""
     if case.phase != "run":
         return [*(_said(one, seen) for one in case.expectations), *_unsaid(case, seen)]
@@ -50,9 +50,8 @@ def judge(case: Case, seen: Observation) -> list[Check]:
         if lacking:
             found.append(_check(one, "open", f"{lacking} was not watched"))
             continue
-        judge_one = judge_trace if one.needs == "none" else judge_path
-        judged = judge_one(one, seen, marks)
-        found.append(_check(one, *judged))
+        evaluated = evaluate_on_trace if one.needs == "none" else evaluate_on_path
+        found.append(_check(one, *evaluated(one, seen, marks)))
     return [*found, *_ended(case, seen)]
 
 

@@ -1,14 +1,14 @@
-"""Expectations about paths are judged by geometry that stands in the case."""
+"""Expectations about paths are evaluated by geometry that stands in the case."""
 
 from typing import Any
 
 import numpy as np
 import pytest
 
-from conformance.judging.judge_path import judge_path
-from conformance.judging.judge_trace import Marks
-from conformance.judging.observation import Event, Observation
-from conformance.judging.path_geometry import circle_of, drawn, from_arc, from_circle, from_line
+from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.path_expectations import evaluate_on_path
+from conformance.evaluation.path_geometry import circle_of, drawn, from_arc, from_circle, from_line
+from conformance.evaluation.trace_expectations import Marks
 from conformance.suite.expectations import read_expectation
 from interp.robot.models import default_machine
 from interp.robot.simulation.tracking import PathRecord
@@ -35,7 +35,7 @@ def seen(points: Any, *events: Event, axes: Any = None, measured: Any = None) ->
 
 
 def state(text: str, observed: Observation) -> str:
-    return judge_path(read_expectation(text, "a.src", 3), observed, NO_MARKS)[0]
+    return evaluate_on_path(read_expectation(text, "a.src", 3), observed, NO_MARKS)[0]
 
 
 LINE = [(float(x), 0.0, 0.0) for x in np.linspace(0, 100, 51)]

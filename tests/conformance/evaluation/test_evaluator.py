@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from conformance.judging.judge import judge
-from conformance.judging.observation import Event, Finding, Observation
+from conformance.evaluation.evaluator import evaluate
+from conformance.evaluation.observation import Event, Finding, Observation
 from conformance.suite.case import Case
 from conformance.suite.expectations import read_expectation
 from grammar.syntax.source import Source
@@ -29,7 +29,7 @@ def event(kind: str, time: int | None = 0, line: int = 3, **fields: Any) -> Even
 
 def states(asked: Case, *events: Event, ending: str = "end", **rest: Any) -> list[str]:
     """What became of the expectations, in their order."""
-    return [one.state for one in judge(asked, Observation(events=events, ending=ending, **rest))]
+    return [one.state for one in evaluate(asked, Observation(events=events, ending=ending, **rest))]
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,7 @@ def test_findings_are_at_their_line(
     text: str, findings: list[Finding], expected: list[str]
 ) -> None:
     """Code, severity and line count; an error that is not expected fails the case."""
-    checks = judge(case(text, phase="check"), Observation(findings=tuple(findings)))
+    checks = evaluate(case(text, phase="check"), Observation(findings=tuple(findings)))
     assert expected == [one.state for one in checks]
 
 
@@ -208,6 +208,6 @@ def test_first_failure_counts_in_phase_parse() -> None:
     """What comes behind it is nobody's business."""
     asked = case("syntax", phase="parse")
     first, second = found(3, "error", "syntax"), found(5, "error", "syntax")
-    assert ["met"] == [one.state for one in judge(asked, Observation(findings=(first, second)))]
-    assert "unmet" in [one.state for one in judge(asked, Observation(findings=(second, first)))]
-    assert ["unmet"] == [one.state for one in judge(asked, Observation())]
+    assert ["met"] == [one.state for one in evaluate(asked, Observation(findings=(first, second)))]
+    assert "unmet" in [one.state for one in evaluate(asked, Observation(findings=(second, first)))]
+    assert ["unmet"] == [one.state for one in evaluate(asked, Observation())]
