@@ -42,6 +42,7 @@ __all__ = [
     "Record",
     "Slot",
     "inputs_of",
+    "printable",
     "stack_cells",
     "variables",
 ]
@@ -161,6 +162,11 @@ class Builtin:
     name: str
     parts: tuple[Argument, ...]
     result: int | None
+
+
+def printable(text: str) -> str:
+    """A text on one line: names come from images and may hold anything."""
+    return "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 
 def variables(code: Code) -> tuple[Parameter | Local, ...]:

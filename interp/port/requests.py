@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 __all__ = [
+    "Asking",
     "At",
     "BrakeArm",
     "Code",
@@ -42,6 +43,7 @@ __all__ = [
     "StopAdvance",
     "SwitchInterrupt",
     "SwitchSignal",
+    "Text",
     "Value",
     "Wait",
     "Write",
@@ -53,6 +55,8 @@ Value = Any
 #: A system variable, or a part of one: its name in upper case, then indices and names of members.
 #: ``("$IN", 3)``, ``("$VEL", "CP")``, ``("$TOOL",)``.
 Path = tuple[str | int, ...]
+#: What the program has in an array of CHAR; any other ``str`` is a word of the source.
+Text = str
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,8 +251,8 @@ class MoveSpline(Asking):
 class MoveEmily(Asking):
     """MOVE_EMI: a path that an option package holds."""
 
-    device: str
-    action: str
+    device: Text
+    action: Text
     number: float | None
 
 

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from interp.bytecode.cell_layout import bits_of, real_of
+from interp.bytecode.program import printable
 from interp.port.requests import Path
 from interp.values.faults import Fault
 from interp.values.values import single
@@ -29,7 +30,6 @@ __all__ = [
     "labels",
     "name_text",
     "path_text",
-    "printable",
     "real_text",
     "real_word",
     "split",
@@ -203,11 +203,6 @@ def real_word(text: str) -> int | None:
 # ------------------------------------------------------------------------------------ writing
 
 _PLAIN = re.compile(r"[A-Za-z_$%][\w$%]*", re.ASCII)
-
-
-def printable(text: str) -> str:
-    """A text on one line: names come from images and may hold anything."""
-    return "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 
 def string_text(text: str) -> str:

@@ -42,7 +42,7 @@ from interp.bytecode.program import (
     Mode,
     Program,
 )
-from interp.bytecode.vm.request_marshalling import unlike
+from interp.bytecode.verifier.signatures import unlike
 from interp.program.reads import is_variable
 from interp.program.variables import untyped_result
 from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text

@@ -13,7 +13,6 @@ from typing import TypeVar
 
 from grammar.semantics.types import Array, Enumeration, Member, Structure, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.assembly.syntax import printable
 from interp.bytecode.cell_layout import real_of, size
 from interp.bytecode.image.layout import KINDS, MODES, SECTIONS, PartTag, TypeTag
 from interp.bytecode.instruction_set import FORMAT, MAGIC, Shape, instructions
@@ -36,6 +35,7 @@ from interp.bytecode.program import (
     Parameter,
     Program,
     Record,
+    printable,
 )
 from interp.values.faults import LinkError
 

@@ -13,7 +13,6 @@ from itertools import zip_longest
 from grammar.semantics.types import BOOL, REAL, Array, Enumeration, is_cartesian
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, is_word_of, shared_cells
-from interp.bytecode.cell_types import CellTypes
 from interp.bytecode.instruction_set import shape
 from interp.bytecode.program import (
     Argument,
@@ -30,6 +29,8 @@ from interp.bytecode.program import (
     Record,
     inputs_of,
 )
+from interp.bytecode.verifier.cell_types import CellTypes
+from interp.bytecode.verifier.signatures import may_be_missing
 from interp.bytecode.verifier.stack_types import (
     NOTHING,
     SCALAR,
@@ -40,7 +41,6 @@ from interp.bytecode.verifier.stack_types import (
     reference,
     view_of,
 )
-from interp.bytecode.vm.request_marshalling import may_be_missing
 
 __all__ = ["StackEffects", "at_target"]
 

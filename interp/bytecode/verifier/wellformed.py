@@ -20,7 +20,6 @@ from grammar.semantics.types import (
     Structure,
     Type,
 )
-from interp.bytecode.assembly.syntax import printable
 from interp.bytecode.cell_layout import Plain, is_word_of, kind_at, path_to, real_of, size
 from interp.bytecode.instruction_set import MAX_CELLS, OPERAND_KINDS, shape
 from interp.bytecode.program import (
@@ -38,8 +37,9 @@ from interp.bytecode.program import (
     Parameter,
     Program,
     Record,
+    printable,
 )
-from interp.bytecode.vm.request_marshalling import misfit, unlike
+from interp.bytecode.verifier.signatures import misfit, unlike
 from interp.values.faults import FAULTS, LinkError
 from interp.values.values import single
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
-from interp.bytecode.instruction_set import instructions
+from interp.bytecode.instruction_set import FORMAT, MAGIC, instructions
 from interp.bytecode.verifier.verify import VerificationError, verify
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ _WORD = struct.Struct("<I")
 
 def _sealed(words: list[int]) -> bytes:
     body = b"".join(_WORD.pack(word & 0xFFFFFFFF) for word in words[4:])
-    return struct.pack("<4sIII", b"KRLI", 1, 16 + len(body), zlib.crc32(body)) + body
+    return struct.pack("<4sIII", MAGIC, FORMAT, 16 + len(body), zlib.crc32(body)) + body
 
 
 def _is_taken(image: bytes) -> bool:

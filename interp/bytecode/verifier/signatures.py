@@ -1,0 +1,246 @@
+"""Whether entries fit what they name: the fields of requests, the arguments of functions.
+
+An entry of the table of requests names a request of `interp.port.requests` and has a part for each
+of its fields but ``at``.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import get_args
+
+from grammar.semantics.assignability import assignable
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, UNKNOWN, Array, Text, Type, is_same
+from interp.bytecode.program import (
+    Argument,
+    Builtin,
+    Changed,
+    Choice,
+    CodeKind,
+    Constant,
+    Handle,
+    Input,
+    Items,
+    Mode,
+    Program,
+    Record,
+    inputs_of,
+)
+from interp.port import requests
+from interp.values.builtins import BUILTINS, reads_text
+
+__all__ = ["may_be_missing", "misfit", "unlike"]
+
+#: What a field of a request may be, by its annotation.
+_KINDS: Mapping[str, str] = {
+    "Path": "path",
+    "Value": "value",
+    "Text": "text",
+    "str": "word",
+    "int": "integer",
+    "float": "number",
+    "bool": "flag",
+    "tuple[str, ...]": "words",
+    "tuple[Path, Value]": "output",
+    "tuple[tuple[Path, Value], ...]": "values",
+    "tuple[Value | None, ...]": "arguments",
+    "tuple[SplineItem, ...]": "items",
+}
+_ASSIGNMENT = ("path", "value")
+#: What no program asks for: the executor sends it by itself.
+_UNASKED = (requests.Slice, requests.End, requests.Fail, requests.Crash)
+
+
+def _kinds(request: type) -> tuple[str, ...]:
+    """The kinds of a record's fields but ``at`` and those with a default; ``?`` for optional."""
+    return tuple(
+        _kind(one.name, str(one.type))
+        for one in dataclasses.fields(request)
+        if one.name != "at" and one.default is dataclasses.MISSING
+    )
+
+
+def _kind(name: str, annotation: str) -> str:
+    required = annotation.removesuffix(" | None")
+    mark = "" if required == annotation else "?"
+    if required == "Code":
+        return ("condition" if name == "condition" else "action") + mark
+    return _KINDS[required] + mark
+
+
+_REQUESTS: Mapping[str, tuple[str, ...]] = {
+    one.__name__: _kinds(one) for one in get_args(requests.Request) if one not in _UNASKED
+}
+#: What stands in a spline block, and whether it has a place in the source.
+_SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
+    one.__name__: (_kinds(one), issubclass(one, requests.Asking))
+    for one in get_args(requests.SplineItem)
+}
+
+
+# ------------------------------------------------------------------------------ do they fit?
+
+
+def misfit(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
+    """Why the parts are not those of the request, or ``None`` where they are."""
+    if request not in _REQUESTS:
+        return f"{request} is nothing that can be asked"
+    return _Fit(program).fields(_REQUESTS[request], parts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    program: Program
+
+    def fields(self, kinds: Sequence[str], parts: Sequence[Argument]) -> str | None:
+        if len(kinds) != len(parts):
+            return f"{len(kinds)} fields are needed, and there are {len(parts)}"
+        for number, (kind, part) in enumerate(zip(kinds, parts, strict=True), start=1):
+            if not self._fits(kind, part):
+                return f"field {number} is no {kind.rstrip('?')}"
+        return None
+
+    def _fits(self, kind: str, part: Argument) -> bool:
+        if kind.endswith("?"):
+            return part == Constant(None) or self._fits(kind[:-1], part)
+        if isinstance(part, Items):
+            return self._fits_items(kind, part.parts)
+        match kind:
+            case "word":
+                return isinstance(part, Constant) and isinstance(part.value, str)
+            case "flag":
+                return isinstance(part, Constant) and isinstance(part.value, bool)
+            case "integer":
+                return self._is_number(part, INT)
+            case "number":
+                return self._is_number(part, REAL)
+            case "value":
+                return self.is_value(part) and not isinstance(part, Changed)
+            case "text":
+                return _is_text(self.program, part)
+            case "action" | "condition":
+                return self._is_handle(part, CodeKind(kind))
+        return False
+
+    def _fits_items(self, kind: str, parts: Sequence[Argument]) -> bool:
+        match kind:
+            case "path":
+                first, *steps = parts or (Constant(None),)
+                return self._fits("word", first) and all(map(self._is_step, steps))
+            case "words":
+                return all(self._fits("word", part) for part in parts)
+            case "values":
+                return all(
+                    isinstance(part, Items) and self.fields(_ASSIGNMENT, part.parts) is None
+                    for part in parts
+                )
+            case "output":
+                return self.fields(_ASSIGNMENT, parts) is None
+            case "arguments":
+                return all(part == Constant(None) or self.is_value(part) for part in parts)
+            case "items":
+                return all(isinstance(part, Record) and self._is_item(part) for part in parts)
+        return False
+
+    def _is_item(self, part: Record) -> bool:
+        kinds, has_place = _SPLINE_ITEMS.get(part.name, ((), False))
+        return (
+            part.name in _SPLINE_ITEMS
+            and (part.line > 0) == has_place
+            and self.fields(kinds, part.parts) is None
+        )
+
+    def _is_step(self, part: Argument) -> bool:
+        return self._fits("word", part) or self._is_number(part, INT)
+
+    def _is_number(self, part: Argument, type_: Type) -> bool:
+        if isinstance(part, Input):
+            return part.mode is Mode.IN and self.program.types[part.type] == type_
+        python = int if type_ == INT else float
+        return isinstance(part, Constant) and type(part.value) is python
+
+    def _is_handle(self, part: Argument, kind: CodeKind) -> bool:
+        codes = self.program.codes
+        return isinstance(part, Handle) and part.code < len(codes) and codes[part.code].kind is kind
+
+    def is_value(self, part: Argument) -> bool:
+        """Whether it is a value of the language."""
+        if isinstance(part, Choice):
+            return True
+        if isinstance(part, Constant):
+            return part.value is not None
+        if isinstance(part, Changed):
+            return part.path is None or self._fits("path", part.path)
+        return isinstance(part, Input)
+
+
+def unlike(program: Program, builtin: Builtin) -> str | None:
+    """Why an entry is no call of a predefined function, or ``None`` where it is one."""
+    known = BUILTINS.get(builtin.name.upper())
+    if known is None:
+        return "there is no such function that only computes"
+    least, given = len(known.parameters), len(builtin.parts)
+    if given < least or (given > least and not known.has_more):
+        return f"it has {least} arguments, not {given}"
+    result = None if builtin.result is None else program.types[builtin.result]
+    if result != known.result:
+        return f"it gives {known.result or 'nothing'}"
+    for place, part in enumerate(builtin.parts):
+        if part == Constant(None):  # left out
+            continue
+        is_changed = isinstance(part, Changed)
+        type_ = _type_of(program, part.given if isinstance(part, Changed) else part)
+        if type_ is None or (is_changed and not known.is_out(place)):
+            return f"argument {place + 1} cannot be handed over"
+        wanted = known.parameters[place].type if place < least else UNKNOWN
+        fits = is_same(wanted, type_) if is_changed else assignable(wanted, type_).is_fine
+        if not fits or not _is_written(program, part):
+            return f"argument {place + 1} is no {wanted}"
+    return None
+
+
+def may_be_missing(builtin: Builtin) -> Iterator[bool]:
+    """For each input of a predefined function, whether it may be a text that was left out.
+
+    See `interp.values.builtins.reads_text`.
+    """
+    parameters = BUILTINS[builtin.name.upper()].parameters
+    for place, part in enumerate(builtin.parts):
+        is_text = (
+            place < len(parameters)
+            and not parameters[place].is_out
+            and reads_text(parameters[place].type)
+        )
+        for given in inputs_of((part,)):
+            yield is_text and part is given and given.mode is Mode.VIEW
+
+
+def _is_written(program: Program, part: Argument) -> bool:
+    """Whether the new value of a system variable has a place to be written to, if it is one."""
+    return not isinstance(part, Changed) or _Fit(program).is_value(part)
+
+
+def _is_text(program: Program, part: Argument) -> bool:
+    if isinstance(part, Input):
+        of = program.types[part.type]
+        return (part.mode, part.dimensions, of) == (Mode.VIEW, 1, CHAR)
+    return isinstance(part, Constant) and isinstance(part.value, str)
+
+
+def _type_of(program: Program, part: Argument) -> Type | None:
+    """The type of an argument; ``None`` for what is none."""
+    match part:
+        case Input(Mode.VIEW):
+            return Array(program.types[part.type], (None,) * part.dimensions)
+        case Input() | Choice():
+            return program.types[part.type]
+        case Constant(str() as text):
+            return Text(len(text))
+        case Constant(value):
+            return _PYTHON[type(value)]
+    return None
+
+
+_PYTHON: Mapping[type, Type] = {bool: BOOL, int: INT, float: REAL}
