@@ -7,10 +7,7 @@ from dataclasses import dataclass
 
 from grammar.notation.edits import Edit
 
-__all__ = ["SHOWN", "Cause", "Judge", "Proposal", "no_judge"]
-
-#: Proposals that are shown of a cause at most.
-SHOWN = 5
+__all__ = ["Cause", "Judge", "Proposal", "no_judge"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,19 +12,15 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from grammar.notation.edits import AddAlternative, Edit
-from recovery.clustering.cause import SHOWN, Cause, Proposal
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_merging import one_choice, one_form, reach_the_same, together
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.search import Search
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import Layout
+from recovery.tuning import FORM_SYMBOLS, MOST_COMPARED, MOST_PROPOSALS
 
 __all__ = ["joined", "sought_together"]
-
-# Causes that a later one is compared with: the first ones hold back most.
-_MOST_JOINED = 40
-# Symbols of an alternative that make it a form of its own, whatever word it begins with.
-_A_FORM = 4
 
 
 def sought_together(search: Search, causes: Sequence[Cause]) -> list[Cause]:
@@ -33,7 +29,7 @@ def sought_together(search: Search, causes: Sequence[Cause]) -> list[Cause]:
     Each was sought for its own lines alone: what reads all of them may never have been tried.
     """
     led: dict[str, list[Cause]] = defaultdict(list)
-    for cause in causes[:_MOST_JOINED]:
+    for cause in causes[:MOST_COMPARED]:
         leads = {search.lead(search.lines[n]) for n in cause.lines} if cause.proposals else set()
         if len(leads) == 1:
             led[leads.pop()].append(cause)
@@ -72,7 +68,7 @@ def joined(search: Search, causes: Sequence[Cause]) -> list[Cause]:
     """Causes of which one is missing in several places made one."""
     out: list[Cause] = []
     for cause in causes:
-        for place, other in enumerate(out[:_MOST_JOINED] if cause.proposals else ()):
+        for place, other in enumerate(out[:MOST_COMPARED] if cause.proposals else ()):
             one = _as_one(search, other, cause) if other.proposals else None
             if one is not None:
                 out[place] = one
@@ -91,7 +87,7 @@ def _as_one(search: Search, first: Cause, second: Cause) -> Cause | None:
         both = search.proposal(edits, breadth)
         if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
             others = (p for p in first.proposals if p.edits != both.edits)
-            return Cause(lines, (both, *others)[:SHOWN])
+            return Cause(lines, (both, *others)[:MOST_PROPOSALS])
     return None
 
 
@@ -115,5 +111,5 @@ def _may_be_chosen(layout: Layout, edit: Edit, place: int) -> bool:
     """Whether words there are a choice: those that begin alternatives name constructs."""
     if not isinstance(edit, AddAlternative) or place > 0:
         return True
-    is_form = len(edit.text.split(" ")) >= _A_FORM
+    is_form = len(edit.text.split(" ")) >= FORM_SYMBOLS
     return is_form or layout.vocabulary.is_set_of_words(edit.rule)

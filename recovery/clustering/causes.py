@@ -17,17 +17,11 @@ from recovery.clustering.file_trial import WholeFiles
 from recovery.clustering.regression import Readable, nothing_readable
 from recovery.clustering.search import Search
 from recovery.proposals.candidates import Line
+from recovery.tuning import CAUSES_PER_GROUP, HEAVY_GROUPS, TRIAL_GARBAGE
 from support.parallel.gc_pause import uncollected
 from support.parallel.progress import Progress, unheard
 
 __all__ = ["find_causes"]
-
-# Behind the groups that hold back most a quicker look has to do.
-_HEAVY_GROUPS = 12
-# Causes that are sought in a group, one after the other.
-_ROUNDS = 4
-# What the trials of a group leave behind, in the measure of `support.parallel.gc_pause`.
-_GARBAGE = 2_000_000
 
 
 def find_causes(
@@ -49,12 +43,12 @@ def find_causes(
     search = Search(recognizer, lines, weights, judge, whole, readable)
     causes: list[Cause] = []
     for place, group in enumerate(groups):
-        search.thorough = place < _HEAVY_GROUPS
+        search.thorough = place < HEAVY_GROUPS
         is_open = not search.open.isdisjoint(group)
-        with uncollected(_GARBAGE if is_open else 0):
+        with uncollected(TRIAL_GARBAGE if is_open else 0):
             causes += _of_group(search, group)
         on_done(1)
-    with uncollected(_GARBAGE):
+    with uncollected(TRIAL_GARBAGE):
         causes = sought_together(search, causes)
     return joined(search, causes)
 
@@ -62,7 +56,7 @@ def find_causes(
 def _of_group(search: Search, group: Sequence[int]) -> Iterator[Cause]:
     """The causes of a group, one after the other; lines without any are one of their own."""
     left = [n for n in group if n in search.open]
-    for _ in range(_ROUNDS):
+    for _ in range(CAUSES_PER_GROUP):
         cause = search.best_for(left) if left else None
         if cause is None:
             break

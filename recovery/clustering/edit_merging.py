@@ -15,10 +15,10 @@ from dataclasses import replace
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import Layout
+from recovery.tuning import MOST_MERGED_EDITS
 
 __all__ = ["one_choice", "one_form", "reach_the_same", "together"]
 
-_MOST_TOGETHER = 3
 # Words of a text, a choice of words taken for one.
 _WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
@@ -43,7 +43,7 @@ def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
 
     A few edits at most make one cause: a person has to see at a glance that they are one.
     """
-    if len({*_main(layout, first), *_main(layout, second)}) > _MOST_TOGETHER:
+    if len({*_main(layout, first), *_main(layout, second)}) > MOST_MERGED_EDITS:
         return False
     one, other = first[-1], second[-1]
     if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(

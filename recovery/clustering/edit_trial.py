@@ -17,15 +17,9 @@ from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.candidates import Line
+from recovery.tuning import LINES_READ_TWICE, MOST_READINGS, MOST_RECOGNIZERS_KEPT
 
 __all__ = ["Outcome", "Trial", "edited"]
-
-
-_MOST_REMEMBERED = 160
-# An edit can give a line exponentially many readings; what needs more than these is no good edit.
-_MOST_WAYS = 2_000
-# Lines that are looked at for a second reading.
-_MOST_READ_TWICE = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +56,7 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     if is_left_recursive(network, changed, recognizer.empty_rules):
         return None
     found = Recognizer(grammar, network)
-    found.most_ways = _MOST_WAYS
+    found.most_ways = MOST_READINGS
     return found
 
 
@@ -151,7 +145,7 @@ class Trial:
         """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
         key = tuple(edits)
         if key not in self._wider:
-            if len(self._wider) >= _MOST_REMEMBERED:
+            if len(self._wider) >= MOST_RECOGNIZERS_KEPT:
                 del self._wider[next(iter(self._wider))]
             self._wider[key] = edited(self.recognizer, edits)
         return self._wider[key]
@@ -179,7 +173,7 @@ class Trial:
         wider = self.wider(edits)
         if wider is None:
             return False
-        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:_MOST_READ_TWICE]
+        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:LINES_READ_TWICE]
         return any(
             is_ambiguous(wider, start, kinds)
             for _, start, kinds in self._read_by(wider, edits, short)

@@ -14,15 +14,15 @@ from dataclasses import dataclass
 
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
+from recovery.tuning import (
+    FILES_PER_LINE,
+    MOST_FILE_TOKENS,
+    MOST_FILES,
+    MOST_REREAD,
+    MOST_REREAD_TEXT,
+)
 
 __all__ = ["FailingFile", "WholeFiles"]
-
-_FILES_A_LINE = 4
-_MOST_FILES = 12
-_MOST_TOKENS = 6_000
-# Files read again for what a mended line entails, and their length in characters together.
-_MOST_REREAD = 40
-_MOST_REREAD_TEXT = 200_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +97,10 @@ class WholeFiles:
         left: set[int] = set()
         finder = FailureFinder(wider)
         length = 0
-        for place in sorted(wanted)[:_MOST_REREAD]:
+        for place in sorted(wanted)[:MOST_REREAD]:
             text = self._files[place].text()
             length += len(text)
-            if length > _MOST_REREAD_TEXT:
+            if length > MOST_REREAD_TEXT:
                 break
             if not text:  # it is gone since the survey
                 continue
@@ -113,18 +113,18 @@ class WholeFiles:
         out: list[tuple[str, list[int], int]] = []
         for line in lines:
             if line not in self._texts:
-                places = self._starting.get(line, ())[:_FILES_A_LINE]
+                places = self._starting.get(line, ())[:FILES_PER_LINE]
                 texts = [self._files[place].text() for place in places]
                 self._texts[line] = [entry for text in texts for entry in self._read(text)]
             out += self._texts[line]
-            if len(out) >= _MOST_FILES:
+            if len(out) >= MOST_FILES:
                 break
-        return out[:_MOST_FILES]
+        return out[:MOST_FILES]
 
     def _read(self, text: str) -> Sequence[tuple[str, list[int], int]]:
         """The text with its kinds and where it fails; nothing where it is too long to be tried."""
         kinds = self._recognizer.kinds(text)
-        if len(kinds) > _MOST_TOKENS:
+        if len(kinds) > MOST_FILE_TOKENS:
             return []
         _, failed = self._recognizer.run(self._recognizer.start, kinds)
         return [] if failed is None else [(text, kinds, failed)]

@@ -13,13 +13,9 @@ from recovery.clustering.edit_trial import edited
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.required_tokens import used_by
+from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
 
 __all__ = ["judge_of"]
-
-# A sample of the programs that facts of the language prove invalid: enough to tell edits apart,
-# few enough to be read for every candidate that is kept.
-_GENERATED = 250
-_SEED = 1
 
 
 def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
@@ -46,4 +42,4 @@ def judge_of(grammar: Grammar, negatives: Iterable[Negative]) -> Judge:
 
 @cache
 def _generated() -> tuple[Negative, ...]:
-    return tuple(generate(count=_GENERATED, seed=_SEED))
+    return tuple(generate(count=GENERATED_NEGATIVES, seed=NEGATIVES_SEED))

@@ -13,6 +13,7 @@ from collections.abc import Callable, Collection, Iterable
 from functools import cached_property
 
 from grammar.parser.recognizer import Recognizer
+from recovery.tuning import FILES_PER_WORD, MOST_SEARCHED_TEXT
 
 __all__ = ["Readable", "nothing_readable"]
 
@@ -20,9 +21,6 @@ __all__ = ["Readable", "nothing_readable"]
 ReadableFile = tuple[int, Callable[[], str]]
 
 _WORDS = re.compile(r"\w+")
-# Files tried for a word, the shortest first, and the length of all that are searched for words.
-_FILES_A_WORD = 6
-_MOST_TEXT = 4_000_000
 
 
 class Readable:
@@ -39,11 +37,11 @@ class Readable:
         length = 0
         for size, text_of in self._files:
             length += size
-            if length > _MOST_TEXT:
+            if length > MOST_SEARCHED_TEXT:
                 break
             text = text_of()
             for word in sorted(self._wanted.intersection(_WORDS.findall(text.upper()))):
-                if len(found[word]) < _FILES_A_WORD:
+                if len(found[word]) < FILES_PER_WORD:
                     found[word].append(text)
         return dict(found)
 

@@ -12,46 +12,41 @@ from typing import TypeVar
 
 from grammar.notation.edits import AddToken, Edit
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import SHOWN, Cause, Judge, Proposal
+from recovery.clustering.cause import Cause, Judge, Proposal
 from recovery.clustering.edit_merging import one_choice
 from recovery.clustering.edit_trial import Outcome, Trial
 from recovery.clustering.file_trial import WholeFiles
 from recovery.clustering.regression import Readable, nothing_readable
-from recovery.proposals.candidates import BREADTH_COSTS, Candidate, CandidateFinder, Line
+from recovery.proposals.candidates import Candidate, CandidateFinder, Line
 from recovery.proposals.segmentation import Word
+from recovery.tuning import (
+    ADVANCED_WEIGHT,
+    ALL_ALIKE_FACTOR,
+    AMBIGUOUS_FACTOR,
+    BREADTH_FACTOR,
+    BREAKS_FILES_FACTOR,
+    KEPT,
+    KEPT_LIGHT,
+    KEPT_PER_RESULT,
+    KEPT_PER_RULE,
+    LEFT_A_NAME_FACTOR,
+    LINE_WEIGHT,
+    MOST_PROPOSALS,
+    MOST_SCORED,
+    MOST_SCORED_LIGHT,
+    MOST_TRIED,
+    MOST_TRIED_LIGHT,
+    NARROW_PER_SITE,
+    OTHER_GROUP_WEIGHT,
+    SAMPLE_LINES,
+    SPECIMENS,
+    STILL_NAMES_PART,
+    VARIED_LINES,
+    WIDE_PART,
+    WIDE_PER_SITE,
+)
 
 __all__ = ["Search"]
-
-# Lines of a group whose candidates are tried, candidates tried of each, and lines of other groups
-# that a first trial looks at: what is kept after it is tried on everything.
-_SPECIMENS = 3
-_MOST_TRIED = 105
-# Where less is held back a quicker look has to do.
-_MOST_TRIED_LIGHT = 48
-_FIRST_TRIAL = 8
-# Candidates of each place that are tried before any other, and wider ones where these do most.
-_NARROW = 2
-_WIDER = 4
-# Lines whose openings are compared for what they have in common.
-_VARIED = 6
-_KEPT = 10
-_KEPT_LIGHT = 6
-_KEPT_OF_A_RULE = 3
-_MOST_JUDGED = 24
-_MOST_JUDGED_LIGHT = 12
-_ALIKE = 12
-# What the lines themselves count where whole files cannot be read on behind them.
-_LINE_COUNTS = 0.2
-# What a mended line counts that is of another group than the one a cause is sought for.
-_OTHERS_COUNT = 0.3
-# What an edit gains that mends every line which fails at the same token: it leaves none to explain.
-_ALL_ALIKE = 1.25
-# What an edit loses that reads a word as a name which all lines have as a keyword.
-_LEFT_A_NAME = 0.6
-# What an edit loses that reserves a word which is a name in files that can be read.
-_LOSES_FILES = 0.5
-# What an edit loses that gives some of its lines two readings.
-_TWO_READINGS = 0.97
 
 
 class Search:
@@ -120,15 +115,17 @@ class Search:
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
-        specimens = _spread(heavy, _SPECIMENS if self.thorough else 1)
-        most = _MOST_TRIED if self.thorough else _MOST_TRIED_LIGHT
+        specimens = _spread(heavy, SPECIMENS if self.thorough else 1)
+        most = MOST_TRIED if self.thorough else MOST_TRIED_LIGHT
         alike = self._alike(specimens[0])
         led_alike = self._led_alike(specimens[0])
-        near = dict.fromkeys((*specimens, *_spread(heavy, _VARIED)))
-        varied = dict.fromkeys((*near, *_spread(alike, _VARIED), *_spread(led_alike, _VARIED)))
+        near = dict.fromkeys((*specimens, *_spread(heavy, VARIED_LINES)))
+        varied = dict.fromkeys(
+            (*near, *_spread(alike, VARIED_LINES), *_spread(led_alike, VARIED_LINES))
+        )
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
-        sample = set(specimens) | set(_spread(heavy, _FIRST_TRIAL))
-        sample |= set(_spread(alike, _FIRST_TRIAL)) | varied.keys()
+        sample = set(specimens) | set(_spread(heavy, SAMPLE_LINES))
+        sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
         first += [
             (candidate, self.trial.outcome(candidate.edits, sample))
@@ -141,7 +138,7 @@ class Search:
             proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
         kept = [self._names_kept(proposal) for proposal in proposals]
         useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
-        return self._ranked(list(useful.values()), heavy)[:SHOWN]
+        return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
         """The proposal; where files have a word as a name that it reserves, with that left one."""
@@ -152,7 +149,7 @@ class Search:
         if words.names is None or edits is None or self._loses(edits):
             return proposal
         outcome = self.trial.outcome(edits, self.open)
-        breadth = proposal.breadth + layout.width(words.names) // 2
+        breadth = proposal.breadth + layout.width(words.names) // STILL_NAMES_PART
         return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
 
     def _loses(self, edits: tuple[Edit, ...]) -> bool:
@@ -171,7 +168,9 @@ class Search:
         at: dict[object, list[Candidate]] = defaultdict(list)
         for candidate in candidates:
             at[candidate.place].append(candidate)
-        narrow = [c for c in candidates if c in at[c.place][:_NARROW]][: most - most // 3]
+        narrow = [c for c in candidates if c in at[c.place][:NARROW_PER_SITE]][
+            : most - most // WIDE_PART
+        ]
         out = [(c, self.trial.outcome(c.edits, sample)) for c in narrow]
         gains: dict[object, tuple[float, int]] = {}
         for c, outcome in out:
@@ -179,8 +178,12 @@ class Search:
             if gain:
                 gains[c.place] = max((gain, -c.breadth), gains.get(c.place, (0.0, 0)))
         hopeful = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
-        wide = [c for place in hopeful for c in at[place][_NARROW : _NARROW + _WIDER]]
-        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // 3]]
+        wide = [
+            c
+            for place in hopeful
+            for c in at[place][NARROW_PER_SITE : NARROW_PER_SITE + WIDE_PER_SITE]
+        ]
+        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // WIDE_PART]]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
         """The best of the blocks that a line may open, with the negatives they let in."""
@@ -195,11 +198,9 @@ class Search:
             if (wider := self.trial.wider(candidate.edits)) is not None
         ]
         found.sort(
-            key=lambda pair: (-pair[0] * BREADTH_COSTS ** pair[1].breadth, str(pair[1].edits))
+            key=lambda pair: (-pair[0] * BREADTH_FACTOR ** pair[1].breadth, str(pair[1].edits))
         )
-        return [
-            (candidate, self.judge(candidate.edits)) for _, candidate in found[:_KEPT_OF_A_RULE]
-        ]
+        return [(candidate, self.judge(candidate.edits)) for _, candidate in found[:KEPT_PER_RULE]]
 
     def lead(self, line: Line) -> str:
         """The keyword or would-be keyword that a line begins with."""
@@ -227,13 +228,13 @@ class Search:
         if not whole and not further:
             return 0.0
         others = sum(self.weights[n] for n in outcome.mended - sought)
-        return whole + further / 4 + others * _OTHERS_COUNT
+        return whole + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
 
     def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
         """Gain, less a little for all that an edit lets in besides, and for a word left a name."""
-        worth = self._gain(outcome) * BREADTH_COSTS**candidate.breadth
+        worth = self._gain(outcome) * BREADTH_FACTOR**candidate.breadth
         reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
-        return worth * _LEFT_A_NAME if self._has_words and not reserves else worth
+        return worth * LEFT_A_NAME_FACTOR if self._has_words and not reserves else worth
 
     def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
         """The most worthwhile candidates, first those that let in no negatives."""
@@ -245,17 +246,17 @@ class Search:
         judged = 0
         for candidate, _ in useful:
             rule = getattr(candidate.edits[-1], "rule", "")
-            if in_rule[rule] >= _KEPT_OF_A_RULE:
+            if in_rule[rule] >= KEPT_PER_RULE:
                 continue
             negatives = self.judge(candidate.edits)
             judged += 1
             in_rule[rule] += not negatives
             (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == (_KEPT if self.thorough else _KEPT_LIGHT) or judged == (
-                _MOST_JUDGED if self.thorough else _MOST_JUDGED_LIGHT
+            if len(clean) == (KEPT if self.thorough else KEPT_LIGHT) or judged == (
+                MOST_SCORED if self.thorough else MOST_SCORED_LIGHT
             ):
                 break
-        return clean + costly[: _KEPT - len(clean)]
+        return clean + costly[: KEPT - len(clean)]
 
     def _diverse(
         self, outcomes: list[tuple[Candidate, Outcome]]
@@ -268,7 +269,9 @@ class Search:
         return [
             pair
             for same in alike.values()
-            for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[:_ALIKE]
+            for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[
+                :KEPT_PER_RESULT
+            ]
         ]
 
     def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
@@ -278,13 +281,13 @@ class Search:
         for p in proposals:
             wider = self.trial.wider(p.edits)
             share = 0.0 if wider is None else self.whole.share(wider, lines)
-            worth[p.edits] = self._worth(p, p) * (_LINE_COUNTS + (1 - _LINE_COUNTS) * share)
+            worth[p.edits] = self._worth(p, p) * (LINE_WEIGHT + (1 - LINE_WEIGHT) * share)
             if p.mended.issuperset(alike):
-                worth[p.edits] *= _ALL_ALIKE
+                worth[p.edits] *= ALL_ALIKE_FACTOR
             if self._loses(p.edits):
-                worth[p.edits] *= _LOSES_FILES
+                worth[p.edits] *= BREAKS_FILES_FACTOR
             if self.trial.is_ambiguous(p.edits, p.mended):
-                worth[p.edits] *= _TWO_READINGS
+                worth[p.edits] *= AMBIGUOUS_FACTOR
         return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
 
 

@@ -14,13 +14,16 @@ from dataclasses import dataclass, field
 from recovery.proposals.collocations import last_two
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
+from recovery.tuning import (
+    MOST_ALIGNED,
+    MOST_CHOICES,
+    MOST_COLUMNS,
+    MOST_LINE_SHAPES,
+    PHRASE_LEVELS,
+)
 
 __all__ = ["common_phrases"]
 
-_MOST_ROWS = 16
-_MOST_COLUMNS = 14
-_MOST_RULES = 3
-_MOST_SHAPES = 6
 
 _Span = tuple[Word, ...]
 
@@ -52,14 +55,14 @@ def common_phrases(
 
     The most restrictive first; none where the phrases have too little in common to be one.
     """
-    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:_MOST_ROWS]
+    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:MOST_ALIGNED]
     if not rows:
         return
     columns = _columns(phraser, rows)
-    if len(columns) > _MOST_COLUMNS or not _belong_together(columns, len(rows)):
+    if len(columns) > MOST_COLUMNS or not _belong_together(columns, len(rows)):
         return
     seen = set()
-    for level in range(3):
+    for level in range(PHRASE_LEVELS):
         narrow = [_written(phraser, column, level, near) for column in columns]
         if not all(narrow):
             continue
@@ -76,7 +79,7 @@ def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
     if 2 * sum(in_all) >= len(columns):
         return True
     forms = {frozenset(column.cells) for column in columns}
-    return bool(columns[0].key and in_all[0]) and len(forms) <= _MOST_SHAPES
+    return bool(columns[0].key and in_all[0]) and len(forms) <= MOST_LINE_SHAPES
 
 
 def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
@@ -200,7 +203,7 @@ def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
     """A few rules or tokens that read all the spans between them."""
     left = list(spans)
     out: list[str] = []
-    while left and len(out) < _MOST_RULES:
+    while left and len(out) < MOST_CHOICES:
         reads: dict[str, list[_Span]] = {}
         for span in left:
             for rule in phraser.rules_for_all([span]):

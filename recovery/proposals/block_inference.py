@@ -20,12 +20,10 @@ from recovery.proposals.alignment import common_phrases
 from recovery.proposals.grammar_profile import Layout
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
+from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES, MOST_MIDDLES
 
 __all__ = ["Block", "BlockFinder"]
 
-_MOST_FORMS = 3
-_MOST_BODIES = 4
-_MOST_MIDDLES = 3
 
 _Line = tuple[str, tuple[Word, ...]]  # its leading word, its tokens without the line end
 
@@ -77,7 +75,7 @@ class BlockFinder:
 
     def _lines(self, text: str, meant: frozenset[str]) -> list[_Line]:
         lexer, end = self.recognizer.lexer, self.recognizer.line_kind
-        name = lexer.kind_of.get("NAME", -99)
+        name = lexer.kind_of.get("NAME")
         out: list[_Line] = []
         words: list[Word] = []
         lead = ""
@@ -154,13 +152,13 @@ class BlockFinder:
         return seen
 
     def _forms(self, seen: _Seen) -> Iterator[tuple[str, ...]]:
-        if len(seen.middles) > _MOST_MIDDLES:
+        if len(seen.middles) > MOST_MIDDLES:
             return
         end = self.layout.line_end
-        for body in self.layout.bodies[:_MOST_BODIES]:
+        for body in self.layout.bodies[:MOST_BODIES]:
             headers = self._phrases(seen.headers)
             closers = self._phrases(seen.closers)
-            for level in range(min(_MOST_FORMS, len(headers))):
+            for level in range(min(MOST_BLOCK_FORMS, len(headers))):
                 if not closers:
                     return
                 symbols = [*headers[level], end]

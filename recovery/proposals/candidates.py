@@ -19,18 +19,21 @@ from grammar.notation.edits import AddAlternative, Address, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.alignment import common_phrases
 from recovery.proposals.block_inference import Block, BlockFinder
-from recovery.proposals.edit_site import UNLIKELY, Line, Opening, Ranked
+from recovery.proposals.edit_site import Line, Opening, Ranked
 from recovery.proposals.grammar_profile import Layout
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Likeness
 from recovery.proposals.site_finder import OpeningFinder
+from recovery.tuning import (
+    BLOCK_PART_BONUS,
+    BREADTH_FACTOR,
+    NO_LINE_RULE_COST,
+    SAME_RULE_FACTOR,
+    UNLIKELY_COST,
+)
 
-__all__ = ["BREADTH_COSTS", "Candidate", "CandidateFinder", "Line"]
-
-#: What an edit loses of its worth for each step in breadth: of two that mend nearly as much, the
-#: one that lets in less is preferred.
-BREADTH_COSTS = 0.995
+__all__ = ["Candidate", "CandidateFinder", "Line"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +49,6 @@ class Candidate:
         edit = self.edits[-1]
         return type(edit).__name__, getattr(edit, "rule", ""), getattr(edit, "at", ())
 
-
-# Each further edit of the same rule is less worth a try, so that other rules have their turn.
-_MORE_OF_THE_SAME = 0.93
-# A line with a word of its own and lines behind it may be a part of a block, as ELSE is.
-_BODY = 4
-# What is not a rule of lines is seldom the place for a block.
-_NO_LINES = 12
 
 #: Openings of several lines that may be one: kind, rule, place, word or sign they begin with.
 _Slot = tuple[str, str, Address, str]
@@ -114,7 +110,7 @@ class CandidateFinder:
         for edits in sorted(ranks, key=lambda e: (-hopes[e], str(e))):
             if not self.layout.is_left_recursive(edits[-1]):
                 rule = getattr(edits[-1], "rule", "")
-                varied[edits] = hopes[edits] * _MORE_OF_THE_SAME ** in_rule[rule]
+                varied[edits] = hopes[edits] * SAME_RULE_FACTOR ** in_rule[rule]
                 in_rule[rule] += 1
         ordered = sorted(varied, key=lambda e: (-varied[e], str(e)))
         return [Candidate(edits, ranks[edits]) for edits in ordered]
@@ -131,7 +127,7 @@ class CandidateFinder:
         known = self.layout.grammar.by_name
         rank = self.layout.width(rule) + self.phraser.breadth(block.symbols) + len(block.symbols)
         if rule not in self.layout.of_lines:
-            rank += _NO_LINES
+            rank += NO_LINE_RULE_COST
         symbols = (*block.symbols, *self._closing(rule))
         return rank + self.likeness.unlike(rule, symbols), (
             *self.layout.vocabulary.reserve(k for k in block.keywords if k not in known),
@@ -204,8 +200,11 @@ class CandidateFinder:
                     for body in self.layout.bodies:
                         text = f"({ended} {' '.join(body)})"
                         rank += len(body)
-                        yield rank - _BODY, (*tokens, Insert(rule, place, f"{text}?"))
-                        yield rank - _BODY + 1, (*tokens, Insert(rule, place, f"{text}*"))
+                        yield rank - BLOCK_PART_BONUS, (*tokens, Insert(rule, place, f"{text}?"))
+                        yield (
+                            rank - BLOCK_PART_BONUS + 1,
+                            (*tokens, Insert(rule, place, f"{text}*")),
+                        )
             case "insert":
                 unit = _unit(symbols)
                 if unit is None and not looped:
@@ -230,17 +229,17 @@ class CandidateFinder:
         ):
             rank += self.likeness.unlike(rule, symbols)
             if self.likeness.repeats_sibling(rule, symbols):
-                rank += 2 * UNLIKELY
+                rank += 2 * UNLIKELY_COST
             if self.likeness.extends(rule, symbols):
-                rank += UNLIKELY
+                rank += UNLIKELY_COST
             if len(symbols) == 1 and self.phraser.would_be_read_twice(rule, text):
-                rank += 2 * UNLIKELY
+                rank += 2 * UNLIKELY_COST
             yield rank, (*tokens, AddAlternative(rule, text))
 
 
 def _hope(lines: int, rank: int) -> float:
     """What may be gained where so many lines have an opening."""
-    return lines * float(BREADTH_COSTS**rank)
+    return lines * float(BREADTH_FACTOR**rank)
 
 
 _T = TypeVar("_T")

@@ -15,6 +15,7 @@ from functools import cached_property
 
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
 from grammar.parser.recognizer import Recognizer
+from recovery.tuning import USUAL_PART, WORD_LIST_PART
 
 __all__ = ["Before", "Habits", "last_two", "symbols_in"]
 
@@ -24,8 +25,6 @@ Before = tuple[str, str]
 _BEGINNING: Before = ("", "")
 _A_WORD = "a word"
 _SYMBOLS = re.compile(r"('(?:[^'\\]|\\.)*'|\w+)([?*]?)")
-# So many different things may be usual in places of a kind.
-_FEW = 3
 
 
 def symbols_in(texts: Iterable[str]) -> list[tuple[Before, str]]:
@@ -62,7 +61,7 @@ class Habits:
         for place in self._places(before):
             found = self._behind.get(place)
             if found:
-                many = found.total() / _FEW
+                many = found.total() / USUAL_PART
                 return {symbol: count for symbol, count in found.items() if count >= many}
         return {}
 
@@ -132,7 +131,7 @@ class Habits:
         alone: set[tuple[str, str]] = set()
         words = sum(map(self._lexer.is_keyword, self._lexer.kind_of.values()))
         for rule in self.grammar.rules:
-            if rule.is_lexer or 4 * len(rule.alternatives) > words:
+            if rule.is_lexer or WORD_LIST_PART * len(rule.alternatives) > words:
                 continue
             for alternative in rule.alternatives:
                 tokens = [e for e in walk(alternative) if isinstance(e, Reference) and e.is_token]

@@ -9,15 +9,10 @@ from grammar.notation.edits import Address, Edit
 from grammar.parser.failures import Form
 from grammar.parser.recognizer import Configuration, Recognizer, State
 from recovery.proposals.segmentation import Word
+from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
-__all__ = ["UNLIKELY", "Line", "Opening", "Ranked", "places_of", "sites_of"]
+__all__ = ["Line", "Opening", "Ranked", "places_of", "sites_of"]
 
-_LONGEST_LINE = 1_000
-# Frames on the stacks a line begins with: a block adds two or three. The deepest line that fails in
-# our own programs has 15; hundreds cost minutes, for they are read anew at each trial.
-_DEEPEST = 150
-#: What an opening loses in rank that is hardly ever meant.
-UNLIKELY = 8
 
 #: Edits that need no phrase, and how much they let in.
 Ranked = tuple[int, tuple[Edit, ...]]
@@ -34,7 +29,7 @@ class Line:
     def is_enormous(self) -> bool:
         """Whether it is too long, or too deeply nested, to be worth a search: nobody wrote it."""
         deepest = max(map(len, self.form.before), default=0)
-        return len(self.form.kinds) > _LONGEST_LINE or deepest > _DEEPEST
+        return len(self.form.kinds) > LONGEST_LINE or deepest > DEEPEST_STACK
 
     def words(self) -> list[Word]:
         """The tokens of the line."""

@@ -34,16 +34,11 @@ from grammar.notation.model import (
 )
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.keywords import Vocabulary
+from recovery.tuning import HUB_ALTERNATIVES, SAME_TEXT_BONUS, WIDTH_PER_DOUBLING
 
-__all__ = ["HUB", "Layout"]
+__all__ = ["Layout"]
 
-#: A rule of so many alternatives is one that gathers kinds of statement, operand or the like.
-HUB = 4
 _NAMES = re.compile(r"\w+")
-# Steps in breadth that are saved where something is written as elsewhere.
-_SAID_SO = 6
-# Twice as many rules around a rule are so many steps in breadth.
-_WIDENS = 5
 
 
 class Layout:
@@ -120,7 +115,7 @@ class Layout:
 
     def said_so(self, text: str) -> int:
         """What speaks for a text that some rule has already, as what is optional or repeated."""
-        return _SAID_SO if "".join(text.split()) in self._said else 0
+        return SAME_TEXT_BONUS if "".join(text.split()) in self._said else 0
 
     def place_as_elsewhere(self, rule: str, at: Address, text: str) -> Address | None:
         """Where a part goes that other sequences have beside what is also found here.
@@ -187,7 +182,7 @@ class Layout:
 
     def is_hub(self, rule: str) -> bool:
         """Whether a rule gathers kinds of something."""
-        return len(self.grammar.by_name[rule].alternatives) >= HUB
+        return len(self.grammar.by_name[rule].alternatives) >= HUB_ALTERNATIVES
 
     def has_choice(self, rule: str) -> bool:
         """Whether a rule has more than one alternative."""
@@ -216,7 +211,7 @@ class Layout:
                 for caller in self.callers[todo.pop()] - seen:
                     seen.add(caller)
                     todo.append(caller)
-            out[name] = round(_WIDENS * math.log2(1 + len(seen)))
+            out[name] = round(WIDTH_PER_DOUBLING * math.log2(1 + len(seen)))
         return out
 
     @cached_property

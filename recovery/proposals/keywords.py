@@ -11,6 +11,7 @@ from functools import cached_property
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.model import Element, Group, Literal, Reference, walk
 from grammar.parser.recognizer import Recognizer
+from recovery.tuning import WORD_LIST_PART
 
 __all__ = ["Vocabulary"]
 
@@ -79,7 +80,7 @@ class Vocabulary:
             for rule in self.grammar.rules
             if not rule.is_lexer
             and self.is_set_of_words(rule.name)
-            and 4 * len(rule.alternatives) > all_words
+            and WORD_LIST_PART * len(rule.alternatives) > all_words
         )
 
     def is_written(self, word: str) -> bool:

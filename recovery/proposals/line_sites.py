@@ -12,11 +12,12 @@ from grammar.notation.edits import AddAlternative, Insert
 from grammar.parser.failures import Form
 from grammar.parser.recognizer import Configuration, State
 from grammar.parser.shortest_paths import Paths
-from recovery.proposals.edit_site import UNLIKELY, Opening, Ranked, places_of, sites_of
+from recovery.proposals.edit_site import Opening, Ranked, places_of, sites_of
 from recovery.proposals.grammar_profile import Layout
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Likeness
+from recovery.tuning import LINE_LOOP_COST, SITE_COST, UNLIKELY_COST
 
 __all__ = ["LineOpenings"]
 
@@ -48,9 +49,9 @@ class LineOpenings:
             rule = recognizer.network.rule[site[0]]
             if rule in layout.line_ends:
                 continue
-            rank = layout.width(rule) + 8
+            rank = layout.width(rule) + SITE_COST
             if self._is_beside_lines(site):
-                rank += 2 * UNLIKELY  # it would put lines in an order that no text asks for
+                rank += 2 * UNLIKELY_COST  # it would put lines in an order that no text asks for
             for place in places_of(self.recognizer, site):
                 if rule != self.grammar.start and layout.is_at_start(rule, place):
                     continue  # what comes before a rule belongs to the rule that calls it
@@ -59,11 +60,11 @@ class LineOpenings:
                     continue
                 for reader in readers:
                     fits = reader in layout.loops or self.phraser.is_unused(reader)
-                    worth = rank + self.phraser.breadth([reader]) + (0 if fits else UNLIKELY)
+                    worth = rank + self.phraser.breadth([reader]) + (0 if fits else UNLIKELY_COST)
                     yield worth, (Insert(rule, place, f"{reader}*"),)
                 if not readers:
                     phrase = tuple(words[:-1])
-                    yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY)
+                    yield Opening("lines", rule, place, phrase, rank + 2 * UNLIKELY_COST)
 
     def _known_elsewhere(self, before: State, readers: tuple[str, ...]) -> Iterator[Ranked]:
         """What reads whole lines elsewhere, as one more kind of the lines that come here."""
@@ -78,7 +79,7 @@ class LineOpenings:
             for reader in readers:
                 if reader not in layout.of_lines or reader == rule:
                     continue
-                rank = layout.width(rule) + 8 + self.phraser.breadth([reader])
+                rank = layout.width(rule) + SITE_COST + self.phraser.breadth([reader])
                 rank += self.likeness.unlike(rule, (reader,))
                 yield rank, (AddAlternative(rule, reader),)
 
@@ -103,7 +104,7 @@ class LineOpenings:
             if rule in layout.line_ends:
                 continue
             goes_on = recognizer.run(recognizer.at(site, state), kinds[:1])[1] is None
-            rank = layout.width(rule) + 8
+            rank = layout.width(rule) + SITE_COST
             for place in places_of(self.recognizer, site):
                 if rule != self.grammar.start and layout.is_at_start(rule, place):
                     continue
@@ -111,7 +112,10 @@ class LineOpenings:
                     yield rank, (Insert(rule, place, "NEWLINE*"),)
                 for reader in readers:
                     text = f"({layout.line_end} {reader})*"
-                    yield rank + self.phraser.breadth([reader]) + 2, (Insert(rule, place, text),)
+                    yield (
+                        rank + self.phraser.breadth([reader]) + LINE_LOOP_COST,
+                        (Insert(rule, place, text),),
+                    )
 
     def _as_alternatives(self, before: State, words: list[Word]) -> Iterator[Opening]:
         """The line as an alternative of a rule whose alternatives are whole lines."""
@@ -124,7 +128,7 @@ class LineOpenings:
         for rule in sorted(rules):
             end = self.layout.closing(rule)
             if end is not None:
-                rank = self.layout.width(rule) + 8
+                rank = self.layout.width(rule) + SITE_COST
                 yield Opening("line", rule, (1, 1), tuple(words[:-1]), rank)
 
     def _readers(self, kinds: tuple[int, ...]) -> tuple[str, ...]:
@@ -145,5 +149,5 @@ class LineOpenings:
                     continue
                 beyond = self.recognizer.at((back, stack), before)
                 if self.recognizer.run(beyond, end)[1] is None:
-                    rank = self.layout.width(rule) + 8 + UNLIKELY
+                    rank = self.layout.width(rule) + SITE_COST + UNLIKELY_COST
                     yield Opening("alternative", rule, (1, 1), tuple(words[:last]), rank)

@@ -13,20 +13,20 @@ from itertools import islice, product
 
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.collocations import Before, Habits, symbols_in
-from recovery.proposals.grammar_profile import HUB
 from recovery.proposals.rule_matcher import Readers
 from recovery.proposals.segmentation import Cutter, Word
+from recovery.tuning import (
+    HUB_ALTERNATIVES,
+    LONGEST_PHRASE,
+    MOST_COMBINATIONS,
+    MOST_NEAR_RULES,
+    MOST_OPERAND_RULES,
+    MOST_SYMBOLS,
+    NARROWER_RULE_COST,
+    USUAL_RULE_COST,
+)
 
 __all__ = ["Phraser"]
-
-_LONGEST_PHRASE = 24
-_MOST_SYMBOLS = 8
-# Rules that are tried for an operand that stands alone.
-_MOST_READERS = 6
-_MOST_SPELLINGS = 12
-# What a rule costs at most where it usually stands, and what it costs more to be narrower than it.
-_USUAL = 2
-_UNUSUAL = 5
 
 
 class Phraser:
@@ -55,7 +55,7 @@ class Phraser:
         """
         known = self.recognizer.grammar.by_name
         return len(self._callers[rule]) == 1 and all(
-            rule in self._wider[caller] and len(known[caller].alternatives) < HUB
+            rule in self._wider[caller] and len(known[caller].alternatives) < HUB_ALTERNATIVES
             for caller in self._callers[rule]
         )
 
@@ -120,11 +120,11 @@ class Phraser:
         cost = 1 + len(self._wider[rule]) + (rule != symbol)
         usual = self.habits.usual(before)
         if 2 * usual.get(symbol, 0) > sum(usual.values()):
-            return min(cost, _USUAL)
+            return min(cost, USUAL_RULE_COST)
         is_narrower = symbol not in usual and any(
             rule == u or rule in self._wider.get(u, ()) for u in usual
         )
-        return cost + (_UNUSUAL if is_narrower else 0)
+        return cost + (NARROWER_RULE_COST if is_narrower else 0)
 
     def sign(self, span: Sequence[Word]) -> str | None:
         """The text of a keyword or sign; ``None`` for what carries a value."""
@@ -163,12 +163,12 @@ class Phraser:
 
         ``near`` names rules that stand close by in the grammar: they are tried for operands too.
         """
-        if not words or len(words) > _LONGEST_PHRASE:
+        if not words or len(words) > LONGEST_PHRASE:
             return
         seen: set[tuple[str, ...]] = set()
         for symbols in self._spellings(words, near):
             for shape in (symbols, _as_list(symbols)):
-                if len(shape) <= _MOST_SYMBOLS and shape not in seen:
+                if len(shape) <= MOST_SYMBOLS and shape not in seen:
                     seen.add(shape)
                     yield shape
 
@@ -186,12 +186,12 @@ class Phraser:
         if all(choices):
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
-            yield from islice(product(*choices), _MOST_SPELLINGS)
+            yield from islice(product(*choices), MOST_COMBINATIONS)
         if len(parts) == 1 and not any(keyword for _, keyword in words):
             # an operand that is all of a phrase may be whatever reads it, the most used ones first
             rules = self.readers.rules_for(tuple(kind for kind, _ in words))
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
-            yield from ((rule,) for rule in ordered[:_MOST_READERS])
+            yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
 
     def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
         """The symbols, with what the grammar usually writes where that reads the parts."""
@@ -239,7 +239,7 @@ class Phraser:
         return self._levels_of(rules, near)
 
     def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
-        close = sorted(rules & near)[:2]
+        close = sorted(rules & near)[:MOST_NEAR_RULES]
         rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
         # a rule that nothing uses waits to be used: it comes first
         narrow = min(

@@ -11,12 +11,9 @@ from functools import cached_property
 
 from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer, State
+from recovery.tuning import LONGEST_BEGINNING_KEPT, MOST_ANSWERS_KEPT, WORD_LIST_PART
 
 __all__ = ["Readers"]
-
-# Tokens that are remembered as the beginning of longer ones, and how many answers are kept.
-_LONGEST_BEGINNING = 24
-_MOST_REMEMBERED = 200_000
 
 
 class Readers:
@@ -47,7 +44,7 @@ class Readers:
         """Rules of which these tokens are a whole sentence."""
         found = self._spans.get(kinds)
         if found is None:
-            if len(self._spans) >= _MOST_REMEMBERED:
+            if len(self._spans) >= MOST_ANSWERS_KEPT:
                 self._spans.clear()
             ends = self.recognizer.ends
             read = self._read(kinds).items()
@@ -66,8 +63,8 @@ class Readers:
         for count in range(known, len(kinds)):
             following = {rule: self.recognizer.step(s, kinds[count]) for rule, s in states.items()}
             states = {rule: state for rule, state in following.items() if state is not None}
-            if count < _LONGEST_BEGINNING:
-                if len(self._begun) >= _MOST_REMEMBERED:
+            if count < LONGEST_BEGINNING_KEPT:
+                if len(self._begun) >= MOST_ANSWERS_KEPT:
                     self._begun.clear()
                 self._begun[kinds[: count + 1]] = states
         return states
@@ -86,7 +83,9 @@ class Readers:
         lexer = self.recognizer.lexer
         keywords = [kind for kind in lexer.kind_of.values() if lexer.is_keyword(kind)]
         counts = Counter(rule for kind in keywords for rule in self.rules_for((kind,)))
-        return frozenset(rule for rule, count in counts.items() if 4 * count > len(keywords))
+        return frozenset(
+            rule for rule, count in counts.items() if WORD_LIST_PART * count > len(keywords)
+        )
 
     @cached_property
     def of_values(self) -> frozenset[str]:

@@ -8,17 +8,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recovery.proposals.rule_matcher import Readers
+from recovery.tuning import (
+    LONGEST_SEGMENTED,
+    MOST_ANSWERS_KEPT,
+    OPERAND_COST,
+    SEAM_COST,
+    TOKEN_COST,
+)
 
 __all__ = ["Cutter", "Word"]
 
 #: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
 Word = tuple[int, str | None]
 
-_LONGEST_CUT = 120  # words; the cost grows with the cube, and no statement has so many parts
-_MOST_REMEMBERED = 200_000
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
-# What a rule that reads several operands in a row costs for each seam: more than writing them out.
-_LOOSE = 30
 
 
 class Cutter:
@@ -30,11 +33,11 @@ class Cutter:
 
     def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
         """The words cut into the fewest operands and single tokens, unless they are too many."""
-        if len(words) > _LONGEST_CUT:
+        if len(words) > LONGEST_SEGMENTED:
             return None
         key = tuple(words)
         if key not in self._cuts:
-            if len(self._cuts) >= _MOST_REMEMBERED:
+            if len(self._cuts) >= MOST_ANSWERS_KEPT:
                 self._cuts.clear()
             self._cuts[key] = self._cut(key)
         return self._cuts[key]
@@ -47,7 +50,9 @@ class Cutter:
                 rest, part = best[end], words[start:end]
                 if rest is None or not self._can_be_written(part):
                     continue
-                cost = rest[0] + (10 if len(part) == 1 else 9 + _LOOSE * self._seams(part))
+                cost = rest[0] + (
+                    TOKEN_COST if len(part) == 1 else OPERAND_COST + SEAM_COST * self._seams(part)
+                )
                 known = best[start]
                 if known is None or cost < known[0]:
                     best[start] = (cost, [part, *rest[1]])

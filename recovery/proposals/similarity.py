@@ -11,14 +11,17 @@ from difflib import SequenceMatcher
 from functools import cached_property
 
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
-from recovery.proposals.grammar_profile import HUB, Layout
+from recovery.proposals.grammar_profile import Layout
+from recovery.tuning import (
+    HUB_ALTERNATIVES,
+    LOOSE_GATHERING_COST,
+    MANY_FORMS,
+    NEW_FORM_COST,
+    SIMILAR_RATIO,
+    SIMILARITY_STEPS,
+)
 
 __all__ = ["Likeness"]
-
-_ALIKE = 0.6
-_TOGETHER = 6
-_LIKE = 6
-_LOOSE = 2
 
 
 class Likeness:
@@ -52,21 +55,25 @@ class Likeness:
             return 0
         kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
-            return -3 * _LIKE if _kind(new[0]) in kinds else -_LIKE
+            return -3 * SIMILARITY_STEPS if _kind(new[0]) in kinds else -SIMILARITY_STEPS
         if self.gathers(rule):
             if not self._is_single(symbols):
                 if self.vocabulary.words_of(rule):
-                    return 3 * _LIKE  # each is a word, and this is none
-                return 2 * _LIKE if self._is_known_by(rule, symbols[0]) else _LOOSE
+                    return 3 * SIMILARITY_STEPS  # each is a word, and this is none
+                return (
+                    2 * SIMILARITY_STEPS
+                    if self._is_known_by(rule, symbols[0])
+                    else LOOSE_GATHERING_COST
+                )
             if not self.layout.is_free(symbols[0]):
-                return -_LIKE  # it has its place already
-            return -3 * _LIKE if _kind(new[0]) in kinds else -2 * _LIKE
+                return -SIMILARITY_STEPS  # it has its place already
+            return -3 * SIMILARITY_STEPS if _kind(new[0]) in kinds else -2 * SIMILARITY_STEPS
         leads = self._leads(rule)
         if len(leads) == 1 and "" not in leads:
-            return -_LIKE if symbols[0] in leads else 2 * _LIKE
-        if best >= _ALIKE and len(known) > 1:
-            return -round(_LIKE * best)
-        return 2 + max(0, _TOGETHER - len(known))
+            return -SIMILARITY_STEPS if symbols[0] in leads else 2 * SIMILARITY_STEPS
+        if best >= SIMILAR_RATIO and len(known) > 1:
+            return -round(SIMILARITY_STEPS * best)
+        return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
 
     def _is_one_of_words(self, rule: str) -> bool:
         """Whether a rule is a choice of words."""
@@ -108,7 +115,7 @@ class Likeness:
         """Whether a rule is one kind of statement, known by its words, and the symbols another."""
         leads = self._leads(rule)
         another_word = len(symbols) == 1 and self._is_one_of_words(rule)
-        known = "" in leads or symbols[0] in leads or len(leads) >= HUB
+        known = "" in leads or symbols[0] in leads or len(leads) >= HUB_ALTERNATIVES
         return rule in self._gathered and not (known or another_word)
 
     @cached_property

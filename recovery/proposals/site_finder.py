@@ -14,23 +14,28 @@ from grammar.notation.edits import AddAlternative, Address, Edit, Insert, MakeOp
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
 from grammar.parser.failures import Form
 from grammar.parser.recognizer import Configuration, State
-from recovery.proposals.edit_site import UNLIKELY, Line, Opening, Ranked, places_of, sites_of
+from recovery.proposals.edit_site import Line, Opening, Ranked, places_of, sites_of
 from recovery.proposals.grammar_profile import Layout
 from recovery.proposals.line_sites import LineOpenings
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Likeness
+from recovery.tuning import (
+    LONGEST_PREFIX,
+    LONGEST_RUN,
+    MOST_RESUMPTIONS,
+    MOST_SKIPPED,
+    NOT_BEGUN_COST,
+    REPETITION_BREADTH_PART,
+    REPETITION_COST,
+    SHARED_ELEMENTS,
+    SITE_COST,
+    UNLIKELY_COST,
+    WIDEN_COST,
+    WIDEN_FIRST_WORD_COST,
+)
 
 __all__ = ["OpeningFinder"]
-
-_MOST_SKIPPED = 3
-# Elements of a sequence in which one word may well stand for another at its beginning.
-_SHARED = 4
-_LONGEST_RUN = 24
-# What a rule may have in front of it and still be the same thing.
-_LONGEST_PREFIX = 3
-# What is let in ahead of a failure is rather a thing that was begun there than another one.
-_NOT_BEGUN = 2
 
 
 class OpeningFinder:
@@ -118,7 +123,7 @@ class OpeningFinder:
                     rule,
                     (1, 1),
                     tuple(words[start:end]),
-                    self.layout.width(rule) + 8,
+                    self.layout.width(rule) + SITE_COST,
                 )
 
     def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
@@ -135,7 +140,7 @@ class OpeningFinder:
         """Openings ahead of the failure: what was to be let in was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
-        for start in range(max(0, form.index - _MOST_SKIPPED), form.index):
+        for start in range(max(0, form.index - MOST_SKIPPED), form.index):
             state, _ = recognizer.run(before, form.kinds[:start])
             for site in sites_of(self.recognizer, state):
                 rule = network.rule[site[0]]
@@ -145,9 +150,9 @@ class OpeningFinder:
                 for entry, back in network.calls[site[0]]:
                     beyond = recognizer.at((back, site[1]), state)
                     called = network.rule[entry]
-                    rank = self.layout.width(called) + 8
+                    rank = self.layout.width(called) + SITE_COST
                     if (called, (back, *site[1].positions())) not in begun:
-                        rank += _NOT_BEGUN
+                        rank += NOT_BEGUN_COST
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
                 # what was let in may end where another reading went on, and failed later
@@ -163,7 +168,7 @@ class OpeningFinder:
     def _reading_on(self, state: State, words: list[Word], start: int, first: int) -> list[int]:
         """Where from ``first`` on the whole rest of the line can be read from ``state``."""
         kinds = [kind for kind, _ in words]
-        ends = range(max(start + 1, first), min(len(kinds), start + _MOST_SKIPPED + 1))
+        ends = range(max(start + 1, first), min(len(kinds), start + MOST_SKIPPED + 1))
         return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
 
     # --------------------------------------------------------------------------- at one site
@@ -191,7 +196,7 @@ class OpeningFinder:
                 comes_next = words[end][0] in self.layout.first(sequence, number)
                 # behind all that may be left out, but for what the line has behind it; before the
                 # first element of a rule only where that element itself comes next
-                is_prefix = position != base or (not gathers and end - start <= _LONGEST_PREFIX)
+                is_prefix = position != base or (not gathers and end - start <= LONGEST_PREFIX)
                 is_suffix = is_last and position != base and not begins_loop
                 if (comes_next and is_prefix) or (
                     is_suffix and not self._is_behind_line_end(rule, place)
@@ -216,7 +221,7 @@ class OpeningFinder:
         kinds = [kind for kind, _ in words]
         whole, part = [], []
         # the end of the line itself is never part of a phrase
-        for end in range(max(start + 1, earliest), min(len(kinds), start + _LONGEST_RUN)):
+        for end in range(max(start + 1, earliest), min(len(kinds), start + LONGEST_RUN)):
             unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
             if unknown == end:
                 continue  # a word that the grammar lacks belongs to the phrase
@@ -225,7 +230,7 @@ class OpeningFinder:
                 whole.append(end)
             elif failed > 1:
                 part.append(end)
-        return whole[:3] or part[:1]
+        return whole[:MOST_RESUMPTIONS] or part[:1]
 
     def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> Opening:
         width = self._room(rule)
@@ -236,8 +241,8 @@ class OpeningFinder:
         if isinstance(before, Reference) and not before.is_token:
             alone = self.layout.is_hub(rule) and len(elements) == 1
             if alone or (place[-1] > 1 and self.layout.is_hub(before.name)):
-                width += UNLIKELY  # behind one of many statements rather than in it
-        return Opening("insert", rule, place, tuple(words), width + 8)
+                width += UNLIKELY_COST  # behind one of many statements rather than in it
+        return Opening("insert", rule, place, tuple(words), width + SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:
         """Whether a place is behind the end of a line that a rule is: that is the next line."""
@@ -249,7 +254,7 @@ class OpeningFinder:
     def _room(self, rule: str) -> int:
         """How wide an insertion into a rule is; one that has nothing of its own waits for it."""
         width = self.layout.width(rule)
-        return width - UNLIKELY if self.layout.only_passes_on(rule) else width
+        return width - UNLIKELY_COST if self.layout.only_passes_on(rule) else width
 
     def _repetitions(
         self, rule: str, place: Address, words: Sequence[Word]
@@ -265,7 +270,8 @@ class OpeningFinder:
             return
         if before.name in self.phraser.readers.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
-            rank = self._room(rule) + 4 + self.phraser.breadth([before.name]) // 3
+            rank = self._room(rule) + REPETITION_COST
+            rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
             rank -= self.layout.said_so(text)
             yield rank, (*self.reserved(words), Insert(rule, place, text))
 
@@ -273,7 +279,7 @@ class OpeningFinder:
         """A rule of several lines that this line begins and that is not known at this place."""
         if any(keyword for _, keyword in words):
             return
-        rank = self.layout.width(rule) + 8
+        rank = self.layout.width(rule) + SITE_COST
         elements = self.layout.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
@@ -284,12 +290,14 @@ class OpeningFinder:
                     end = self.layout.closing(hub)
                     symbols = (block, end) if end else (block,)
                     if not self.likeness.is_foreign(hub, symbols):
-                        worth = self.layout.width(hub) + 8 + self.likeness.unlike(hub, symbols)
+                        worth = (
+                            self.layout.width(hub) + SITE_COST + self.likeness.unlike(hub, symbols)
+                        )
                         yield worth, (AddAlternative(hub, " ".join(symbols)),)
             if rule != self.grammar.start and self.layout.is_at_start(rule, place):
                 continue
             for text in (f"{block}*", f"({block} NEWLINE*)*"):
-                yield rank + UNLIKELY, (Insert(rule, place, text),)
+                yield rank + UNLIKELY_COST, (Insert(rule, place, text),)
 
     def _replacements(
         self, rule: str, place: Address, element: Element, words: Sequence[Word]
@@ -300,7 +308,7 @@ class OpeningFinder:
         called = element.name if isinstance(element, Reference) and not element.is_token else None
         # one kind of statement is no place for another kind: its caller is
         if called and (layout.has_choice(called) or not (whole and layout.is_hub(rule))):
-            rank = layout.width(called) + 8
+            rank = layout.width(called) + SITE_COST
             yield Opening("alternative", called, (1, 1), tuple(words), rank)
         leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
         closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
@@ -312,15 +320,15 @@ class OpeningFinder:
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and layout.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
-        if place[-1] == 1 and len(place) == 2 and len(words) > _LONGEST_PREFIX:
+        if place[-1] == 1 and len(place) == 2 and len(words) > LONGEST_PREFIX:
             return  # another beginning as long as that is another thing
-        rank = layout.width(rule) + (22 if leading else 12)
-        if leading and len(elements) < _SHARED:
-            rank += 2 * UNLIKELY  # there is hardly anything that the two words have in common
+        rank = layout.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
+        if leading and len(elements) < SHARED_ELEMENTS:
+            rank += 2 * UNLIKELY_COST  # there is hardly anything that the two words have in common
         if isinstance(element, Repeat):
-            rank += UNLIKELY  # one more thing in a loop made for something else
+            rank += UNLIKELY_COST  # one more thing in a loop made for something else
         if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
-            rank += UNLIKELY
+            rank += UNLIKELY_COST
         yield Opening("widen", rule, place, tuple(words), rank)
 
     def _omissions(
@@ -338,7 +346,7 @@ class OpeningFinder:
         places = network.automata[rule].places
         sequence = self.layout.sequence(rule, place[:-1])
         rest = [kind for kind, _ in words[start:]]
-        for count in range(1, _MOST_SKIPPED + 1):
+        for count in range(1, MOST_SKIPPED + 1):
             last = (*place[:-1], place[-1] + count)
             if last[-1] > len(sequence.elements) + 1 or (
                 count == len(sequence.elements) and len(place) == 2
@@ -349,13 +357,15 @@ class OpeningFinder:
             for target in (base + s for s, at in enumerate(places) if last in at):
                 _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
                 if failed is None or failed > 1:
-                    rank = self.layout.width(rule) + 8 + count
+                    rank = self.layout.width(rule) + SITE_COST + count
                     left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
                     ends = (left_out[0] is sequence.elements[0]) or last[-1] > len(
                         sequence.elements
                     )
                     if ends and any(map(self.vocabulary.is_keyword, left_out)):
-                        rank += 2 * UNLIKELY  # the words that begin and close a line or a block
+                        rank += (
+                            2 * UNLIKELY_COST
+                        )  # the words that begin and close a line or a block
                     yield rank, (MakeOptional(rule, place, count),)
                     break
 

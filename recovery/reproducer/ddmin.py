@@ -10,11 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from typing import TypeVar
 
+from recovery.tuning import EXHAUSTIVE_ITEMS, SUBSTITUTED_ITEMS
+
 __all__ = ["shrunk", "without_loops", "without_stretches"]
 
-# Up to so many items every stretch and pair is tried; up to so many, substitutes for stretches.
-_FEW = 40
-_MORE = 120
 
 _T = TypeVar("_T")
 
@@ -42,9 +41,9 @@ def shrunk(
     while len(left) != size:
         size = len(left)
         left = without_stretches(left, passes)
-        if size <= _MORE:
+        if size <= SUBSTITUTED_ITEMS:
             left = _substituted(left, substitutes, passes)
-        if size <= _FEW:
+        if size <= EXHAUSTIVE_ITEMS:
             left = _without_pairs(left, passes)
     return left
 
@@ -55,14 +54,17 @@ def without_stretches(items: list[_T], passes: Callable[[list[_T]], bool]) -> li
     while size:
         shorter = _without(items, size, passes)
         if size > 1 or len(shorter) == len(items):
-            size = min(len(shorter), size - 1 if size <= _FEW else max(size // 2, _FEW))
+            size = min(
+                len(shorter),
+                size - 1 if size <= EXHAUSTIVE_ITEMS else max(size // 2, EXHAUSTIVE_ITEMS),
+            )
         items = shorter
     return items
 
 
 def _without(items: list[_T], size: int, passes: Callable[[list[_T]], bool]) -> list[_T]:
     """Without stretches of one size, from the end on."""
-    for start in range(len(items) - size, -1, -1 if size <= _FEW else -size):
+    for start in range(len(items) - size, -1, -1 if size <= EXHAUSTIVE_ITEMS else -size):
         shorter = items[:start] + items[start + size :]
         if passes(shorter):
             items = shorter

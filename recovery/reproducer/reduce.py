@@ -20,19 +20,10 @@ from grammar.parser.shortest_paths import Paths
 from recovery.proposals.candidates import Line
 from recovery.reproducer.ddmin import shrunk, without_loops, without_stretches
 from recovery.reproducer.rendering import Spelling, Token
-from recovery.reproducer.same_failure import (
-    LONGEST_GAP,
-    SameFailure,
-    Way,
-    kinds_in,
-    line_at,
-    way_of,
-)
+from recovery.reproducer.same_failure import SameFailure, Way, kinds_in, line_at, way_of
+from recovery.tuning import LONGEST_GAP, MOST_CONFIGURATIONS
 
 __all__ = ["Reducer", "Reproducer"]
-
-# How many of the configurations a line was read from are looked at.
-_MOST_CONFIGURATIONS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +176,7 @@ class Reducer:
     def _prefixes(self, line: Line) -> Iterator[list[int]]:
         """Tokens to places where a line can begin, and to the very place where this one began."""
         yield from self._places.values()
-        for frames in line.form.before[:_MOST_CONFIGURATIONS]:
+        for frames in line.form.before[:MOST_CONFIGURATIONS]:
             yield self._paths.prefix(frames)
 
     @cached_property

@@ -15,6 +15,7 @@ from grammar.parser.lexer import EOF, ERROR, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
 from recovery.proposals.candidates import Line
+from recovery.tuning import MOST_NAMES
 
 __all__ = ["FRAME", "Spelling", "Token"]
 
@@ -32,8 +33,6 @@ _PREFIXES = frozenset({"GLOBAL"})
 # Words of lines with parameters, whose direction is written as in ``DEF A(B :IN)``.
 _DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
-# Numbered names of each letter, more than any line has.
-_MOST_NAMES = 10_000
 
 
 class Token(NamedTuple):
@@ -184,7 +183,7 @@ class Spelling:
 
 def _formed(form: str) -> Iterator[str]:
     """A new text of this form each time."""
-    names = (f"{letter}{number or ''}" for number, letter in product(range(_MOST_NAMES), _LETTERS))
+    names = (f"{letter}{number or ''}" for number, letter in product(range(MOST_NAMES), _LETTERS))
     return (form.format(letter=name, number=number) for number, name in enumerate(names, 1))
 
 

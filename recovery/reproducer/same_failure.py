@@ -12,14 +12,9 @@ from grammar.parser.failures import Context, FailureFinder
 from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer
 from recovery.reproducer.rendering import FRAME, Spelling, Token
+from recovery.tuning import LONGEST_GAP, MOST_TOKENS_READ, TEST_COST
 
-__all__ = ["LONGEST_GAP", "SameFailure", "Way", "kinds_in", "line_at", "way_of"]
-
-#: How many tokens at a failure may have to go for the rest of the line to be read.
-LONGEST_GAP = 64
-# A bound on the work for one reproducer, in tokens read: about a second.
-_MOST_READ = 3_000_000
-_COST_OF_A_TEST = 40
+__all__ = ["SameFailure", "Way", "kinds_in", "line_at", "way_of"]
 
 
 class Way(NamedTuple):
@@ -87,11 +82,11 @@ class SameFailure:
         self._spelling = spelling
         self._way = way
         self._may_follow = may_follow
-        self._left = _MOST_READ
+        self._left = MOST_TOKENS_READ
 
     def passes(self, tokens: list[Token]) -> bool:
         """Whether the program passes; never once the work allowed has been done."""
-        self._left -= len(tokens) + _COST_OF_A_TEST
+        self._left -= len(tokens) + TEST_COST
         if self._left < 0:
             return False
         recognizer, wider = self.recognizer, self.wider

@@ -16,21 +16,19 @@ from dataclasses import dataclass, field
 from grammar.parser.failures import Context, Form
 from grammar.parser.lexer import ERROR, Lexer
 from recovery.survey.failing_line import Failed
+from recovery.tuning import (
+    KEYWORD_ALONE,
+    KEYWORD_CHOICE,
+    KEYWORD_FILES,
+    KEYWORD_NEIGHBOURS,
+    KEYWORD_SHARE,
+)
 
 __all__ = ["Shape", "Shaper"]
 
 _ELLIPSIS = "…"
 # Signs that no plain name at the beginning of a line has behind it, but a keyword can.
 _BEGINS_OPERAND = frozenset("{-+")
-# A word is a would-be keyword when it stands so in so many files and beside so many different
-# words on one side (a declared name stands beside its type only; where lines begin two words are
-# enough), or this often with none, or where hardly any other name ever comes …
-_WORD_FILES = 2
-_WORD_NEIGHBOURS = 3
-_WORD_ALONE = 6
-_WORD_CHOICE = 2
-# … and in at least this share of its uses on failing lines.
-_WORD_SHARE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +91,9 @@ class Shaper:
         self._sole = frozenset(
             word
             for words in ends.values()
-            if len(words) <= _WORD_CHOICE
+            if len(words) <= KEYWORD_CHOICE
             for word, count in words.items()
-            if count >= _WORD_NEIGHBOURS
+            if count >= KEYWORD_NEIGHBOURS
         )
         for digest, failed, form in failures:
             for place, word in self._names(failed, form):
@@ -115,14 +113,14 @@ class Shaper:
             word
             for word, count in beside.items()
             if not word.startswith("$")
-            and len(files[word]) >= _WORD_FILES
+            and len(files[word]) >= KEYWORD_FILES
             and (
-                max(len(neighbours[word, -1]), len(neighbours[word, 1])) >= _WORD_NEIGHBOURS
-                or alone[word] >= _WORD_ALONE
-                or (len(led[word]) >= _WORD_FILES and len(neighbours[word, 1]) > 1)
+                max(len(neighbours[word, -1]), len(neighbours[word, 1])) >= KEYWORD_NEIGHBOURS
+                or alone[word] >= KEYWORD_ALONE
+                or (len(led[word]) >= KEYWORD_FILES and len(neighbours[word, 1]) > 1)
                 or word in self._sole
             )
-            and count >= _WORD_SHARE * (count + plain[word])
+            and count >= KEYWORD_SHARE * (count + plain[word])
         )
 
     def _names(self, failed: Failed, form: Form) -> Iterator[tuple[int, str]]:

@@ -12,12 +12,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from grammar.parser.lexer import Lexer
+from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
 
 __all__ = ["Suspect", "suspects"]
-
-# So many files, and origins where there are several, have to read a word before it is suspected.
-_FILES = 3
-_ORIGINS = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +51,11 @@ def suspects(programs: Iterable[tuple[str, str]], lexer: Lexer) -> list[Suspect]
         for word in read:
             files[word] += 1
             origins[word].add(origin)
-    needed = _ORIGINS if len(every) > 1 else 1
+    needed = UNRESERVED_ORIGINS if len(every) > 1 else 1
     found = [
         Suspect(word, count, len(origins[word]))
         for word, count in files.items()
-        if count >= _FILES
+        if count >= UNRESERVED_FILES
         and len(origins[word]) >= needed
         and word not in bound
         and not word.startswith("$")

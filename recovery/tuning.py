@@ -1,0 +1,266 @@
+"""Tuning constants of the search for causes: what each limits or weighs, and what it rests on.
+
+Ranks and breadths are counted in steps: the more, the more an edit accepts besides the failing
+line. A step costs an edit half a per cent of its worth (`BREADTH_FACTOR`). What a value rests on is
+said in one of these ways:
+
+- *bound*: it keeps time or memory within limits, and is out of reach of ordinary source;
+- *revised*: the earlier values are given; by what they were compared has not been kept;
+- *not measured*: a first guess that has not been compared with another value.
+
+Whoever changes a value compares `krl bench mutation` before and after, and says here what came of
+it.
+"""
+
+# ---------------------------------------------------------- which lines are searched for edits
+
+#: Tokens of a failing line beyond which no edit is sought. Bound: nobody wrote such a line.
+LONGEST_LINE = 1_000
+#: Frames on the stacks that a line begins with, beyond which no edit is sought. Revised: 16, 5. A
+#: block adds two or three frames, the deepest failing line of our own programs has 15; with
+#: hundreds a search takes minutes, for the line is read anew at each trial.
+DEEPEST_STACK = 150
+
+# ------------------------------------------------------------------- words that a line means
+# `recovery.survey.signature`: when a name on failing lines is meant as a keyword.
+
+#: Files in which a name has to stand where no name can. Not measured.
+KEYWORD_FILES = 2
+#: Different words on one side of it, so that it is no declared name beside its type. Not measured.
+KEYWORD_NEIGHBOURS = 3
+#: Uses with no operand on either side that count as much as neighbours. Not measured.
+KEYWORD_ALONE = 6
+#: Different names that may come in a place for it to be a place of keywords. Not measured.
+KEYWORD_CHOICE = 2
+#: The least share of its uses on failing lines where it stands so. Revised: 0.02.
+KEYWORD_SHARE = 0.8
+# `recovery.survey.unreserved_keywords`: when a name in files that parse is taken for a keyword.
+#: Files that read the name. Not measured.
+UNRESERVED_FILES = 3
+#: Origins that read it, where there are several. Not measured.
+UNRESERVED_ORIGINS = 2
+
+# -------------------------------------------------------------------- the profile of a grammar
+# `recovery.proposals.grammar_profile`, `keywords`, `collocations`, `similarity`.
+
+#: Alternatives from which on a rule gathers kinds of statement, operand or the like. Not measured.
+HUB_ALTERNATIVES = 4
+#: Steps in breadth for twice as many rules that lead to a rule. Not measured.
+WIDTH_PER_DOUBLING = 5
+#: Steps that are saved where a text is written as elsewhere in the grammar. Not measured.
+SAME_TEXT_BONUS = 6
+#: A rule that has more than one in so many of all reserved words lists them. Not measured.
+WORD_LIST_PART = 4
+#: A symbol is usual where it has at least one in so many of the places of a kind. Not measured.
+USUAL_PART = 3
+#: How like an alternative has to be to one of a rule, as a ratio of `difflib`. Not measured.
+SIMILAR_RATIO = 0.6
+#: Steps for an alternative like those that a rule has, and against one unlike them. Not measured.
+SIMILARITY_STEPS = 6
+#: Steps against a longer alternative of a rule that gathers single rules. Not measured.
+LOOSE_GATHERING_COST = 2
+#: Steps against an alternative of a new form, and alternatives from which on a rule has forms
+#: enough for nothing more to speak against another one. Not measured.
+NEW_FORM_COST = 2
+MANY_FORMS = 6
+
+# --------------------------------------------------------------------------- phrases of an edit
+# `recovery.proposals.segmentation`, `rule_matcher`, `phrases`, `alignment`.
+
+#: Tokens of a line that is cut into operands. Bound: the cost grows with the cube.
+LONGEST_SEGMENTED = 120
+#: Costs of a cut: a single token, an operand of several, and each seam at which an operand could be
+#: cut further. A seam costs more than writing its parts out. Not measured.
+TOKEN_COST = 10
+OPERAND_COST = 9
+SEAM_COST = 30
+#: Answers about segments and rules that are kept. Bound on memory.
+MOST_ANSWERS_KEPT = 200_000
+#: Tokens of a beginning from which longer ones are read on. Bound on memory.
+LONGEST_BEGINNING_KEPT = 24
+#: Tokens of a phrase. Bound.
+LONGEST_PHRASE = 24
+#: Symbols of a phrase written for one line: longer ones belong to more than one edit. Not measured.
+MOST_SYMBOLS = 8
+#: Rules tried for an operand that stands alone, the most used ones. Not measured.
+MOST_OPERAND_RULES = 6
+#: Rules tried that the edited rule refers to already. Not measured.
+MOST_NEAR_RULES = 2
+#: Combinations of rules for the operands of one phrase. Not measured.
+MOST_COMBINATIONS = 12
+#: Steps that a rule costs at most where it usually stands, and more where it is narrower than what
+#: usually does. Not measured.
+USUAL_RULE_COST = 2
+NARROWER_RULE_COST = 5
+#: Phrases that are aligned, the longest first, and columns they may give. Bound: cost grows with
+#: the product.
+MOST_ALIGNED = 16
+MOST_COLUMNS = 14
+#: Rules that a column of operands may have as a choice. Not measured.
+MOST_CHOICES = 3
+#: Combinations of columns for lines that have little but their first word in common. Not measured.
+MOST_LINE_SHAPES = 6
+#: How general operands are written: from the narrowest rule on, so many. Not measured.
+PHRASE_LEVELS = 3
+
+# -------------------------------------------------------------------------------- sites of edits
+# `recovery.proposals.site_finder`, `line_sites`.
+
+#: Steps of any edit at a site. It only counts beside edits of blocks, which have none. Not
+#: measured.
+SITE_COST = 8
+#: Steps of an alternative to an element in the middle of a sequence, and to its first one where
+#: that is the word that says what a line is. Not measured.
+WIDEN_COST = 12
+WIDEN_FIRST_WORD_COST = 22
+#: Steps of what is hardly ever meant. Not measured.
+UNLIKELY_COST = 8
+#: Steps of the operand before a site repeated behind a sign, and the part of the operand's own
+#: breadth that counts. Not measured.
+REPETITION_COST = 4
+REPETITION_BREADTH_PART = 3
+#: Steps of lines that are accepted in a row behind a line end. Not measured.
+LINE_LOOP_COST = 2
+#: Steps of an alternative ahead of the failure to a rule that was not begun there. Not measured.
+NOT_BEGUN_COST = 2
+#: Elements that an edit leaves out, tokens that it inserts ahead of a failure. Not measured.
+MOST_SKIPPED = 3
+#: Tokens after the failure at which the grammar may go on. Bound.
+LONGEST_RUN = 24
+#: Places at which the rest of the line can be read, the nearest ones. Not measured.
+MOST_RESUMPTIONS = 3
+#: Tokens in front of a rule that leave it the same construct. Not measured.
+LONGEST_PREFIX = 3
+#: Elements of a sequence in which one first word may stand for another. Not measured.
+SHARED_ELEMENTS = 4
+
+# ----------------------------------------------------------------------------- order of candidates
+# `recovery.proposals.candidates`, `block_inference`.
+
+#: What is left of an edit's worth for each step in breadth: of two that mend nearly as much, the
+#: more restrictive is preferred. Not measured.
+BREADTH_FACTOR = 0.995
+#: What each further edit of the same rule has left, so that other rules are tried. Not measured.
+SAME_RULE_FACTOR = 0.93
+#: Steps for a line with a word of its own and lines behind it: a part of a block. Not measured.
+BLOCK_PART_BONUS = 4
+#: Steps of a block as an alternative of what is no rule of lines. Not measured.
+NO_LINE_RULE_COST = 12
+#: Forms of a block's first and last line, and bodies, that are combined. Not measured.
+MOST_BLOCK_FORMS = 3
+MOST_BODIES = 4
+#: Kinds of line that divide a block; with more it is taken for none. Not measured.
+MOST_MIDDLES = 3
+
+# ------------------------------------------------------------------------- search for a cause
+# `recovery.clustering.causes`, `search`. *Light* is for groups behind the heaviest.
+
+#: Groups searched with the full limits. Revised: 30.
+HEAVY_GROUPS = 12
+#: Causes sought in a group, one after the other; the rest of its lines stay together. Not measured.
+CAUSES_PER_GROUP = 4
+#: Garbage that the trials of a group leave, as `support.parallel.gc_pause` counts it. Not measured.
+TRIAL_GARBAGE = 2_000_000
+#: Lines of a group whose candidates are tried. Not measured.
+SPECIMENS = 3
+#: Further lines of a group, and of those that fail or begin alike, whose sites are compared. Not
+#: measured.
+VARIED_LINES = 6
+#: Candidates tried on a sample of lines. Revised: 90, 80, 140, 120; light 40, 60, 50.
+MOST_TRIED = 105
+MOST_TRIED_LIGHT = 48
+#: One trial in so many is for wider candidates. Not measured.
+WIDE_PART = 3
+#: Candidates tried of a site before any other, and wider ones where these do most. Not measured.
+NARROW_PER_SITE = 2
+WIDE_PER_SITE = 4
+#: Lines of a group, and of those that fail alike, in a sample. Revised: 24, 12.
+SAMPLE_LINES = 8
+#: Candidates with the same result that are considered, the narrowest. Revised: 4.
+KEPT_PER_RESULT = 12
+#: Candidates tried on all lines, and those of one rule. Revised: 6, 5, 8.
+KEPT = 10
+KEPT_LIGHT = 6
+KEPT_PER_RULE = 3
+#: Candidates tried on the negatives. Revised: 30, 15, 24, 40; light 10, 15.
+MOST_SCORED = 24
+MOST_SCORED_LIGHT = 12
+#: Proposals shown of a cause: what a person looks through.
+MOST_PROPOSALS = 5
+
+# ------------------------------------------------------------------------- worth of a proposal
+
+#: Weight of a mended line of another group than the one a cause is sought for. Not measured.
+OTHER_GROUP_WEIGHT = 0.3
+#: Weight of a line that is read further and still fails. Not measured.
+ADVANCED_WEIGHT = 0.25
+#: Weight of the lines themselves where nothing behind them in their files can be read. Not
+#: measured.
+LINE_WEIGHT = 0.2
+#: For mending every line that fails at the same token: none is left to explain. Not measured.
+ALL_ALIKE_FACTOR = 1.25
+#: For reading as a name what all lines have as a keyword. Not measured.
+LEFT_A_NAME_FACTOR = 0.6
+#: For reserving a word that is a name in files that parse. Not measured.
+BREAKS_FILES_FACTOR = 0.5
+#: For giving some of its lines two readings. Not measured.
+AMBIGUOUS_FACTOR = 0.97
+#: The part of the width of the rule of names that an edit pays to leave its words names. Not
+#: measured.
+STILL_NAMES_PART = 2
+
+# ---------------------------------------------------------------------------------- trials
+# `recovery.clustering.edit_trial`, `file_trial`, `regression`, `negative_score`.
+
+#: Recognisers of edited grammars that are kept. Bound on memory.
+MOST_RECOGNIZERS_KEPT = 160
+#: Configurations of one state under an edited grammar; an edit that needs more gives lines
+#: exponentially many readings and is no good one. Bound: without it one edit could use up the
+#: memory.
+MOST_READINGS = 2_000
+#: Mended lines that are looked at for a second reading, the shortest. Not measured.
+LINES_READ_TWICE = 4
+#: Files tried for a line, the shortest, and for a group, and their tokens. Bound on time.
+FILES_PER_LINE = 4
+MOST_FILES = 12
+MOST_FILE_TOKENS = 6_000
+#: Files read again for what a mended line entails, and their characters together. Bound on time.
+MOST_REREAD = 40
+MOST_REREAD_TEXT = 200_000
+#: Files that parse in which a newly reserved word is tried, the shortest, and characters searched
+#: for such words. Bound on time.
+FILES_PER_WORD = 6
+MOST_SEARCHED_TEXT = 4_000_000
+#: Generated negatives on which candidates are tried, and their seed: enough to tell edits apart,
+#: few enough to be read for every candidate that is kept. Not measured.
+GENERATED_NEGATIVES = 250
+NEGATIVES_SEED = 1
+
+# -------------------------------------------------------------------------------- merging causes
+# `recovery.clustering.cause_merging`, `edit_merging`.
+
+#: Causes that a later one is compared with: the first ones hold back most. Bound on time.
+MOST_COMPARED = 40
+#: Symbols that make an alternative a form of its own, whatever word it begins with. Not measured.
+FORM_SYMBOLS = 4
+#: Edits that a merged cause may have: a person has to see at a glance that they are one. Not
+#: measured.
+MOST_MERGED_EDITS = 3
+
+# ---------------------------------------------------------------------------------- reproducers
+# `recovery.reproducer`.
+
+#: Items up to which every stretch and every pair is tried, and up to which stretches are replaced
+#: by one item. Bound: the tests grow with the square, and with the cube.
+EXHAUSTIVE_ITEMS = 40
+SUBSTITUTED_ITEMS = 120
+#: Configurations before a line from which a program is made. Bound on time.
+MOST_CONFIGURATIONS = 12
+#: Tokens left out at a failure for the rest of the line to be read. Bound.
+LONGEST_GAP = 64
+#: Tokens read for one reproducer, about a second, and what a test costs besides. Revised:
+#: 1,000,000.
+MOST_TOKENS_READ = 3_000_000
+TEST_COST = 40
+#: Numbered names of each letter. Bound: more than any line has.
+MOST_NAMES = 10_000
