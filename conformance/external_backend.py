@@ -1,4 +1,4 @@
-"""A third party's executor or robot proves itself: one line, and every case has its say.
+"""Every case on a third party's executor or robot, in one line.
 
     from conformance.external_backend import prove
 
@@ -31,8 +31,8 @@ from conformance.suite.case import CASES, Case, find_cases, selected
 
 __all__ = ["MakeExecutor", "MakeRobot", "NotConforming", "Proof", "prove"]
 
-#: The names that theirs and the reference have in results.
-THEIRS = "theirs"
+#: The names of the third party's part and of the reference in results.
+CANDIDATE = "candidate"
 REFERENCE = "tree"
 
 
@@ -48,19 +48,19 @@ class Proof:
 
     @property
     def failed(self) -> list[str]:
-        """The cases that failed on theirs, each with its reason."""
+        """The cases that the candidate failed, each with its reason."""
         return [
             f"{one.case.name}: {result.reason}"
             for one in self.results
             for result in one.results
-            if result.verdict == "fail" and THEIRS in (result.executor, result.robot)
+            if result.verdict == "fail" and CANDIDATE in (result.executor, result.robot)
         ]
 
     def assert_conforms(self) -> None:
         """Raise `NotConforming` where a case failed, or where none could be evaluated."""
         every = [result for one in self.results for result in one.results]
-        theirs = [one for one in every if THEIRS in (one.executor, one.robot)]
-        if all(one.verdict == "skipped" for one in theirs):
+        candidate = [one for one in every if CANDIDATE in (one.executor, one.robot)]
+        if all(one.verdict == "skipped" for one in candidate):
             raise NotConforming("no case could be evaluated")
         if self.failed:
             count = f"{len(self.failed)} of {len(self.results)} cases failed"
@@ -74,27 +74,27 @@ def prove(
     select: Sequence[str] = (),
     cases: Path = CASES,
 ) -> Proof:
-    """Run all cases that run programs, or those selected, on theirs beside the reference.
+    """Run all cases that run programs, or those selected, on the candidate beside the reference.
 
     Raises `ValueError` where neither is given, `CaseError` for a selection that names nothing.
     """
     if executor is None and robot is None:
         raise ValueError("give an executor, a robot, or both")
     reference = Setup(REFERENCE, "kinematic" if robot is not None else "none")
-    theirs = Setup(
-        THEIRS if executor is not None else REFERENCE,
-        THEIRS if robot is not None else reference.robot,
+    candidate = Setup(
+        CANDIDATE if executor is not None else REFERENCE,
+        CANDIDATE if robot is not None else reference.robot,
     )
 
     def see(case: Case, setup: Setup) -> Observation:
-        if setup == theirs:
+        if setup == candidate:
             return observe_with(case, executor, robot)
         return observe(case, setup)
 
     def absent(setup: Setup) -> str:
-        return "" if setup == theirs else missing(setup)
+        return "" if setup == candidate else missing(setup)
 
     wanted = [case for case in selected(find_cases(cases), select) if case.phase == "run"]
     known = KnownFailures.load()
-    done = [run_case(case, (reference, theirs), known, see, absent) for case in wanted]
+    done = [run_case(case, (reference, candidate), known, see, absent) for case in wanted]
     return Proof(tuple(done))

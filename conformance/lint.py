@@ -1,6 +1,6 @@
 """What is wrong with cases beyond what makes them unreadable, and which rules no case shows.
 
-A case states one fact: it has a title nobody else has, the shortest program that shows it, and
+A case states one fact: it has a title of its own, the shortest program that shows it, and
 names that carry over to a controller.
 """
 

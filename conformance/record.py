@@ -142,13 +142,13 @@ def _results(one: CaseResult) -> list[dict[str, Any]]:
     is_about_path = any(each.needs != "none" for each in one.case.expectations)
     found = []
     for at, result in enumerate(one.results):
-        told = _result(result, is_first=not at)
+        record = _result(result, is_first=not at)
         seen = result.observation
         if is_about_path and seen is not None and seen.path is not None and len(seen.path.times):
-            told.setdefault("path", _path(seen.path, _POINTS_SHOWN))
-            told["path"]["analytic"] = _analytic(one.case)
+            record.setdefault("path", _path(seen.path, _POINTS_SHOWN))
+            record["path"]["analytic"] = _analytic(one.case)
             is_about_path = False
-        found.append(told)
+        found.append(record)
     return found
 
 
@@ -179,12 +179,12 @@ def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
 
 def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
     """What was seen: whole for the first executor and for failures, else what differs by robot."""
-    told: dict[str, Any] = {"ending": seen.ending}
+    record: dict[str, Any] = {"ending": seen.ending}
     if is_whole:
         kept = [event.record() for event in seen.events if event.kind not in _STATEMENTS]
-        told["events"] = kept[:_MOST_EVENTS]
-        told["events_total"] = len(seen.events)
-        told["findings"] = [
+        record["events"] = kept[:_MOST_EVENTS]
+        record["events_total"] = len(seen.events)
+        record["findings"] = [
             {
                 "file": one.file,
                 "line": one.line,
@@ -199,8 +199,8 @@ def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
         and len(seen.path.times)
         and (is_whole or seen.path.axes_measured is not None)
     ):
-        told["path"] = _path(seen.path)
-    return told
+        record["path"] = _path(seen.path)
+    return record
 
 
 def _analytic(case: Case) -> list[list[float]]:
@@ -217,13 +217,13 @@ def _analytic(case: Case) -> list[list[float]]:
 def _path(path: PathRecord, most: int = _MOST_POINTS) -> dict[str, Any]:
     """Points of a path, every n-th where there are many."""
     every = max(1, -(-len(path.times) // most))
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "t": path.times[::every].tolist(),
         "axes": path.axes[::every].round(5).tolist(),
         "poses": path.points[::every].round(4).tolist(),
     }
     if path.axes_measured is not None:
-        told["axes_meas"] = path.axes_measured[::every].round(5).tolist()
+        record["axes_meas"] = path.axes_measured[::every].round(5).tolist()
     if path.points_measured is not None:
-        told["poses_meas"] = path.points_measured[::every].round(4).tolist()
-    return told
+        record["poses_meas"] = path.points_measured[::every].round(4).tolist()
+    return record

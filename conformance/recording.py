@@ -1,6 +1,6 @@
-"""Recordings: what a real controller did with the cases, brought back as one JSON file.
+"""Recordings: what a real controller did with the cases, in one JSON file.
 
-CASES.md tells how to make one, and what its fields are. A recording is evaluated as an executor is,
+CASES.md says how to make one, and what its fields are. A recording is evaluated as an executor is,
 except for what it says that it did not watch: such expectations stay open. It can confirm or refute
 rules that are unconfirmed, which is what it is for.
 """
@@ -27,7 +27,6 @@ from support.files.untrusted import json_of, read_bytes
 __all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "evaluate_recording"]
 
 FORMAT: Final = "krl-recording/1"
-#: Kinds of events that a recording may say it watched; docs/trace.md has all of them.
 #: Millimetres and degrees that nothing reaches.
 _BEYOND: Final = 1e9
 _ENDINGS: Final = ("", "end", "fault", "halt", "running")
@@ -149,7 +148,7 @@ def evaluate_recording(
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a recording says of an unconfirmed rule: how many cases it met, and which it did not."""
+    """How many cases of an unconfirmed rule a recording meets, and which it does not."""
 
     rule: str
     met: int

@@ -1,4 +1,4 @@
-"""Runs cases: every executor with every robot, in parallel, the same results whoever runs them.
+"""Runs cases: every executor with every robot, in any number of processes.
 
 Cases of phases parse and check have one front end and run once. Each result of phase run is
 evaluated by the case's expectations, and compared with that of the first executor on the same
@@ -65,7 +65,7 @@ def run_case(
     see: Observe = observe,
     absent: Callable[[Setup], str] = missing,
 ) -> CaseResult:
-    """Run one case. ``see`` observes it, ``absent`` tells which setups there are not."""
+    """Run one case. ``see`` observes it, ``absent`` says why there is no such setup."""
     wanted = setups if case.phase == "run" else (Setup(FRONT, "none"),)
     results: list[Result] = []
     for setup in wanted:
@@ -76,10 +76,10 @@ def run_case(
         begun = time.perf_counter()
         seen = _seen(see, case, setup)
         checks = _checks(case, seen)
-        reason = known.reason(case.name, setup.executor, setup.robot)
-        verdict, told = verdict_of(case, checks, reason)
+        listed = known.reason(case.name, setup.executor, setup.robot)
+        verdict, reason = verdict_of(case, checks, listed)
         took = time.perf_counter() - begun
-        result = Result(setup.executor, setup.robot, verdict, told, checks, took, None, seen)
+        result = Result(setup.executor, setup.robot, verdict, reason, checks, took, None, seen)
         results.append(_compared(result, results))
     return CaseResult(case, tuple(results))
 
@@ -89,8 +89,8 @@ def _seen(see: Observe, case: Case, setup: Setup) -> Observation:
     try:
         return see(case, setup)
     except Exception as error:
-        told = f"{type(error).__name__}: {error}"
-        return Observation(ending="crash", note=told, robot=setup.robot)
+        reason = f"{type(error).__name__}: {error}"
+        return Observation(ending="crash", note=reason, robot=setup.robot)
 
 
 def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
@@ -98,8 +98,8 @@ def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
     try:
         return tuple(evaluate(case, seen))
     except Exception as error:
-        told = f"the evaluation has failed: {type(error).__name__}: {error}"
-        return (Check(case.main, 0, "the case can be evaluated", "unmet", told),)
+        reason = f"the evaluation has failed: {type(error).__name__}: {error}"
+        return (Check(case.main, 0, "the case can be evaluated", "unmet", reason),)
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:
@@ -135,8 +135,8 @@ def run_cases(
 ) -> list[CaseResult]:
     """Run cases in so many processes (default: one a core); the results are in their order.
 
-    ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is told how
-    many cases were finished. A case that takes its process with it has failed, and no other with
+    ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is called
+    with the number of cases finished. A case that kills its process has failed, and no other with
     it. Raises `support.parallel.executor.WorkersError`, also where a worker lacks what there is
     here.
     """
@@ -151,7 +151,7 @@ def run_cases(
     def lost(
         share: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
     ) -> list[CaseResult]:
-        """Each case by itself, where one of them killed whoever ran it."""
+        """Each case by itself, where one of them killed its process."""
         singles = (([case], lacking, known) for case in share)
         found = in_order(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
         return [result for results in found for result in results]
@@ -177,6 +177,6 @@ def _run_share(
 def _dead(
     cases: Sequence[Case], lacking: Mapping[Setup, str], _known: KnownFailures
 ) -> list[CaseResult]:
-    told = "the process died"
-    failed = tuple(Result(one.executor, one.robot, "fail", told, (), 0.0) for one in lacking)
+    reason = "the process died"
+    failed = tuple(Result(one.executor, one.robot, "fail", reason, (), 0.0) for one in lacking)
     return [CaseResult(case, failed) for case in cases]

@@ -14,10 +14,10 @@ __all__ = ["write_claims_page"]
 def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of the paper's claims, and return its path.
 
-    ``records`` are what commands wrote with ``--json``, by the names of a night's steps: growth,
-    recover, conform, conform-arm, bench-vm, bench-arm, bench-conform. Any of them may be absent:
-    the page then says which command measures it. The page appears whole or not at all. Raises
-    OSError when the folder cannot be made or written.
+    ``records`` are what commands wrote with ``--json``, by the names of the steps of a
+    nightly run: growth, recover, conform, conform-arm, bench-vm, bench-arm, bench-conform. Any of
+    them may be absent: the page then says which command measures it. The page appears
+    whole or not at all. Raises OSError when the folder cannot be made or written.
     """
     page = render(
         "claims.html.j2",

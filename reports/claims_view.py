@@ -16,7 +16,7 @@ from reports.sanitizing import shown
 
 __all__ = ["Bar", "Claim", "ClaimsView", "Curve", "LeftOut", "claims_view"]
 
-#: The commands that make each record, by its name in a night.
+#: The commands that make each record, by its name in a nightly run.
 _COMMANDS: Final[Mapping[str, str]] = {
     "growth": "krl growth --json growth.json",
     "recover": "krl recover --json recover.json",
@@ -98,41 +98,41 @@ class ClaimsView:
 
 def claims_view(found: Mapping[str, Any]) -> ClaimsView:
     """The page of records by their names; any of them may be absent."""
-    told = {name: nested(found, name) for name in _COMMANDS}
+    by_name = {name: nested(found, name) for name in _COMMANDS}
     claims = (
-        _growth(told["growth"]),
-        _clusters(told["recover"]),
-        _bytecode(told["bench-vm"]),
-        _in_c(told["bench-vm"]),
-        _batches(told["bench-arm"]),
-        _sensitivity(told["bench-conform"]),
+        _growth(by_name["growth"]),
+        _clusters(by_name["recover"]),
+        _bytecode(by_name["bench-vm"]),
+        _in_c(by_name["bench-vm"]),
+        _batches(by_name["bench-arm"]),
+        _sensitivity(by_name["bench-conform"]),
     )
     return ClaimsView(
-        figures=tuple(_figures(told)),
+        figures=tuple(_figures(by_name)),
         claims=claims,
-        left_out=tuple(_left_out(told["conform"], told["conform-arm"])),
-        left_out_command="" if told["conform"] else _COMMANDS["conform"],
+        left_out=tuple(_left_out(by_name["conform"], by_name["conform-arm"])),
+        left_out_command="" if by_name["conform"] else _COMMANDS["conform"],
     )
 
 
-def _figures(told: Mapping[str, Record]) -> Iterable[Figure]:
-    steps = records(told["growth"], "steps")
+def _figures(by_name: Mapping[str, Record]) -> Iterable[Figure]:
+    steps = records(by_name["growth"], "steps")
     if steps:
-        files = count(told["growth"], "files")
+        files = count(by_name["growth"], "files")
         parsed = count(steps[-1], "parsed")
         yield Figure("files parse", percent(parsed, files), f"after {len(steps) - 1} constructs")
     for key, label, paper in (
         ("vm_vs_tree", "bytecode against tree", "about 6 in the paper"),
         ("native_vs_tree", "C against tree", "up to 300 in the paper"),
     ):
-        if number(told["bench-vm"], key):
-            yield Figure(label, _times(number(told["bench-vm"], key)), paper)
-    arm = told["bench-arm"]
+        if number(by_name["bench-vm"], key):
+            yield Figure(label, _times(number(by_name["bench-vm"], key)), paper)
+    arm = by_name["bench-arm"]
     if number(arm, "simulated_s_batch"):
         delay = number(arm, "simulated_s_batch") - number(arm, "simulated_s_lookahead")
         yield Figure("batches cost", f"{delay:+.2f} s", f"over {count(arm, 'motions'):,} motions")
-    if count(told["bench-conform"], "mutants"):
-        bench = told["bench-conform"]
+    if count(by_name["bench-conform"], "mutants"):
+        bench = by_name["bench-conform"]
         killed, planted = count(bench, "killed"), count(bench, "mutants")
         yield Figure("planted faults found", percent(killed, planted), f"{killed:,} of {planted:,}")
 
@@ -307,7 +307,7 @@ def _sensitivity(record: Record) -> Claim:
     found = (
         f"{planted:,} faults were planted, one at a time, into the controller, the arm and the "
         f"machine. Cases noticed {killed:,} of them, {percent(killed, planted)}; {failing:,} of "
-        f"these turn the night red, the others change the verdict of a case whose rule is not sure."
+        f"these fail a case, the others change the verdict of a case whose rule is not sure."
     )
     if number(record, "cases_per_s"):
         found += (

@@ -24,8 +24,8 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one conformance run, and return its path.
 
     ``record`` is what ``krl conform --json`` writes; every field may be absent. Its ``history``,
-    where there is one, are the lines of ``history.jsonl`` with the nights before. The same record
-    gives the same bytes. The page appears whole or not at all.
+    where there is one, are the lines of ``history.jsonl`` of the nightly runs before. The
+    same record gives the same bytes. The page appears whole or not at all.
 
     Raises OSError when the folder cannot be made or written.
     """

@@ -1,8 +1,8 @@
 """Whether expectations are met by what was seen.
 
-Each `Check` tells what became of one expectation: met, not met, or open, where what was seen cannot
-tell (a path without a robot, times that nobody measured). `evaluate` adds what every case expects
-without saying so: that the front end says nothing graver, that the program ends.
+Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
+settle it (a path without a robot, times that were not measured). `evaluate` adds what every case
+expects implicitly: that the front end reports no other error, that the program ends.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def _said(one: Expectation, seen: Observation) -> Check:
     if seen.watched is not None:
         return _recorded(one, seen)
     there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
-    told = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
+    actual = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
     match one.kind:
         case "accepted":
             grave = [found for found in seen.findings if found.severity != "note"]
@@ -85,23 +85,23 @@ def _said(one: Expectation, seen: Observation) -> Check:
             return _check(one, "met" if is_met else "unmet", _list(seen.findings) or "accepted")
         case "silent":
             is_met = all(found.code != one.arguments[0] for found in there)
-            return _check(one, "met" if is_met else "unmet", told)
+            return _check(one, "met" if is_met else "unmet", actual)
     is_met = any((f.severity, f.code) == (one.kind, one.arguments[0]) for f in there)
-    return _check(one, "met" if is_met else "unmet", told)
+    return _check(one, "met" if is_met else "unmet", actual)
 
 
 def _recorded(one: Expectation, seen: Observation) -> Check:
     """What a controller says has its own numbers: ours are a line where it complains."""
     there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
-    told = _list(seen.findings) or "accepted"
+    actual = _list(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
-        return _check(one, "open", "only our checker tells this")
+        return _check(one, "open", "only our checker reports this")
     if one.kind == "accepted":
-        return _check(one, "unmet" if seen.findings else "met", told)
+        return _check(one, "unmet" if seen.findings else "met", actual)
     codes = {found.code for found in there}
     is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
-    return _check(one, "met" if is_met else "unmet", told)
+    return _check(one, "met" if is_met else "unmet", actual)
 
 
 def _list(findings: list[Finding] | tuple[Finding, ...]) -> str:
@@ -112,7 +112,7 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
     """No error but those that are expected."""
     said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
     if case.phase == "parse" and said:
-        return  # what comes behind the first failure is nobody's business
+        return  # only the first failure is specified
     for found in seen.findings:
         if found.severity == "error" and (found.file, found.line) not in said:
             text = "no error but those expected"
@@ -121,7 +121,7 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
 
 def _ended(case: Case, seen: Observation) -> Iterator[Check]:
     """A program ends by itself, where nothing else is expected of it."""
-    if not seen.ending:  # nobody watched
+    if not seen.ending:  # the ending was not recorded
         return
     kinds = {one.kind: one for one in case.expectations}
     last = seen.events[-1] if seen.events else None
@@ -136,5 +136,7 @@ def _ended(case: Case, seen: Observation) -> Iterator[Check]:
     if seen.ending != wanted and not (
         wanted == "end" and "halt" in kinds and seen.ending == "halt"
     ):
-        told = f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
-        yield Check(file, line, f"the program ends with: {wanted}", "unmet", told)
+        actual = (
+            f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
+        )
+        yield Check(file, line, f"the program ends with: {wanted}", "unmet", actual)

@@ -1,7 +1,7 @@
-"""How a case is observed: read, checked, or run on an executor with a robot.
+"""Executes cases: each is read, checked, or run on an executor with a robot.
 
-What a program is run with is a `Setup`. Executors and robots that this machine does not have are
-told as such (`missing`), never silently left out.
+A `Setup` names executor and robot. Those that this machine lacks are reported (`missing`), never
+silently left out.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Setup:
 
 
 def observe(case: Case, setup: Setup) -> Observation:
-    """See what a case does. Never raises for what a program does."""
+    """The observation of a case. Never raises for what a program does."""
     match case.phase:
         case "parse":
             return _parsed(case)
@@ -84,7 +84,7 @@ def observe(case: Case, setup: Setup) -> Observation:
 def observe_with(
     case: Case, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
 ) -> Observation:
-    """See what a case that runs does on somebody's executor, or robot, or both."""
+    """The observation of a case that runs, on the given executor, robot, or both."""
     return _run(case, Setup("tree", "none" if robot is None else "mujoco"), executor, robot)
 
 
@@ -140,8 +140,8 @@ def missing(setup: Setup) -> str:
     return ""
 
 
-class _Theirs(Prepared):
-    """A program for an executor that is not ours."""
+class _ThirdParty(Prepared):
+    """A program for a third party's executor."""
 
     def __init__(self, program: CheckedProgram, make: MakeExecutor) -> None:
         super().__init__(program)
@@ -149,7 +149,7 @@ class _Theirs(Prepared):
 
     # the name is part of what it overrides
     def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:  # noqa: ARG002
-        """Theirs, whatever the name."""
+        """The third party's, whatever the name."""
         return self._make(self.program, self.routine, limits, sink)
 
 
@@ -164,7 +164,7 @@ def _run(
     if isinstance(program, LinkError):
         return _refused(program)
     if executor is not None:
-        program = _Theirs(program.program, executor)
+        program = _ThirdParty(program.program, executor)
     profile = _profile(case.profile)
     wanted = session.Setup(
         executor=setup.executor,

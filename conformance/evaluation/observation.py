@@ -32,7 +32,7 @@ class Finding:
 class Event:
     """An event of the trace.
 
-    ``time`` is in µs of the virtual clock, ``None`` where nobody measured it. ``fields`` are what
+    ``time`` is in µs of the virtual clock, ``None`` where it was not measured. ``fields`` are what
     this kind of event has besides, as in docs/trace.md.
     """
 
@@ -72,10 +72,10 @@ class Event:
 class Observation:
     """All that was seen of a case.
 
-    ``findings`` where it was read or checked only. ``ending`` tells how a run ended: ``end``,
+    ``findings`` where it was read or checked only. ``ending`` is how a run ended: ``end``,
     ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
     ``cycle`` is the interpolation cycle in µs; ``is_exact``: times are known to the µs.
-    ``watched`` are the kinds of events that a recording says it has, ``None`` where all were told.
+    ``watched`` are the kinds of events that a recording says it has, ``None`` where all are there.
     ``machine`` is the arm whose limits the path has to keep, where it is known.
     """
 

@@ -190,10 +190,10 @@ def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) ->
     off = np.abs(found - wanted)
     if one.kind == "pose":
         off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
-    told = " ".join(f"{number:.4f}" for number in found)
+    actual = " ".join(f"{number:.4f}" for number in found)
     usual = _NEAR if one.kind == "pose" else _ANGLE
     margin = usual if one.tolerance is None else one.tolerance
-    return ("met" if float(off.max()) <= margin else "unmet"), told
+    return ("met" if float(off.max()) <= margin else "unmet"), actual
 
 
 # ------------------------------------------------------------------------------------- speeds
@@ -242,8 +242,8 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
         return "unmet", "there are too few samples"
     worst = np.abs(rates).max(axis=0) / most
     axis = int(np.argmax(worst))
-    told = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
-    return ("met" if float(worst.max()) <= _MARGIN else "unmet"), told
+    actual = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
+    return ("met" if float(worst.max()) <= _MARGIN else "unmet"), actual
 
 
 def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:

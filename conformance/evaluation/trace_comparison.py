@@ -1,8 +1,8 @@
-"""Where two runs of one case begin to differ, with the state of each at that point.
+"""The first difference between two runs of one case, with the state of each at that point.
 
 Executors conform when their traces are equal, full level included [docs/trace.md].
-`first_divergence` finds the first event that differs and tells, for both sides, what every variable
-and output was by then: the values that the trace has told so far.
+`first_divergence` finds the first event that differs and, for both sides, the value of every
+variable and output at that point, as the trace has reported them.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ class Divergence:
     def __str__(self) -> str:
         left, right = self.left, self.right
         return (
-            f"{self.file}:{self.line}: {left.name} {_told(left.event)}, "
-            f"{right.name} {_told(right.event)}"
+            f"{self.file}:{self.line}: {left.name} {_described(left.event)}, "
+            f"{right.name} {_described(right.event)}"
         )
 
 
@@ -132,7 +132,7 @@ def _side(name: str, events: Sequence[Event], place: int) -> Side:
     return Side(name, there, variables, outputs)
 
 
-def _told(event: dict[str, Any] | None) -> str:
+def _described(event: dict[str, Any] | None) -> str:
     if event is None:
         return "has ended"
     fields = {key: value for key, value in event.items() if key not in ("task", "at", "t")}

@@ -87,12 +87,12 @@ def _value(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
         found = found[-1:]
     if not found:
         return "unmet", f"{name} was never assigned"
-    told = " ".join(map(_told, found))
+    actual = " ".join(map(_formatted, found))
     expected = [_literal(word) for word in wanted]
     is_met = len(found) == len(expected) and all(
         _alike(left, right, one.tolerance) for left, right in zip(expected, found, strict=True)
     )
-    return ("met" if is_met else "unmet"), told
+    return ("met" if is_met else "unmet"), actual
 
 
 def _steps(name: str) -> list[str | int]:
@@ -140,7 +140,7 @@ def _alike(wanted: Any, found: Any, tolerance: float | None) -> bool:
     return type(wanted) is type(found) and wanted == found
 
 
-def _told(value: Any) -> str:
+def _formatted(value: Any) -> str:
     match value:
         case None:
             return "none"
@@ -173,7 +173,7 @@ def _order(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
 
 def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     faults = [*seen.of_kind("fault")]
-    told = "; ".join(
+    actual = "; ".join(
         f"{one_fault.fields.get('slug') or 'link'} {one_fault.fields.get('number') or ''}"
         f" on line {one_fault.line}"
         for one_fault in faults
@@ -181,7 +181,7 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     there = [event for event in faults if (event.file, event.line) == (one.file, one.line)]
     names = {str(event.fields.get("slug") or "link") for event in there}
     names |= {str(event.fields.get("number")) for event in there}
-    return ("met" if one.arguments[0] in names else "unmet"), told or f"none: {seen.ending}"
+    return ("met" if one.arguments[0] in names else "unmet"), actual or f"none: {seen.ending}"
 
 
 def _mark(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
@@ -233,7 +233,7 @@ def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     if one.when is None:
         return "met", _times(events)
     if any(event.time is None for event in events):
-        return "open", "nobody measured when"
+        return "open", "the time was not measured"
     try:
         is_met = any(_is_then(event, one.when, one.tolerance, seen, marks) for event in events)
     except LookupError as error:
@@ -327,7 +327,7 @@ def _times(events: Sequence[Event]) -> str:
 
 
 def _moments(when: When, seen: Observation, marks: Marks) -> str:
-    """What the moments named came to, for whoever reads why it failed."""
+    """The times of the moments that the expectation names, to explain a failure."""
     if not when.first.event:
         return ""
     anchors = [when.first] + ([when.last] if when.last else [])

@@ -1,9 +1,9 @@
-"""Verdicts: what a case comes to on one executor and robot, and what was known before.
+"""Verdicts: the outcome of a case on one executor and robot; known failures.
 
 ==============  ==================================================================================
 pass            all that is expected was seen
 fail            it was not; or executors differ; or a known failure passes
-unconfirmed     it was not, but the rule is not sure enough to fail anybody (`Rule.may_fail`)
+unconfirmed     it was not, but the rule is not sure enough to fail an executor (`Rule.may_fail`)
 known-failure   it was not, and ``known_failures.toml`` says why
 skipped         no expectation could be evaluated, and why
 ==============  ==================================================================================

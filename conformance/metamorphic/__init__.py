@@ -1,4 +1,4 @@
-"""Metamorphic checks: programs changed in ways that nobody may notice, and run before and after.
+"""Metamorphic checks: programs run before and after changes that must not be observable.
 
 =============== ====================================================================================
 `program`       a program with all it is run with: a case, or a generated one

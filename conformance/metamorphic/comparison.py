@@ -76,15 +76,15 @@ def same_trace_renamed(names: Mapping[str, str]) -> Compare:
 
 
 def same_effects(left: Observation, right: Observation) -> str:
-    """What was assigned, switched, moved and told, in this order for each task; not when.
+    """What was assigned, switched, moved and reported, in this order for each task; not when.
 
     More statements take more of a cycle, so times may differ by cycles.
     """
     for task in ("robot", "submit"):
         one, other = (_of_task(run, task, _EFFECTS) for run in (left, right))
-        told = _first(one, other, _untimed)
-        if told:
-            return told
+        difference = _first(one, other, _untimed)
+        if difference:
+            return difference
     return ""
 
 
@@ -99,9 +99,9 @@ def same_axes(left: Observation, right: Observation) -> str:
     """The axes at each set-point, and the trace but for what variables are assigned."""
     kinds = _EFFECTS - {"assign"}
     one, other = (_of_task(run, "robot", kinds) for run in (left, right))
-    told = _first(one, other, lambda event: (event.time, *_untimed(event)))
-    if told or left.path is None or right.path is None:
-        return told
+    difference = _first(one, other, lambda event: (event.time, *_untimed(event)))
+    if difference or left.path is None or right.path is None:
+        return difference
     if len(left.path.times) != len(right.path.times):
         return f"{len(left.path.times)} set-points, then {len(right.path.times)}"
     off = np.abs(left.path.axes - right.path.axes).max(axis=1)

@@ -21,7 +21,7 @@ class Law:
     """A law.
 
     ``states`` is what it says, ``rules`` what it rests on. ``change`` gives the changed program;
-    ``None`` there: the program stays, and is run as ``other`` tells. ``is_of_text``: the change is
+    ``None`` there: the program stays, and is run as ``other`` says. ``is_of_text``: the change is
     one of the text as it was written, not of its trees. ``usual`` is how both are run.
     """
 

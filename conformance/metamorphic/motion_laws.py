@@ -33,7 +33,7 @@ __all__ = ["LAWS"]
 
 _KINEMATIC: Final = Run(robot="kinematic")
 _SHIFT: Final = {"X": 24.0, "Y": -36.0, "Z": 12.0}
-#: What tells a program where the arm is or which base is in force, or changes either.
+#: What reads or changes the position of the arm or the base in force.
 _KNOW_PLACES: Final = ("$POS_", "$IPO_MODE", "INVERSE", "FORWARD", "$ROBROOT", "BAS")
 #: What may make it matter when something happens.
 _KNOW_TIMES: Final = (

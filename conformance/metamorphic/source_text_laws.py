@@ -79,7 +79,7 @@ def _other_case(program: Program, random: Random) -> Program | None:
 
 
 def _prints_names(program: Program) -> bool:
-    """Whether it writes constants of enumerations into texts, which have the case of theirs."""
+    """Whether it writes constants of enumerations into texts, which are case-sensitive."""
     return any(
         {"SWRITE", "CWRITE", "SREAD", "CREAD"} & calls_of(module)
         for module in (program.modules or {}).values()
@@ -102,7 +102,7 @@ def _laid_out(program: Program, _random: Random) -> Program | None:
 
 
 def _renamed(program: Program, _random: Random) -> tuple[Program, Compare] | None:
-    """Variables that a routine declares for itself get names that nobody has."""
+    """Variables that a routine declares for itself get fresh names."""
     modules = program.modules or {}
     taken = {one for module in modules.values() for one in names_of(module)}
     texts = {
@@ -312,7 +312,7 @@ LAWS: Final[Sequence[Law]] = (
     ),
     Law(
         "order of components",
-        "the components of an aggregate are told apart by their names",
+        "the components of an aggregate are distinguished by their names",
         ("TYP-19",),
         same_trace,
         _components_moved,

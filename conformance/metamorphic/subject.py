@@ -25,7 +25,7 @@ __all__ = ["Program", "Run"]
 
 #: Virtual seconds that a generated program is watched: it may wait for inputs for ever.
 _WATCHED: Final = 5.0
-#: What tells a program on which line it stands: such programs do see a change of text.
+#: What gives a program its own line number: such programs do see a change of text.
 _KNOW_LINES: Final = ("LINE_NR", "PROG_LINE", "$PRO_IP", "$PRO_NAME")
 
 
@@ -69,7 +69,7 @@ class Program:
 
     @cached_property
     def knows_lines(self) -> bool:
-        """Whether it can tell on which line it stands."""
+        """Whether it can read its own line number."""
         return any(word in one.text.upper() for one in self.case.sources for word in _KNOW_LINES)
 
     @cached_property

@@ -59,7 +59,8 @@ def try_laws(
     """Try each law on so many cases, generated programs and such that move, where it applies.
 
     Which these are follows from the seed. ``jobs`` processes try them, or the Dask cluster of
-    ``scheduler`` (`support.parallel.executor`). ``on_done`` is told how many laws were tried.
+    ``scheduler`` (`support.parallel.executor`). ``on_done`` is called with the number of laws
+    tried.
     """
     running = [case for case in cases if case.phase == "run"]
     tasks = ((law.name, running, programs, seed) for law in laws())

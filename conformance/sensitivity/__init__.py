@@ -1,4 +1,4 @@
-"""How much a green night means: faults planted one at a time, which the cases have to find.
+"""Mutation testing of the cases: faults are planted one at a time, and the cases have to find them.
 
 ============== =====================================================================================
 `planting`     a planted fault, and what it takes to plant and remove one
@@ -10,8 +10,8 @@
 `bench`        how many are found, by group, and cases a second
 ============== =====================================================================================
 
-A fault is found by a case that passes without it and does not pass with it. Changes that nobody
-could see from outside are no faults and are left out.
+A fault is found by a case that passes without it and does not pass with it. Changes that
+cannot be observed from outside are no faults and are left out.
 """
 
 from conformance.sensitivity.bench import measure, speed_of

@@ -15,7 +15,7 @@ from conformance.suite.case import Case
 
 __all__ = ["AIM", "measure", "record_of", "speed_of"]
 
-#: The share of faults that has to be found for a green night to mean something.
+#: The share of faults that the cases have to find.
 AIM: Final = 0.95
 _EXECUTOR: Final = "tree"
 
@@ -25,7 +25,7 @@ def speed_of(
 ) -> dict[str, Any]:
     """Run all cases once, on one executor without a robot and in one process: cases a second.
 
-    ``on_done`` is told of each case.
+    ``on_done`` is called for each case.
     """
     known = KnownFailures.load()
     begun = time.perf_counter()
@@ -85,7 +85,7 @@ def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
 
 
 def _counts(verdicts: Sequence[Verdict]) -> dict[str, Any]:
-    """``failing`` are those that turn a night red, the others only change a verdict."""
+    """``failing`` are those that fail a case, the others only change a verdict."""
     killed = sum(one.case is not None for one in verdicts)
     failing = sum(one.verdict == "fail" for one in verdicts)
     return {

@@ -1,10 +1,9 @@
 """Faults against cases: each fault is tried on the cases that may find it, until one has.
 
-Cases of rules that may fail come first: a fault that they find turns the night red, one that only
-others find shows as a verdict that has changed. A machine that parts from the tree interpreter has
-failed whatever the rule, as it has in every night. What a case does without any fault is seen once
-a process and kept; a case that cannot notice a fault, since its programs lack the instruction, is
-not run with it.
+Cases of rules that may fail come first: a fault that they find fails the conformance run, one that
+only others find changes a verdict. A machine that diverges from the tree interpreter has failed
+whatever the rule. The observation of a case without any fault is made once a process and kept. A
+case that cannot find a fault, since its programs lack the instruction, is not run with it.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from support.parallel.executor import in_order
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
 
-#: More often than this nothing happens in a case; a run that goes on has come to no end.
+#: No case takes more steps than this; a run that does is endless.
 _ENDLESS: Final = 60_000
 
 
@@ -160,7 +159,7 @@ def _with(fault: Fault, case: Case, setup: Setup, before: Observation | None) ->
 
 
 def _ending() -> Iterator[Callable[[], Any]]:
-    """A run that has come to no end is given up, wherever it goes round."""
+    """Ends an endless run, wherever its loop is."""
     left = [_ENDLESS]
 
     def make(right: Any) -> Any:

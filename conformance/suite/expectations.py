@@ -37,7 +37,7 @@ class Kind:
     """A word that expectations begin with.
 
     ``form`` is what its arguments look like, a regular expression over the words joined by blanks.
-    ``timed`` tells whether a time may follow, ``robot`` which robot it needs at least.
+    ``timed``: a time may follow. ``robot``: the least robot that it needs.
     """
 
     word: str

@@ -2,7 +2,7 @@
 
 Made of the registry (`conformance.suite.registry`) and of the codes of findings
 (`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to
-either; a test tells when the page is stale.
+either; a test fails when the page is stale.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 #: Codes that no check gives yet: where $OUT_C is not allowed is not documented.
 UNUSED = frozenset({"KSS2352"})
 
-#: What can be done for a rule, and how the page tells it; with codes where findings have one.
+#: What can be done for a rule, and the page's word for it; with codes where findings have one.
 _TODAY = {
     "grammar": "grammar",
     "tables": "tables",
@@ -32,7 +32,7 @@ _TODAY = {
 
 _TOPICS: Mapping[str, tuple[str, str]] = {
     "TYP": ("Types, literals, declarations", "What data there are and how they are declared."),
-    "ARI": ("Operators and conversion", "What expressions come to."),
+    "ARI": ("Operators and conversion", "The values of expressions."),
     "FCT": ("Functions", "What the controller brings along, without any file."),
     "SCO": ("Files, scope, parameters", "Who sees what, for how long, and how it is passed."),
     "CTL": ("Control flow", "In which order statements are executed."),
@@ -63,11 +63,12 @@ is no public specification. Each rule says how well it is known, where from, and
 **How well it is known.** `P`: a manual page, or a file that KUKA wrote. `T`: a transcription or
 translation of one. `F`: practitioners on a forum. `D`: measured on real controller files. `R`:
 recollection of a manual that could not be read again. `X`: a page of unknown origin. What rests on
-`R` or `X` alone is *unconfirmed*: it is never told as an error.
+`R` or `X` alone is *unconfirmed*: it is never reported as an error.
 
 **What is done.** *grammar*: `KRL.g4` reads it, or refuses what is wrong. *tables*: it is in the
-tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` tells, with
-these codes. *lint*: `krl check --stops` tells. *running*: interpreters and controller act on it.
+tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` reports it,
+with these codes. *lint*: `krl check --stops` reports it. *running*: interpreters and controller act
+on it.
 What shows it are the conformance cases: `krl conform RULE` runs them.
 """
 
@@ -145,11 +146,11 @@ def _counts(its: list[Rule]) -> Iterator[int]:
 def _row(rule: Rule, codes: tuple[str, ...]) -> str:
     words = []
     for word in rule.today:
-        told = _TODAY[word]
+        word_shown = _TODAY[word]
         if word in ("check", "lint"):
             wanted = [code for code in codes if code.startswith("KRL6") == (word == "lint")]
-            told += f" ({', '.join(wanted)})" if wanted else ""
-        words.append(told)
+            word_shown += f" ({', '.join(wanted)})" if wanted else ""
+        words.append(word_shown)
     source = "–" if rule.source == "-" else rule.source
     statement = rule.statement.replace("|", "\\|")
     return f"| {rule.id} | {rule.tier} | {statement} | {'; '.join(words)} | {source} |"

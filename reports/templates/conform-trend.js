@@ -1,4 +1,4 @@
-// The nights: how many results passed and failed in each.
+// The nightly runs: how many results passed and failed in each.
 
 const byId = (id) => document.getElementById(id);
 
@@ -23,7 +23,7 @@ function trend() {
   whenResized(holder, () => {
     const [width, height] = [holder.clientWidth || 900, 120];
     const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img" });
-    root.append(svg("title", {}, `${counted(nights.length, "night")}; the last: ${passed.at(-1)} passed, ${failed.at(-1)} failed`));
+    root.append(svg("title", {}, `${counted(nights.length, "nightly run")}; the last: ${passed.at(-1)} passed, ${failed.at(-1)} failed`));
     const x = (n) => 50 + ((width - 110) * n) / (nights.length - 1);
     const band = (values, top, bottom, name, label) => {
       const high = Math.max(...values, 1);

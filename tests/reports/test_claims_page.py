@@ -85,10 +85,10 @@ def test_causes_are_those_of_the_start() -> None:
     assert ["FOR"] == [bar.label for bar in claim.bars]
 
 
-def test_what_a_green_night_is_worth_is_told_with_its_speed() -> None:
-    """Faults found, those that turn a night red, and cases a second."""
+def test_sensitivity_of_the_cases_stands_with_their_speed() -> None:
+    """Faults found, those that fail a case, and cases a second."""
     claim = claims_view(RECORDS).claims[5]
-    assert "97 of them, 97.0 %; 90 of these turn the night red" in claim.found
+    assert "97 of them, 97.0 %; 90 of these fail a case" in claim.found
     assert "870 cases run at 149 a second" in claim.found
     assert ("100", "97", "90", "97.0 %") == claim.bars[0].values
 
