@@ -8,6 +8,7 @@ from pathlib import Path
 from junitparser import Failure, JUnitXml, Skipped, TestCase, TestSuite
 
 from conformance.runner import CaseResult, Result
+from support.files.atomic_write import atomic_path
 
 __all__ = ["write_junit"]
 
@@ -22,10 +23,8 @@ def write_junit(results: Sequence[CaseResult], target: Path) -> None:
             suite.add_testcase(_test(one, result))
     for suite in suites.values():
         report.add_testsuite(suite)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    scratch = target.with_name(target.name + ".part")
-    report.write(str(scratch), pretty=True)
-    scratch.replace(target)
+    with atomic_path(target) as part:
+        report.write(str(part), pretty=True)
 
 
 def _test(one: CaseResult, result: Result) -> TestCase:

@@ -1,14 +1,14 @@
 """Where a command writes: checked before the work, written whole or not at all."""
 
-import contextlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from krl.errors import Unusable
+from support.files.atomic_write import write_atomic
 
-__all__ = ["check_files", "check_targets", "whole", "write_json"]
+__all__ = ["check_files", "check_targets", "write_json"]
 
 
 def check_targets(out: Path, json_file: Path | None) -> None:
@@ -30,29 +30,8 @@ def check_files(*targets: Path | None) -> None:
             raise Unusable(f"{target}: {above} is not a folder")
 
 
-@contextlib.contextmanager
-def whole(target: Path) -> Iterator[Path]:
-    """The file in which to write what ``target`` is to be, once the block has ended well.
-
-    It lies beside it. A device or a pipe, as /dev/stdout, is itself that file: it is not replaced.
-    Folders above are made. Raises `OSError`.
-    """
-    if target.exists() and not target.is_file():
-        yield target
-        return
-    target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(target.name + ".part")
-    try:
-        yield part
-        part.replace(target)
-    finally:
-        with contextlib.suppress(OSError):  # there may be none, or a folder of somebody else
-            part.unlink()
-
-
 def write_json(record: Mapping[str, Any], target: Path, indent: int | None = None) -> None:
     """Write ``record`` whole or not at all, on one line or with so many blanks a level."""
-    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
-    with whole(target) as file:
-        # half of a character, which names of files may hold, is an escape of JSON then
-        file.write_text(text + "\n", encoding="utf-8", newline="\n", errors="backslashreplace")
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent) + "\n"
+    # half of a character, which names of files may hold, is an escape of JSON then
+    write_atomic(target, text.encode(errors="backslashreplace"))

@@ -13,6 +13,8 @@ from typing import Any
 
 import typer
 
+from support.files.atomic_write import write_atomic
+
 __all__ = ["PAGE", "reference"]
 
 PAGE = Path(__file__).parents[1] / "docs" / "commands.md"
@@ -98,7 +100,7 @@ def main() -> int:
     arguments = parser.parse_args()
     page = reference()
     if arguments.write:
-        PAGE.write_text(page, encoding="utf-8", newline="\n")
+        write_atomic(PAGE, page)
         return 0
     if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == page:
         return 0

@@ -6,7 +6,8 @@ from typing import Any
 
 from reports.claims_view import claims_view
 from reports.embedding import embedded_json
-from reports.page import render, write_page
+from reports.page import render
+from support.files.atomic_write import write_atomic
 
 __all__ = ["write_claims_page"]
 
@@ -26,4 +27,4 @@ def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) ->
         data=embedded_json({}),
         view=claims_view(records),
     )
-    return write_page(page, folder / "index.html")
+    return write_atomic(folder / "index.html", page)

@@ -6,9 +6,10 @@ from typing import Any
 
 from reports.conform_view import VERDICTS, conform_view
 from reports.embedding import embedded_json
-from reports.page import render, source, write_page
+from reports.page import render, source
 from reports.record_fields import Record, count, nested, number, records, text, texts
 from reports.sanitizing import plain, shown
+from support.files.atomic_write import write_atomic
 
 __all__ = ["write_conformance_page"]
 
@@ -48,7 +49,7 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
         data=data,
         view=conform_view(record),
     )
-    return write_page(page, folder / "index.html")
+    return write_atomic(folder / "index.html", page)
 
 
 def _case(case: Record) -> Json:

@@ -8,8 +8,9 @@ from reports.construct_data import clipped, construct_data
 from reports.embedding import embedded_json, printable
 from reports.growth_view import growth_view
 from reports.number_format import clip
-from reports.page import render, source, write_page
+from reports.page import render, source
 from reports.record_fields import Record, count, nested, number, records, text, texts
+from support.files.atomic_write import write_atomic
 
 _MAX_STEPS = 2000
 _MAX_FILES = 100
@@ -46,7 +47,7 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
         data=data,
         view=growth_view(record),
     )
-    return write_page(page, folder / "index.html")
+    return write_atomic(folder / "index.html", page)
 
 
 def _step(step: Record) -> Json:

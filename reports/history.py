@@ -7,12 +7,12 @@ cut off must not hide those before it.
 import hashlib
 import json
 import math
-import secrets
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from reports.record_fields import Record, count, nested, number, records, text
+from support.files.atomic_write import write_atomic
 
 __all__ = ["append_night", "changes", "known_before", "night_of", "read_nights"]
 
@@ -46,16 +46,10 @@ def append_night(file: Path, night: Mapping[str, Any]) -> None:
 
     A night of the same date, which was broken off or repeated, gives way to it. Raises OSError.
     """
-    file.parent.mkdir(parents=True, exist_ok=True)
     before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, night)]
     kept.append(json.dumps(night, ensure_ascii=False, separators=(",", ":"), allow_nan=False))
-    draft = file.with_name(f".{file.name}-{secrets.token_hex(8)}.tmp")
-    try:
-        draft.write_text("\n".join(kept) + "\n", encoding="utf-8", newline="\n")
-        draft.replace(file)
-    finally:
-        draft.unlink(missing_ok=True)
+    write_atomic(file, "\n".join(kept) + "\n")
 
 
 def known_before(nights: Sequence[Json]) -> Json | None:

@@ -7,9 +7,10 @@ from typing import Any
 
 from reports.embedding import embedded_json
 from reports.number_format import Figure, counted, percent, share
-from reports.page import render, source, write_page
+from reports.page import render, source
 from reports.record_fields import Record, count, nested, number, records, text, texts
 from reports.sanitizing import plain, shown
+from support.files.atomic_write import write_atomic
 
 __all__ = ["write_night_page"]
 
@@ -83,7 +84,7 @@ def write_night_page(record: Mapping[str, Any], folder: Path) -> Path:
     """
     nights = records(record, "history")[-_MAX_NIGHTS:]
     data = embedded_json({"nights": [_short(night) for night in nights]})
-    scripts = "\n".join(source(f"{name}.js") for name in ("page", "night"))
+    scripts = "\n".join(source(f"{name}.js") for name in ("page", "nightly"))
     page = render(
         "nightly.html.j2",
         script=f'"use strict";\n{{\n{scripts}}}\n',
@@ -91,7 +92,7 @@ def write_night_page(record: Mapping[str, Any], folder: Path) -> Path:
         data=data,
         view=_view(record, nights),
     )
-    return write_page(page, folder / "index.html")
+    return write_atomic(folder / "index.html", page)
 
 
 def _short(night: Record) -> Json:

@@ -1,9 +1,7 @@
 """What all pages share: rendered from a template into one file that loads nothing."""
 
-import secrets
 from collections.abc import Sequence
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
@@ -12,26 +10,7 @@ from markupsafe import Markup
 from reports.embedding import inline_source, script_hash
 from reports.number_format import counted
 
-__all__ = ["render", "write_page"]
-
-
-def write_page(page: str, target: Path) -> Path:
-    """Write the file ``target`` whole or not at all, and return its path.
-
-    It is written beside its place and then moved there; a device or a pipe is written to itself.
-    Raises OSError when its folder cannot be made or written.
-    """
-    if target.exists() and not target.is_file():
-        target.write_text(page, encoding="utf-8", newline="\n")
-        return target
-    target.parent.mkdir(parents=True, exist_ok=True)
-    draft = target.with_name(f".{target.name}-{secrets.token_hex(8)}.tmp")
-    try:
-        draft.write_text(page, encoding="utf-8", newline="\n")
-        draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)
-    return target
+__all__ = ["render", "source"]
 
 
 def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:

@@ -6,10 +6,11 @@ from typing import Any
 
 from reports.embedding import embedded_json, printable
 from reports.number_format import clip
-from reports.page import render, source, write_page
+from reports.page import render, source
 from reports.record_fields import Record, count, nested, number, records, text
 from reports.run_view import run_view
 from reports.sanitizing import plain
+from support.files.atomic_write import write_atomic
 
 __all__ = ["write_run_page"]
 
@@ -49,7 +50,7 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
         data=data,
         view=run_view(record),
     )
-    return write_page(page, target)
+    return write_atomic(target, page)
 
 
 def _file(file: Record) -> Json:

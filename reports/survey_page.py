@@ -6,11 +6,12 @@ from typing import Any
 
 from reports.construct_data import construct_data
 from reports.embedding import embedded_json
-from reports.page import render, source, write_page
+from reports.page import render, source
 from reports.record_fields import Record, nested, records, text
 from reports.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
 from reports.survey_section import Section
 from reports.survey_view import survey_view
+from support.files.atomic_write import write_atomic
 
 # The embedded data stays below this, which keeps the whole page below 5 MB.
 _MAX_DATA_CHARACTERS = 3_500_000
@@ -26,7 +27,7 @@ def write_survey_page(record: Mapping[str, Any], folder: Path) -> Path:
 
     Raises OSError when the folder cannot be made or written.
     """
-    return write_page(render_survey_page(record), folder / "index.html")
+    return write_atomic(folder / "index.html", render_survey_page(record))
 
 
 def render_survey_page(record: Mapping[str, Any]) -> str:

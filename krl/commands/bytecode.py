@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, Unusable, one_line
-from krl.output_files import check_files, whole
+from krl.output_files import check_files
 from krl.program_loading import load_program
+from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from interp.bytecode.program import Program
@@ -106,8 +107,7 @@ def write_image_of(program: "Program", source: Path, target: Path) -> None:
     except VerificationError as error:
         raise Unusable(f"{source}: {error}") from error
     check_files(target)
-    with whole(target) as image:
-        image.write_bytes(write_image(program))
+    write_atomic(target, write_image(program))
 
 
 def _read(file: Path) -> bytes:

@@ -16,8 +16,9 @@ from rich.text import Text
 
 from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JobsOption
-from krl.output_files import check_files, whole
+from krl.output_files import check_files
 from krl.progress import progress_bar
+from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from grammar.check.batch import Checkup
@@ -155,8 +156,7 @@ def _write(kept: "list[Diagnostic]", found: "Checkup", format_: Format, out: Pat
     if out is None:
         typer.echo(written, nl=False)
         return
-    with whole(out) as file:
-        file.write_text(written, encoding="utf-8", newline="\n")
+    write_atomic(out, written)
 
 
 def _written(

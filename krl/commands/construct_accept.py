@@ -19,6 +19,7 @@ from krl.construct_ledger import (
 from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.options import JobsOrOneOption
 from krl.progress import progress_bar
+from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from grammar import Grammar
@@ -60,7 +61,7 @@ def weigh(
     """
     from recovery.ledger.construct_file import text_of
     from recovery.ledger.ledger import Ledger
-    from support.files.transaction import write_together
+    from support.files.atomic_write import write_together
 
     with expected_errors():
         found = _weighed(Ledger.read(there(LEDGER)), files, corpus, jobs)
@@ -144,7 +145,7 @@ def replay(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        out.write_bytes(text.encode())
+        write_atomic(out, text)
         typer.echo(one_line(f"wrote {out.as_posix()}: the replay of {_count(len(chosen))}"))
     return FINE
 

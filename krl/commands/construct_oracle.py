@@ -93,7 +93,7 @@ def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
     """Ask about constructs, write the verdicts into their files, say what was answered."""
     from recovery.ledger.construct_file import text_of
     from recovery.ledger.oracle import judged
-    from support.files.transaction import write_together
+    from support.files.atomic_write import write_together
 
     with progress_bar("asking", len(constructs)) as bar:
         found = []

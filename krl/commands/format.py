@@ -1,7 +1,5 @@
 """`krl format`: programs set out in one style, and nothing else of them changed."""
 
-import shutil
-import tempfile
 from collections import Counter
 from enum import Enum
 from pathlib import Path
@@ -10,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, UNUSABLE, Unusable, one_line
+from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from support.files.discovery import Found, Skipped
@@ -93,7 +92,7 @@ def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     # what decoding leaves out, a mark at the start and padding at the end, stays as it is
     before, _, after = data.partition(source.text.encode(source.encoding))
     try:
-        _write(found.file, before + text.encode(source.encoding) + after)
+        write_atomic(found.file, before + text.encode(source.encoding) + after)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         return _complain(found.path, f"not written: {reason}", _Outcome.NOT_WRITTEN)
@@ -110,18 +109,3 @@ def _token(text: str) -> str:
     if not text:
         return "the end of the file"
     return text[:_LONGEST] if text.strip() else "the end of the line"
-
-
-def _write(file: Path, data: bytes) -> None:
-    """Put `data` in the place of a file, whole or not at all; who may do what stays."""
-    with tempfile.NamedTemporaryFile(dir=file.parent, prefix=".krl-format-", delete=False) as part:
-        scratch = Path(part.name)
-        try:
-            part.write(data)
-            part.close()
-            shutil.copymode(file, scratch)
-            scratch.replace(file)
-        except BaseException:
-            part.close()
-            scratch.unlink(missing_ok=True)
-            raise

@@ -13,9 +13,10 @@ import typer
 
 from krl.errors import FINDINGS, FINE, Unusable, one_line
 from krl.extras import expected_extras
-from krl.output_files import check_files, whole
+from krl.output_files import check_files
 from krl.program_loading import load_program
 from krl.progress import progress_bar
+from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
     from interp.controller.trace import TraceEvent
@@ -217,7 +218,7 @@ def _tracing(file: Path | None) -> Iterator[TextIO | None]:
     if file is None:
         yield None
         return
-    with whole(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
+    with atomic_path(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
         yield stream
 
 
@@ -245,8 +246,9 @@ def _film(done: "Run", target: Path) -> None:
     assert done.path is not None
     shown = done.path.axes if done.path.axes_measured is None else done.path.axes_measured
     try:
-        with progress_bar("filming", frame_count(done.path.times)) as bar:
-            write_video(target, done.machine, done.path.times, shown, on_frame=bar)
+        filming = progress_bar("filming", frame_count(done.path.times))
+        with filming as bar, atomic_path(target) as part:
+            write_video(part, done.machine, done.path.times, shown, on_frame=bar)
     except VideoError as error:
         raise Unusable(str(error)) from error
 
@@ -256,7 +258,7 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
     import pandas as pd
 
     table = pd.DataFrame(dict(columns))
-    with whole(target) as part:
+    with atomic_path(target) as part:
         if target.suffix.lower() == ".csv":
             table.to_csv(part, index=False, lineterminator="\n")
         else:

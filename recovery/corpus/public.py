@@ -24,6 +24,7 @@ from recovery.corpus.git_objects import (
     fetch_commit,
     find_mirror,
 )
+from support.files.atomic_write import write_atomic
 from support.files.discovery import SUFFIXES
 from support.files.untrusted import read_bytes, read_text, toml_of
 
@@ -210,21 +211,13 @@ def _take(
                 if content is None:
                     continue
                 if hashlib.sha256(content).hexdigest() == file.sha256:
-                    _write(target / file.path, content)
+                    write_atomic(target / file.path, content)
                     on_file(1)
                     break
                 why = "changed, its checksum is not the listed one"
             else:
                 problems[file.path] = why
     return problems
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write at once or not at all, so that an interrupted fetch leaves no half file."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.part")
-    part.write_bytes(content)
-    part.replace(path)
 
 
 def _is_there(file: KrlFile, path: Path) -> bool:

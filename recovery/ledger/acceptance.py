@@ -19,7 +19,7 @@ from recovery.ledger.construct_file import text_of
 from recovery.ledger.evaluation import Evaluation, evaluate, losses
 from recovery.ledger.ledger import UNFINISHED, Ledger, broken_examples, grown, in_force
 from recovery.ledger.regeneration import Generator, parser_of
-from support.files.transaction import write_together
+from support.files.atomic_write import write_together
 from support.parallel.progress import Progress, unheard
 
 __all__ = ["Acceptance", "Home", "Refused", "enter", "write"]

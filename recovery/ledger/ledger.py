@@ -16,7 +16,7 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import read
-from support.files.transaction import JournalError, finish
+from support.files.atomic_write import JournalError, finish
 
 __all__ = [
     "UNFINISHED",

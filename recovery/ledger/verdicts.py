@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from recovery.ledger.oracle import Answer, OracleError, Program, as_bytes
-from support.files.transaction import write_together
+from support.files.atomic_write import write_together
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
 __all__ = ["FORM", "RecordedOracle", "write_bundle"]

@@ -1,13 +1,12 @@
 """Records are written whole, and whatever names of files they hold."""
 
 import json
-import os
 from pathlib import Path
 
 import pytest
 
 from krl.errors import Unusable
-from krl.output_files import check_files, whole, write_json
+from krl.output_files import check_files, write_json
 
 
 def test_names_that_are_no_text(tmp_path: Path) -> None:
@@ -24,25 +23,8 @@ def test_what_fails_leaves_no_half(tmp_path: Path) -> None:
     write_json({"old": 1}, target)
     with pytest.raises(ValueError, match="not JSON compliant"):
         write_json({"new": float("nan")}, target)
-    with pytest.raises(UnicodeEncodeError), whole(target) as part:
-        part.write_text("half \udcff", encoding="utf-8")
     assert {"old": 1} == json.loads(target.read_text(encoding="utf-8"))
     assert [target] == list(tmp_path.iterdir())
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in folders here")
-def test_a_pipe_is_written_to_and_stays(tmp_path: Path) -> None:
-    """What is no file, as a pipe, gets the record and is not replaced by a file."""
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    try:
-        write_json({"a": 1}, pipe)
-        assert b'{"a": 1}\n' == os.read(reader, 100)
-    finally:
-        os.close(reader)
-    assert pipe.is_fifo()
-    assert [pipe] == list(tmp_path.iterdir())
 
 
 def test_places_where_no_file_can_be(tmp_path: Path) -> None:

@@ -143,7 +143,7 @@ def test_page_and_record_are_written_to_the_output_folder(corpus: Path, tmp_path
     data = record(out)
     assert 2 == len(data["clusters"])
     assert all(entry["id"] in page for entry in data["clusters"])
-    assert [] == list(out.rglob("*.part"))
+    assert [] == list(out.rglob(".part-*"))
 
 
 def test_the_record_says_what_was_surveyed(corpus: Path, tmp_path: Path) -> None:

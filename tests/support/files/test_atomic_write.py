@@ -1,17 +1,65 @@
-"""Several files written together: all of them, or none."""
+"""Files written whole or not at all: one, or several together."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from support.files.transaction import JournalError, finish, write_together
+from support.files.atomic_write import (
+    JournalError,
+    atomic_path,
+    finish,
+    write_atomic,
+    write_together,
+)
 
 
 def content(folder: Path) -> dict[str, bytes]:
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
+
+
+def test_a_block_that_fails_leaves_the_older_file(tmp_path: Path) -> None:
+    """The target is as it was, and nothing lies beside it."""
+    target = tmp_path / "new" / "a.txt"
+    assert target == write_atomic(target, "old ä\r\n")
+    with pytest.raises(UnicodeEncodeError), atomic_path(target) as part:
+        part.write_text("half \udcff", encoding="utf-8")
+    assert b"old \xc3\xa4\r\n" == target.read_bytes()
+    assert [target] == list(target.parent.iterdir())
+
+
+def test_the_path_has_the_suffix_of_its_target(tmp_path: Path) -> None:
+    """So that who writes to it sees from its name in which form."""
+    with atomic_path(tmp_path / "run.gif") as part:
+        assert ".gif" == part.suffix
+        part.touch()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no such permissions")
+def test_permissions_stay(tmp_path: Path) -> None:
+    """A file that only its owner may read stays one."""
+    target = tmp_path / "a.txt"
+    target.touch(0o600)
+    write_atomic(target, b"new")
+    assert 0o600 == target.stat().st_mode & 0o777
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in folders here")
+def test_a_pipe_is_written_to_and_stays(tmp_path: Path) -> None:
+    """What is no file, as a pipe, gets the content and is not replaced by a file."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_atomic(pipe, "content")
+        assert b"content" == os.read(reader, 100)
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+    assert [pipe] == list(tmp_path.iterdir())
 
 
 def test_files_are_made_changed_and_removed(tmp_path: Path) -> None:
@@ -72,7 +120,7 @@ def test_where_nothing_can_be_laid_ready_nothing_is_touched(tmp_path: Path) -> N
 KILLED = """
 import os, sys
 from pathlib import Path
-from support.files.transaction import write_together
+from support.files.atomic_write import write_together
 left = int(sys.argv[2])
 exchange = Path.replace
 def dying(self, target):

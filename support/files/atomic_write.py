@@ -1,9 +1,10 @@
-"""Several files written together: all of them, or none.
+"""Files written whole or not at all: one, or several together.
 
-Everything is laid beside its target first. What is then exchanged is put back where a later
-exchange fails, so that a full disk or a file in use leaves the folder as it was. A process that is
-killed puts nothing back. For that there is a journal, itself written whole: once it stands, the
-change counts as made, and `finish` exchanges what the process did not come to.
+What is written is laid beside its target first and then exchanged, so that a full disk, an error
+or a killed process leaves no half of a file. Of several files, those already exchanged are put back
+where a later exchange fails. A process that is killed puts nothing back. For that there is a
+journal, itself written whole: once it stands, the change counts as made, and `finish` exchanges
+what the process did not come to.
 """
 
 from __future__ import annotations
@@ -11,12 +12,44 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Mapping
+import os
+import stat
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from support.files.untrusted import json_of, read_bytes
 
-__all__ = ["JournalError", "finish", "write_together"]
+__all__ = ["JournalError", "atomic_path", "finish", "write_atomic", "write_together"]
+
+
+@contextlib.contextmanager
+def atomic_path(target: Path) -> Iterator[Path]:
+    """A path to write to, which takes the place of ``target`` once the block has ended well.
+
+    It lies beside the target, with its suffix, and keeps the permissions of a file that is there. A
+    device or a pipe, as /dev/stdout, is itself that path: it is not replaced. Folders above are
+    made. Raises `OSError`.
+    """
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(f".part-{os.urandom(4).hex()}-{target.name}")
+    try:
+        yield part
+        if target.exists() and (mode := target.stat().st_mode) != part.stat().st_mode:
+            part.chmod(stat.S_IMODE(mode))
+        part.replace(target)
+    finally:
+        with contextlib.suppress(OSError):  # there is none any more, or there never was
+            part.unlink()
+
+
+def write_atomic(target: Path, content: bytes | str) -> Path:
+    """Write one file and return its path; see `atomic_path`. Text becomes UTF-8 as it stands."""
+    with atomic_path(target) as part:
+        part.write_bytes(content.encode() if isinstance(content, str) else content)
+    return target
 
 
 class JournalError(ValueError):
@@ -39,7 +72,7 @@ def write_together(
             if content is not None and content != olds[path]:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 staged[path] = path.with_name(f"{path.name}.part")
-                staged[path].write_bytes(content)
+                _write_through(staged[path], content)
         if journal is not None:
             _note(journal, changes)
         for path, content in changes.items():
@@ -70,8 +103,16 @@ def _note(journal: Path, changes: Mapping[Path, bytes | None]) -> None:
         for path, content in changes.items()
     }
     part = journal.with_name(f"{journal.name}.part")
-    part.write_text(json.dumps(wanted), encoding="utf-8")
+    _write_through(part, json.dumps(wanted).encode())
     part.replace(journal)
+
+
+def _write_through(file: Path, content: bytes) -> None:
+    """Write a file, and wait until the disk has it: the journal may not stand before its parts."""
+    with file.open("wb") as stream:
+        stream.write(content)
+        stream.flush()
+        os.fsync(stream.fileno())
 
 
 def finish(journal: Path) -> list[Path]:
