@@ -41,8 +41,8 @@ def there(path: Path) -> Path:
 @contextmanager
 def expected_errors() -> Iterator[None]:
     """Turn what the rooms raise about input into what the door prints."""
-    from grammar import GrammarError
     from grammar.notation.generate import GenerationError
+    from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError

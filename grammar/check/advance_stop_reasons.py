@@ -11,10 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from grammar.check.context import Context
-from grammar.check.expressions import root_of
 from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import root_variable, walk
 
 __all__ = ["Stop", "is_known_call", "stop_of"]
 
@@ -126,13 +125,12 @@ def _parts(node: ast.Node, is_test: bool) -> Sequence[ast.Expression | None]:
 
 def _is_cyclical(target: ast.Expression) -> bool:
     """Whether what is assigned is an expression to keep, and not its value [IOT-11]."""
-    root = root_of(target)
-    return isinstance(root, ast.Variable) and root.name.key == "$CYCFLAG"
+    root = root_variable(target)
+    return root is not None and root.name.key == "$CYCFLAG"
 
 
 def _written(node: ast.Node) -> ast.Variable | None:
-    root = root_of(node.target) if isinstance(node, ast.Assignment) else None
-    return root if isinstance(root, ast.Variable) else None
+    return root_variable(node.target) if isinstance(node, ast.Assignment) else None
 
 
 def _is_system(context: Context, name: ast.Name) -> bool:
@@ -154,8 +152,8 @@ def _variable(
         return
     shown, key = name.text, name.key
     if found is not None and isinstance(found.symbol, SignalSymbol):
-        root = root_of(found.symbol.first)
-        if not isinstance(root, ast.Variable):  # connected to nothing
+        root = root_variable(found.symbol.first)
+        if root is None:  # connected to nothing
             return
         shown, key = f"{shown}, a signal of {root.name.key},", root.name.key
     elif found is not None and found.module is not None and not key.startswith("$"):

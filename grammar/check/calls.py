@@ -7,34 +7,30 @@ controller's own functions are known to need them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from grammar.check.signal_direction import side_of
+from grammar.check.type_checker import TypeChecker
 from grammar.semantics.assignability import passable
 from grammar.semantics.scopes import Found, Scope, SystemScope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
 from grammar.semantics.types import UNKNOWN, Type, Verdict
 from grammar.syntax import ast
 
-if TYPE_CHECKING:
-    from grammar.check.expressions import Typer
-
 __all__ = ["call"]
 
 
-def call(typer: Typer, node: ast.Call, *, is_value: bool) -> Type:
-    """Check a call; gives the type of its value, `UNKNOWN` where there is none."""
-    found = typer.context.found(node.name)
+def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
+    """The type of the value of a call, `UNKNOWN` where there is none; its arguments are checked."""
+    found = checker.context.found(node.name)
     if found is None or not isinstance(found.symbol, RoutineSymbol):
         for argument in node.arguments:
             if argument is not None:
-                typer.type(argument)
-        made: Type = UNKNOWN
+                checker.infer(argument)
+        value: Type = UNKNOWN
     else:
-        _check_arguments(typer, node, found.symbol, found.scope)
-        made = _value(typer, node, found, is_value=is_value)
-    typer.context.types[node] = made
-    return made
+        _check_arguments(checker, node, found.symbol, found.scope)
+        value = _value(checker, node, found, is_value=is_value)
+    checker.context.types[node] = value
+    return value
 
 
 def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
@@ -44,21 +40,23 @@ def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
     return scope.system.functions[symbol.name].is_unconfirmed
 
 
-def _value(typer: Typer, node: ast.Call, found: Found, *, is_value: bool) -> Type:
+def _value(checker: TypeChecker, node: ast.Call, found: Found, *, is_value: bool) -> Type:
     symbol = found.symbol
     if symbol.type is not None or symbol.given is not None:
         if not is_value:
             message = f"the value of {symbol.name} is dropped"
-            typer.tell("value-unused", node.name, message)
-        return typer.of(found)
+            checker.report("value-unused", node.name, message)
+        return checker.type_of(found)
     if is_value:
         message = f"{symbol.name} has no value"
         reason = "" if isinstance(found.scope, SystemScope) else "it is a DEF and no DEFFCT"
-        typer.tell("no-value", node, message, reason=reason)
+        checker.report("no-value", node, message, reason=reason)
     return UNKNOWN
 
 
-def _check_arguments(typer: Typer, node: ast.Call, symbol: RoutineSymbol, scope: Scope) -> None:
+def _check_arguments(
+    checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol, scope: Scope
+) -> None:
     given, wanted = node.arguments, symbol.parameters
     is_uncertain = _is_uncertain(symbol, scope)
     if len(given) > len(wanted) and not symbol.has_more:
@@ -67,23 +65,23 @@ def _check_arguments(typer: Typer, node: ast.Call, symbol: RoutineSymbol, scope:
         if len(given) > len(wanted) + 1:
             message = f"{symbol.name} takes {many}, and these are {len(given)}"
         first = next(filter(None, given[len(wanted) :]), node)
-        typer.tell("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
+        checker.report("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
     if isinstance(scope, SystemScope):
-        _check_missing(typer, node, symbol)
+        _check_missing(checker, node, symbol)
     for parameter, argument in zip(wanted, given, strict=False):
         if argument is not None:
-            _check(typer, parameter, scope, argument, is_uncertain=is_uncertain)
+            _check(checker, parameter, scope, argument, is_uncertain=is_uncertain)
     for argument in given[len(wanted) :]:
         if argument is not None:
-            typer.type(argument)
-    _check_output(typer, node, symbol, scope)
+            checker.infer(argument)
+    _check_output(checker, node, symbol, scope)
 
 
 def _counted(number: int) -> str:
     return "one argument" if number == 1 else f"{number} arguments"
 
 
-def _check_missing(typer: Typer, node: ast.Call, symbol: RoutineSymbol) -> None:
+def _check_missing(checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol) -> None:
     """The controller's own functions need their arguments.
 
     KUKA's own programs leave some of them empty, but end no list early.
@@ -92,37 +90,39 @@ def _check_missing(typer: Typer, node: ast.Call, symbol: RoutineSymbol) -> None:
     if missing:
         message = f"{symbol.name} needs {_counted(len(symbol.parameters))}"
         reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
-        typer.tell("argument-missing", node, message, reason=reason)
+        checker.report("argument-missing", node, message, reason=reason)
 
 
 def _check(
-    typer: Typer,
+    checker: TypeChecker,
     parameter: ParameterSymbol,
     scope: Scope,
     argument: ast.Expression,
     *,
     is_uncertain: bool,
 ) -> None:
-    wanted = typer.of_symbol(parameter, scope)
+    wanted = checker.type_of_symbol(parameter, scope)
     is_out = parameter.mode == "OUT"
     is_variable = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
     if is_variable and is_out:
-        root = typer.root(argument)
+        root = checker.root_symbol(argument)
         is_variable = root is None or root.kind is not Kind.CONSTANT
 
-    def judge(to: Type, value: Type) -> Verdict:
+    def accepts(to: Type, value: Type) -> Verdict:
         return passable(to, value, is_out=is_out, is_variable=is_variable)
 
-    typer.fit(wanted, argument, judge, "wrong-argument", is_unconfirmed=is_uncertain)
-    if is_out and not is_variable and typer.context.types[argument] != UNKNOWN:
+    checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
+    if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:
         message = f"{parameter.name} is passed :OUT, and there is no variable to change"
-        typer.tell("nothing-to-change", argument, message)
+        checker.report("nothing-to-change", argument, message)
 
 
-def _check_output(typer: Typer, node: ast.Call, symbol: RoutineSymbol, scope: Scope) -> None:
+def _check_output(
+    checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol, scope: Scope
+) -> None:
     """PULSE acts on an output [IOT-07]."""
     if symbol.name != "PULSE" or not isinstance(scope, SystemScope) or not node.arguments:
         return
     output = node.arguments[0]
-    if output is not None and side_of(typer.context, output) == "inputs":
-        typer.tell("not-an-output", output, "PULSE acts on an output, and this is an input")
+    if output is not None and side_of(checker.context, output) == "inputs":
+        checker.report("not-an-output", output, "PULSE acts on an output, and this is an input")

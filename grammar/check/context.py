@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from grammar.check.name_hints import Hints
+from grammar.check.name_suggestions import NameSuggestions
 from grammar.diagnostics.codes import Severity, code, of_message
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.semantics.link import Project
@@ -63,7 +63,7 @@ class Context:
     types: dict[Node, Type] = field(default_factory=dict)
     enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
     values: dict[Node, Any] = field(default_factory=dict)
-    hints: Hints = field(default_factory=Hints)
+    suggestions: NameSuggestions = field(default_factory=NameSuggestions)
 
     # ----------------------------------------------------------------------- the file
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from grammar.syntax import ast
+from grammar.syntax.walk import without_parentheses
 
 __all__ = ["Step", "Ways", "ways_through"]
 
@@ -172,8 +173,7 @@ def _is_endless(loop: ast.Statement) -> bool:
         case ast.Loop():
             return True
         case ast.While(condition=condition) | ast.Repeat(condition=condition):
-            while isinstance(condition, ast.Parenthesised):
-                condition = condition.inner
+            value = without_parentheses(condition)
             is_while = isinstance(loop, ast.While)
-            return isinstance(condition, ast.BoolLiteral) and condition.value is is_while
+            return isinstance(value, ast.BoolLiteral) and value.value is is_while
     return False

@@ -7,8 +7,9 @@ from typing import Any
 
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
-from grammar.check.expressions import Typer
+from grammar.check.expressions import type_checker
 from grammar.check.signals import check_signal
+from grammar.check.type_checker import TypeChecker
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.assignability import declarable
 from grammar.semantics.scopes import NotFound
@@ -21,43 +22,43 @@ __all__ = ["check"]
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """What is wrong with the declarations of a file."""
-    typer = Typer(context)
-    _check_name(typer)
+    checker = type_checker(context)
+    _check_name(checker)
     data = context.data
     if data is not None:
         for item in data.items:
-            _check_item(typer, data, item)
+            _check_item(checker, data, item)
     for routine in context.routines:
-        _check_parameters(typer, routine)
-        _check_body(typer, routine)
-    yield from typer.found
+        _check_parameters(checker, routine)
+        _check_body(checker, routine)
+    yield from checker.diagnostics
 
 
 # ------------------------------------------------------------------------------------- names
 
 
-def _check_name(typer: Typer) -> None:
+def _check_name(checker: TypeChecker) -> None:
     """A module is known by the name of its file [SCO-01]."""
-    module, table = typer.context.module, typer.context.table
+    module, table = checker.context.module, checker.context.table
     if not module.is_misnamed:
         return
     what = "the data list" if table.is_data else "the first routine"
     message = f"{what} of {module.name} has another name, {table.name}"
-    typer.tell("module-name", table.span, message)
+    checker.report("module-name", table.span, message)
 
 
 # ------------------------------------------------------------------------------- declarations
 
 
-def _check_item(typer: Typer, data: ast.DataList, node: ast.Item) -> None:
+def _check_item(checker: TypeChecker, data: ast.DataList, node: ast.Item) -> None:
     """What a data list declares."""
     if isinstance(node, ast.Assignment):
         return
     is_global = getattr(node, "is_global", False)
-    if is_global and not data.is_public and not typer.context.table.is_system:
+    if is_global and not data.is_public and not checker.context.table.is_system:
         message = f"GLOBAL needs DEFDAT {data.name.text} PUBLIC"
-        typer.tell("global-not-public", _name_of(node), message)
-    _check_definition(typer, node, open_sizes=frozenset())
+        checker.report("global-not-public", _name_of(node), message)
+    _check_definition(checker, node, open_sizes=frozenset())
 
 
 def _name_of(node: ast.Definition) -> ast.Node:
@@ -66,29 +67,29 @@ def _name_of(node: ast.Definition) -> ast.Node:
     return node.declarator.name if isinstance(node, ast.Importation) else node.name
 
 
-def _check_body(typer: Typer, routine: RoutineBody) -> None:
+def _check_body(checker: TypeChecker, routine: RoutineBody) -> None:
     parameters = frozenset(parameter.name.key for parameter in routine.node.parameters)
     for placed in routine.statements:
         if type(placed.statement) in _DEFINITIONS:
-            _check_definition(typer, placed.statement, open_sizes=parameters)
+            _check_definition(checker, placed.statement, open_sizes=parameters)
 
 
-def _check_definition(typer: Typer, node: ast.Node, *, open_sizes: frozenset[str]) -> None:
+def _check_definition(checker: TypeChecker, node: ast.Node, *, open_sizes: frozenset[str]) -> None:
     """Check one declaration; the names in ``open_sizes`` are arrays that need no size."""
     match node:
         case ast.VariableDeclaration():
             for declarator in node.declarators:
-                _check_sizes(typer, declarator, declarator.name.key in open_sizes)
+                _check_sizes(checker, declarator, declarator.name.key in open_sizes)
         case ast.Structure():
             for group in node.groups:
                 for declarator in group.declarators:
-                    _check_sizes(typer, declarator, is_open=False)
+                    _check_sizes(checker, declarator, is_open=False)
         case ast.Signal():
-            check_signal(typer, node)
+            check_signal(checker, node)
         case ast.ChannelDefinition():
-            typer.type(node.description)
+            checker.infer(node.description)
         case ast.Importation():
-            _check_import(typer, node)
+            _check_import(checker, node)
 
 
 _DEFINITIONS: frozenset[type[Any]] = frozenset(
@@ -96,26 +97,28 @@ _DEFINITIONS: frozenset[type[Any]] = frozenset(
 )
 
 
-def _check_sizes(typer: Typer, declarator: ast.Declarator, is_open: bool) -> None:
+def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool) -> None:
     """Every dimension of an array has a size, but for parameters [TYP-08]."""
     for size in declarator.indices or ():
         if size is None:
             if not is_open:
                 message = f"the array {declarator.name.text} needs a size for each dimension"
-                typer.tell("size-missing", declarator, message)
+                checker.report("size-missing", declarator, message)
                 return
             continue
-        kind, value = typer.type(size), constant(typer.context, size)
+        kind, value = checker.infer(size), constant(checker.context, size)
         if kind not in (INT, REAL, UNKNOWN):
-            typer.tell("wrong-size", size, f"the size of an array is an INT, and this is {kind}")
+            checker.report(
+                "wrong-size", size, f"the size of an array is an INT, and this is {kind}"
+            )
         elif isinstance(value, int | float) and (value < 1 or value != int(value)):
             message = f"an array has at least one element and not {value}"
-            typer.tell("wrong-size", size, message)
+            checker.report("wrong-size", size, message)
 
 
-def _check_import(typer: Typer, node: ast.Importation) -> None:
+def _check_import(checker: TypeChecker, node: ast.Importation) -> None:
     """What is imported is data of another list, which has to be PUBLIC [ADV-05]."""
-    context = typer.context
+    context = checker.context
     found = context.found(node.declarator.name)
     if found is None or found.symbol.kind is not Kind.IMPORT:
         return
@@ -124,20 +127,20 @@ def _check_import(typer: Typer, node: ast.Importation) -> None:
         module = node.path[-1].text
         reason = "its data list is not PUBLIC" if answer.hidden else ""
         message = f"the data list {module} has nothing of that name for others"
-        typer.tell("unknown-name", node.source, message, reason=reason)
+        checker.report("unknown-name", node.source, message, reason=reason)
 
 
 # --------------------------------------------------------------------------------- parameters
 
 
-def _check_parameters(typer: Typer, routine: RoutineBody) -> None:
+def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
     """Parameters are declared in the body; whole arrays are passed :OUT [SCO-06, SCO-07]."""
     symbols = routine.table.routine.parameters
     for node, parameter in zip(routine.node.parameters, symbols, strict=True):
         if parameter.type is None:
             message = f"the parameter {parameter.name} is not declared"
-            typer.tell("parameter-undeclared", node, message)
-        type_ = typer.of_symbol(parameter, routine.scope)
+            checker.report("parameter-undeclared", node, message)
+        type_ = checker.type_of_symbol(parameter, routine.scope)
         verdict = declarable(type_, is_out=parameter.mode == "OUT")
         if not verdict:
-            typer.refuse("array-by-value", node, verdict)
+            checker.reject("array-by-value", node, verdict)

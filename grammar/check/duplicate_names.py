@@ -13,7 +13,8 @@ from grammar.check.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found, Module
-from grammar.semantics.symbols import Duplicate, Kind, Space, Table
+from grammar.semantics.symbols import Duplicate, Kind, Table
+from grammar.syntax.references import Space
 
 __all__ = ["check"]
 

@@ -39,7 +39,6 @@ __all__ = [
     "CHECKS",
     "Check",
     "Checked",
-    "Context",
     "Findings",
     "check",
     "check_module",

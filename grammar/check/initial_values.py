@@ -13,11 +13,13 @@ from collections.abc import Iterator
 
 from grammar.check.constant_folding import integer_of
 from grammar.check.context import Context
-from grammar.check.expressions import Typer, root_of
+from grammar.check.expressions import type_checker
+from grammar.check.type_checker import TypeChecker
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.assignability import initial
-from grammar.semantics.symbols import Space
 from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import root_variable
 
 __all__ = ["check"]
 
@@ -27,7 +29,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
     data = context.data
     if data is None:
         return
-    values = _Values(Typer(context))
+    values = _Values(type_checker(context))
     for item in data.items:
         if type(item) is ast.VariableDeclaration:
             values.declaration(item)
@@ -36,7 +38,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
         else:
             values.awaited = frozenset()
         values.end = item.span[1]
-    yield from values.typer.found
+    yield from values.checker.diagnostics
 
 
 class _Values:
@@ -46,8 +48,8 @@ class _Values:
     came last, ``end`` is where that item ended.
     """
 
-    def __init__(self, typer: Typer) -> None:
-        self.typer = typer
+    def __init__(self, checker: TypeChecker) -> None:
+        self.checker = checker
         self.awaited: frozenset[str] = frozenset()
         self.last: tuple[str, tuple[int, ...]] = "", ()
         self.end = 0
@@ -57,46 +59,46 @@ class _Values:
         for declarator in node.declarators:
             if declarator.value is None:
                 continue
-            found = self.typer.context.found(declarator.name)
+            found = self.checker.context.found(declarator.name)
             if found is not None and found.symbol.span == declarator.name.span:
-                self.typer.fit(self.typer.of(found), declarator.value, initial)
+                self.checker.check(self.checker.type_of(found), declarator.value, initial)
             else:  # declared twice
-                self.typer.type(declarator.value)
+                self.checker.infer(declarator.value)
         self.awaited = frozenset(declarator.name.key for declarator in node.declarators)
         self.last = "", ()
 
     def element(self, node: ast.Assignment) -> None:
         """The initial value of an element, or of an array of CHAR."""
-        self.typer.fit(self.typer.target(node.target), node.value, initial)
-        root = root_of(node.target)
-        if not isinstance(root, ast.Variable):
+        self.checker.check(self.checker.infer_target(node.target), node.value, initial)
+        root = root_variable(node.target)
+        if root is None:
             return
         self._check_place(root.name, node)
         self._check_order(root, node.target)
 
     def _check_place(self, name: ast.Name, node: ast.Assignment) -> None:
-        context = self.typer.context
+        context = self.checker.context
         if context.scope.own(Space.VALUE, name.key) is None:
             return
         if name.key not in self.awaited:
             message = f"the initial values of {name.text} follow its declaration"
-            self.typer.tell("initial-not-adjacent", node.target, message)
+            self.checker.report("initial-not-adjacent", node.target, message)
             self.awaited = frozenset({name.key})
         elif _has_blank_line(context.source.text[self.end : node.span[0]]):
             message = f"a blank line parts the initial values of {name.text}"
-            self.typer.tell("initial-not-adjacent", node.target, message, severity="note")
+            self.checker.report("initial-not-adjacent", node.target, message, severity="note")
 
     def _check_order(self, root: ast.Variable, target: ast.Expression) -> None:
         if not (isinstance(target, ast.Subscript) and target.base is root):
             return
-        places = [integer_of(self.typer.context, index) for index in target.indices]
+        places = [integer_of(self.checker.context, index) for index in target.indices]
         here = tuple(place for place in places if place is not None)
         name, before = self.last
         if len(here) < len(places):
             here = ()
         elif name == root.name.key and len(before) == len(here) and here < before:
             message = "the elements of an array get their initial values in ascending order"
-            self.typer.tell("initial-order", target, message)
+            self.checker.report("initial-order", target, message)
         self.last = root.name.key, here
 
 

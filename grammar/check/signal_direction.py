@@ -7,6 +7,7 @@ from typing import Literal
 from grammar.check.context import Context
 from grammar.semantics.symbols import SignalSymbol
 from grammar.syntax import ast
+from grammar.syntax.walk import root_variable
 
 __all__ = ["Side", "side_of", "written_side"]
 
@@ -23,9 +24,8 @@ _SIDES: dict[str, Side] = {
 
 def written_side(node: ast.Expression) -> Side | None:
     """The side of ``$IN[5]`` and its like, as the name tells it."""
-    while isinstance(node, ast.Subscript | ast.Member):
-        node = node.base
-    return _SIDES.get(node.name.key) if isinstance(node, ast.Variable) else None
+    root = root_variable(node)
+    return _SIDES.get(root.name.key) if root else None
 
 
 def side_of(context: Context, node: ast.Expression) -> Side | None:

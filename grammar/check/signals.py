@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from grammar.check.constant_folding import integer_of
-from grammar.check.expressions import Typer
 from grammar.check.signal_direction import written_side
+from grammar.check.type_checker import TypeChecker
 from grammar.syntax import ast
 
 __all__ = ["check_signal"]
@@ -12,32 +12,32 @@ __all__ = ["check_signal"]
 _WIDEST = 32
 
 
-def check_signal(typer: Typer, node: ast.Signal) -> None:
+def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
     """Check the declaration of a signal."""
-    typer.type(node.first)
-    key, context = node.name.key, typer.context
+    checker.infer(node.first)
+    key, context = node.name.key, checker.context
     if key.startswith("$") and not context.table.is_system and key not in context.system.variables:
         message = f"{node.name.text} is no predefined signal"
-        typer.tell("not-predefined-signal", node.name, message, is_unconfirmed=True)
+        checker.report("not-predefined-signal", node.name, message, is_unconfirmed=True)
     if node.last is None:
         return
-    typer.type(node.last)
+    checker.infer(node.last)
     sides = written_side(node.first), written_side(node.last)
     if None not in sides and sides[0] != sides[1]:
         message = f"{node.name.text} reaches from {sides[0]} to {sides[1]}"
-        typer.tell("signal-mixed", node.last, message)
+        checker.report("signal-mixed", node.last, message)
         return
-    first, last = _number(typer, node.first), _number(typer, node.last)
+    first, last = _number(checker, node.first), _number(checker, node.last)
     if first is None or last is None:
         return
     width = last - first + 1
     if width > _WIDEST:
         message = f"{node.name.text} has {width} bits, and a signal has at most {_WIDEST}"
-        typer.tell("signal-too-wide", node.last, message)
+        checker.report("signal-too-wide", node.last, message)
 
 
-def _number(typer: Typer, node: ast.Expression) -> int | None:
+def _number(checker: TypeChecker, node: ast.Expression) -> int | None:
     """The number of an input or output."""
     if isinstance(node, ast.Subscript) and len(node.indices) == 1:
-        return integer_of(typer.context, node.indices[0])
+        return integer_of(checker.context, node.indices[0])
     return None

@@ -10,36 +10,36 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from grammar.check.aggregates import aggregate
 from grammar.check.assignments import assign
 from grammar.check.calls import call
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
-from grammar.check.expressions import Judge, Typer, stripped
+from grammar.check.expressions import type_checker
+from grammar.check.type_checker import Accepts, TypeChecker
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.assignability import case_label, condition, integer, number, selector, target
 from grammar.semantics.types import (
     REAL,
     UNKNOWN,
-    Structure,
     Type,
     Verdict,
 )
 from grammar.syntax import ast
+from grammar.syntax.walk import without_parentheses
 
 __all__ = ["check"]
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Type all expressions in the routines of a file."""
-    typer = Typer(context)
+    checker = type_checker(context)
     for routine in context.routines:
-        checker = _Routine(typer, routine)
+        rules = _Routine(checker, routine)
         for placed in routine.statements:
             rule = _RULES.get(type(placed.statement))
             if rule is not None:
-                rule(checker, placed.statement)
-    yield from typer.found
+                rule(rules, placed.statement)
+    yield from checker.diagnostics
 
 
 def _condition(_to: Type, value: Type) -> Verdict:
@@ -63,20 +63,20 @@ def _bound(_to: Type, value: Type) -> Verdict:
 class _Routine:
     """Checks the statements of one routine."""
 
-    def __init__(self, typer: Typer, routine: RoutineBody) -> None:
-        self.typer = typer
-        self.context = typer.context
+    def __init__(self, checker: TypeChecker, routine: RoutineBody) -> None:
+        self.checker = checker
+        self.context = checker.context
         self.routine = routine
 
     # ----------------------------------------------------------------------- places
 
     def needs(
-        self, judge: Judge, slug: str, *nodes: ast.Expression | None, to: Type = UNKNOWN
+        self, accepts: Accepts, slug: str, *nodes: ast.Expression | None, to: Type = UNKNOWN
     ) -> None:
         """Type values that a statement needs; those that are left out need nothing."""
         for node in nodes:
             if node is not None:
-                self.typer.fit(to, node, judge, slug)
+                self.checker.check(to, node, accepts, slug)
 
     def condition(self, node: ast.Expression) -> None:
         """A truth value."""
@@ -94,14 +94,14 @@ class _Routine:
         """Expressions that may be anything."""
         for node in nodes:
             if node is not None:
-                self.typer.type(node)
+                self.checker.infer(node)
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
         """What a trigger or an interrupt does."""
         if isinstance(node, ast.Assignment):
-            assign(self.typer, node)
+            assign(self.checker, node)
         elif isinstance(node, ast.CallStatement):
-            call(self.typer, node.call, is_value=False)
+            call(self.checker, node.call, is_value=False)
 
     # ----------------------------------------------------------------- control flow
 
@@ -109,23 +109,23 @@ class _Routine:
         """FOR: its counter, bounds and step are INT, the step a constant [CTL-05]."""
         found = self.context.found(node.counter)
         if found is not None:
-            verdict = _bound(UNKNOWN, self.typer.of(found))
+            verdict = _bound(UNKNOWN, self.checker.type_of(found))
             if not verdict:
-                self.typer.refuse("wrong-counter", node.counter, verdict)
+                self.checker.reject("wrong-counter", node.counter, verdict)
         self.needs(_bound, "wrong-counter", node.first, node.last)
         if node.step is not None:
             self._step(node.step)
 
     def _step(self, node: ast.Expression) -> None:
-        before = len(self.typer.found)
+        before = len(self.checker.diagnostics)
         self.needs(_bound, "wrong-counter", node)
-        if len(self.typer.found) > before:
+        if len(self.checker.diagnostics) > before:
             return
         value = constant(self.context, node)
         if value == 0:
-            self.typer.tell("wrong-step", node, "STEP cannot be zero")
+            self.checker.report("wrong-step", node, "STEP cannot be zero")
         elif value is None and self.context.types[node] != UNKNOWN:
-            self.typer.tell("wrong-step", node, "STEP is a constant")
+            self.checker.report("wrong-step", node, "STEP is a constant")
 
     def switch(self, node: ast.Switch) -> None:
         """SWITCH over CHAR, INT or an enumeration; CASE has constants of that [CTL-03]."""
@@ -136,13 +136,13 @@ class _Routine:
         for branch in node.branches:
             for label in branch.values:
                 if is_known:
-                    self.typer.fit(chosen, label, case_label, "wrong-selector")
+                    self.checker.check(chosen, label, case_label, "wrong-selector")
                 else:
-                    self.typer.type(label)
+                    self.checker.infer(label)
                 value = constant(self.context, label)
                 if value is not None and (type(value), value) in seen:
                     message = "this constant stands in an earlier CASE"
-                    self.typer.tell("case-twice", label, message)
+                    self.checker.report("case-twice", label, message)
                 seen.add((type(value), value))
 
     def returned(self, node: ast.Return) -> None:
@@ -152,14 +152,14 @@ class _Routine:
         if node.value is None:
             if result is not None:
                 message = f"{name} is a function, so RETURN needs a value"
-                self.typer.tell("return-without-value", node, message)
+                self.checker.report("return-without-value", node, message)
         elif result is None:
-            self.typer.type(node.value)
+            self.checker.infer(node.value)
             message = f"{name} is no function, so RETURN has no value"
-            self.typer.tell("return-with-value", node.value, message)
+            self.checker.report("return-with-value", node.value, message)
         else:
             symbol, scope = self.routine.table.routine, self.routine.scope
-            self.typer.fit(self.typer.of_symbol(symbol, scope), node.value)
+            self.checker.check(self.checker.type_of_symbol(symbol, scope), node.value)
 
     # ---------------------------------------------------------------------- motions
 
@@ -176,7 +176,7 @@ class _Routine:
     def values(self, nodes: tuple[ast.Assignment, ...]) -> None:
         """What stands behind WITH [SPL-08]."""
         for node in nodes:
-            assign(self.typer, node)
+            assign(self.checker, node)
 
     def stop(self, node: ast.StopWhen) -> None:
         """STOP WHEN PATH … IF [SPL-06]."""
@@ -184,23 +184,22 @@ class _Routine:
         self.condition(node.condition)
 
     def _target(self, node: ast.Expression) -> None:
-        inner = stripped(node)
+        inner = without_parentheses(node)
         if isinstance(inner, ast.Aggregate):
-            aggregate(self.typer, inner, self._position(inner))
+            self.checker.infer(inner, self._position(inner))
         else:
             self.needs(lambda _to, value: target(value), "not-a-position", node)
 
-    def _position(self, node: ast.Aggregate) -> Structure | None:
+    def _position(self, node: ast.Aggregate) -> Type:
         """The structure of a position that is written out: axes, or a pose."""
         is_axes = any(_AXIS.fullmatch(part.name.text) for part in node.components)
-        found = self.context.system.types["E6AXIS" if is_axes else "E6POS"]
-        return found if isinstance(found, Structure) else None
+        return self.context.system.types["E6AXIS" if is_axes else "E6POS"]
 
     def _reference(self, node: ast.EnumConstant) -> None:
-        self.typer.type(node)
+        self.checker.infer(node)
         if node.name.key not in _REFERENCES:
             message = f"a relative motion refers to #BASE or #TOOL, not to #{node.name.text}"
-            self.typer.tell("no-such-constant", node, message, rules=("MOT-14",))
+            self.checker.report("no-such-constant", node, message, rules=("MOT-14",))
 
     def trigger(self, node: ast.Trigger) -> None:
         """TRIGGER: place and delay are numbers, the priority is an integer [TRG-01 to TRG-06]."""
@@ -218,7 +217,7 @@ class _Routine:
 
     def signal_on(self, node: ast.SignalOn) -> None:
         """ANIN, ANOUT and DIGIN compute numbers again and again [IOT-05, IOT-09]."""
-        assign(self.typer, node.assignment)
+        assign(self.checker, node.assignment)
         self.numbers(node.delay, node.minimum, node.maximum)
 
 
@@ -228,7 +227,7 @@ _REFERENCES = frozenset({"BASE", "TOOL"})
 _Rule = Callable[[_Routine, Any], None]
 
 _RULES: Mapping[type[Any], _Rule] = {
-    ast.Assignment: lambda routine, node: assign(routine.typer, node),
+    ast.Assignment: lambda routine, node: assign(routine.checker, node),
     ast.CallStatement: _Routine.action,
     ast.If: lambda routine, node: routine.condition(node.condition),
     ast.For: _Routine.loop,

@@ -14,9 +14,10 @@ from grammar.check.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
-from grammar.semantics.symbols import Access, Kind, Space, Table
+from grammar.semantics.symbols import Access, Kind, Table
 from grammar.semantics.types import SCALARS
 from grammar.syntax.ast import Span
+from grammar.syntax.references import Space
 
 __all__ = ["Reference", "check", "of_project", "references"]
 
@@ -83,7 +84,7 @@ def _unknown(context: Context, use: Use) -> Diagnostic:
         message = f"{name.text} of {hidden.module.path} cannot be seen from here"
         slug = "routine-not-global" if space is Space.ROUTINE else _SLUGS[space]
         return context.finding(slug, name, message, reason=_why_hidden(hidden))
-    fix = context.hints.meant(name.text, _visible(context, space, name.span))
+    fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
     return context.finding(_SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
 
 

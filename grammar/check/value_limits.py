@@ -9,11 +9,10 @@ from collections.abc import Iterator
 
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
-from grammar.check.expressions import root_of
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import root_variable, walk
 
 __all__ = ["check", "is_priority"]
 
@@ -98,8 +97,8 @@ def _trigger(context: Context, node: ast.Trigger) -> Iterator[Diagnostic]:
             message = f"a trigger that calls {node.action.call.name.text} needs PRIO"
             yield context.finding("trigger-priority", node.action, message)
         return
-    variable = root_of(node.action.target)
-    if isinstance(variable, ast.Variable) and _is_local(context, variable):
+    variable = root_variable(node.action.target)
+    if variable is not None and _is_local(context, variable):
         message = f"a trigger assigns to {variable.name.text}, a variable of the routine"
         yield context.finding("trigger-local", node.action.target, message)
 
@@ -140,8 +139,8 @@ def _is_local(context: Context, variable: ast.Variable) -> bool:
 
 
 def _cyclical_flag(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
-    target = root_of(node.target)
-    if not isinstance(target, ast.Variable) or target.name.key != "$CYCFLAG":
+    target = root_variable(node.target)
+    if target is None or target.name.key != "$CYCFLAG":
         return
     for inner in walk(node.value):
         if isinstance(inner, ast.Call):

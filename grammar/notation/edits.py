@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
-from grammar.notation.addresses import Address, element_at, sequence_at, sequences
+from grammar.notation.addresses import Address, element_at, sequence_at
 from grammar.notation.g4 import read_rule
 from grammar.notation.model import Alternative, Element, Grammar, GrammarError, Rule
 from grammar.notation.rewriting import (
@@ -30,7 +30,6 @@ __all__ = [
     "AddAlternative",
     "AddRule",
     "AddToken",
-    "Address",
     "Comment",
     "Edit",
     "Insert",
@@ -43,9 +42,7 @@ __all__ = [
     "Widen",
     "apply",
     "describe",
-    "element_at",
     "from_data",
-    "sequences",
     "to_data",
 ]
 

@@ -33,16 +33,6 @@ from grammar.notation.wellformed import problem
 from support.files.untrusted import read_bytes
 
 __all__ = [
-    "Alternative",
-    "CharSet",
-    "Element",
-    "Grammar",
-    "GrammarError",
-    "Group",
-    "Literal",
-    "Reference",
-    "Repeat",
-    "Rule",
     "read",
     "read_file",
     "read_rule",

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 
-from grammar.parser.recognizer import Configuration, Recognizer, State
+from grammar.parser.lazy_automaton import Configuration
+from grammar.parser.recognizer import Recognizer, State
 
 __all__ = ["is_ambiguous"]
 

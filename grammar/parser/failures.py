@@ -22,9 +22,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, islice
 
+from grammar.parser.lazy_automaton import Core, Tail
 from grammar.parser.lexer import SKIPPED, Lexer
 from grammar.parser.line_reader import LineReader, Spot
-from grammar.parser.recognizer import Core, Frames, Recognizer, State, Tail
+from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
 
 __all__ = ["BLOCKS", "Context", "Failure", "FailureFinder", "Form"]

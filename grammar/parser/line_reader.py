@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from grammar.parser.recognizer import Core, Recognizer, State, Tail
+from grammar.parser.lazy_automaton import Core, Tail
+from grammar.parser.recognizer import Recognizer, State
 
 __all__ = ["LineReader", "Spot"]
 

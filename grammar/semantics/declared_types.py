@@ -8,9 +8,11 @@ What is not known, a type of a package that is not at hand or a size that only r
 from __future__ import annotations
 
 from grammar.semantics.scopes import Found, Scope
-from grammar.semantics.symbols import Kind, SignalSymbol, Space, Symbol, TypeSymbol, WrittenType
+from grammar.semantics.symbols import Kind, SignalSymbol, Symbol, TypeSymbol, WrittenType
 from grammar.semantics.types import BOOL, INT, UNKNOWN, Array, Enumeration, Member, Structure, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import root_variable
 
 __all__ = ["DeclaredTypes"]
 
@@ -75,10 +77,8 @@ class DeclaredTypes:
         """A signal of several bits is a number; another one has the type of what it stands for."""
         if symbol.last is not None:
             return INT
-        root = symbol.first
-        while isinstance(root, ast.Subscript | ast.Member):
-            root = root.base
-        if not isinstance(root, ast.Variable):  # FALSE: connected to nothing
+        root = root_variable(symbol.first)
+        if root is None:  # FALSE: connected to nothing
             return BOOL
         answer = scope.find(Space.VALUE, root.name.key)
         if not isinstance(answer, Found) or isinstance(answer.symbol, SignalSymbol):

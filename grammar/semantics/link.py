@@ -39,16 +39,9 @@ from grammar.semantics.scopes import (
     nearest,
 )
 from grammar.semantics.symbol_table import table_of
-from grammar.semantics.symbols import (
-    Access,
-    ImportSymbol,
-    Kind,
-    ModuleTable,
-    RoutineTable,
-    Space,
-    Symbol,
-)
+from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, RoutineTable, Symbol
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 
 __all__ = ["Clash", "File", "Project", "Workspace", "link"]
 

@@ -17,9 +17,9 @@ from typing import Any
 
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason, Scope
-from grammar.semantics.symbols import Kind, Space, TypeSymbol
+from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.syntax import ast
-from grammar.syntax.references import PLANS
+from grammar.syntax.references import PLANS, Space
 
 __all__ = ["Resolution", "Use", "resolve"]
 

@@ -25,13 +25,13 @@ from grammar.semantics.symbols import (
     ParameterSymbol,
     RoutineSymbol,
     RoutineTable,
-    Space,
     Symbol,
     Table,
     TypeSymbol,
 )
 from grammar.semantics.types import SCALARS, Array, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 
 __all__ = [
     "Answer",

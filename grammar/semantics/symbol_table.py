@@ -19,14 +19,13 @@ from grammar.semantics.symbols import (
     RoutineSymbol,
     RoutineTable,
     SignalSymbol,
-    Space,
     Symbol,
     Table,
     TypeSymbol,
     WrittenType,
 )
 from grammar.syntax import ast
-from grammar.syntax.references import calls_in
+from grammar.syntax.references import Space, calls_in
 
 __all__ = ["table_of"]
 

@@ -34,7 +34,6 @@ __all__ = [
     "RoutineSymbol",
     "RoutineTable",
     "SignalSymbol",
-    "Space",
     "Symbol",
     "Table",
     "TypeSymbol",

@@ -1,13 +1,14 @@
-"""Walks over the syntax tree: what lies below a node, and whether two trees say the same."""
+"""Walks over the syntax tree: what lies below a node, what an expression is made of, equality."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
 
+from grammar.syntax import ast
 from grammar.syntax.ast import Node
 
-__all__ = ["children", "same", "walk"]
+__all__ = ["children", "root_variable", "same", "walk", "without_parentheses"]
 
 
 _NAMES: dict[type, tuple[str, ...]] = {}
@@ -53,3 +54,17 @@ def same(left: Node, right: Node) -> bool:
         elif isinstance(one, Node | tuple) or one != other:
             return False
     return True
+
+
+def without_parentheses(node: ast.Expression) -> ast.Expression:
+    """What stands in the parentheses."""
+    while isinstance(node, ast.Parenthesised):
+        node = node.inner
+    return node
+
+
+def root_variable(node: ast.Expression) -> ast.Variable | None:
+    """What indices and components are taken of: the variable ``a`` of ``a.b[1].c``."""
+    while isinstance(node, ast.Subscript | ast.Member):
+        node = node.base
+    return node if isinstance(node, ast.Variable) else None

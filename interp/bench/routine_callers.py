@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from itertools import islice, product
 from typing import Final
 
-from grammar.semantics.symbols import Space
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
+from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from interp.program.load import CheckedProgram, Routine
 from interp.program.variables import is_complete, is_complete_parameter

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import root_variable, walk
 from interp.program.load import Unit
 
 __all__ = ["is_constant_output", "is_variable", "signal_name"]
@@ -40,11 +40,10 @@ def _indices(node: ast.Expression) -> Iterator[ast.Expression]:
 
 def is_variable(unit: Unit, node: ast.Expression) -> bool:
     """Whether it is something that can be changed, as what is passed :OUT has to be [SCO-06]."""
-    while isinstance(node, ast.Subscript | ast.Member):
-        node = node.base
-    if not isinstance(node, ast.Variable):
+    root = root_variable(node)
+    if root is None:
         return False
-    found = unit.found(node.name)
+    found = unit.found(root.name)
     return found is None or found.symbol.kind is not Kind.CONSTANT
 
 

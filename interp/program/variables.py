@@ -12,9 +12,10 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind, SignalSymbol, Space
+from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.semantics.types import Array, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from interp.program.load import CheckedProgram, Routine, Unit
 from interp.values.faults import LinkError
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Space
 from grammar.semantics.types import UNKNOWN, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from interp.port.requests import Invoke
 from interp.program.reads import is_variable
 from interp.program.variables import (

@@ -10,9 +10,10 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind, SignalSymbol, Space
+from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.semantics.types import BOOL, INT, UNKNOWN, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from interp.port.inspection import Seen
 from interp.port.requests import At, Read, StopAdvance, Write
 from interp.program.variables import (

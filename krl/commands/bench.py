@@ -56,8 +56,9 @@ def recover(
 
     One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
     """
-    from grammar import GrammarError, read_file
+    from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
+    from grammar.notation.model import GrammarError
     from recovery.bench.survey_speed import measure, steps
     from support.files.discovery import IngestError
 

@@ -60,8 +60,9 @@ def mutation(
     jobs: JobsOption = None,
 ) -> int:
     """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
-    from grammar import GrammarError, read_file
+    from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
+    from grammar.notation.model import GrammarError
     from recovery.bench.assessment import examine
     from recovery.bench.specimens import choose, material_for
     from recovery.bench.stability import rankings, same_ranking

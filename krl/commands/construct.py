@@ -87,7 +87,7 @@ def propose(
     out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = LEDGER,
 ) -> int:
     """Write a proposal of a survey as a file ready for review."""
-    from grammar import GrammarError
+    from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError
     from recovery.ledger.draft import propose as write
     from support.files.untrusted import json_of, read_bytes

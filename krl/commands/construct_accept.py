@@ -22,7 +22,7 @@ from krl.progress import progress_bar
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
-    from grammar import Grammar
+    from grammar.notation.model import Grammar
     from recovery.ledger.acceptance import Acceptance, Home
     from recovery.ledger.baseline import Corpora
     from recovery.ledger.ledger import Ledger
@@ -87,7 +87,7 @@ def accept(
     the generated parser are written. A file from elsewhere moves into grammar/constructs. One that
     was accepted before is weighed again at its place. Exit status 1 when something is refused.
     """
-    from grammar import read_file
+    from grammar.notation.g4 import read_file
     from recovery.ledger.acceptance import Refused, write
     from recovery.ledger.ledger import Ledger
 

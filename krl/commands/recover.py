@@ -16,7 +16,7 @@ from krl.progress import progress_bar
 from krl.survey_summary import print_survey
 
 if TYPE_CHECKING:
-    from grammar import Grammar
+    from grammar.notation.model import Grammar
     from recovery.growth.growth import Steps
     from recovery.negatives.negatives import Negative
     from recovery.survey.survey import Survey
@@ -61,7 +61,7 @@ def recover(
     ] = False,
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
-    from grammar import read_file
+    from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load

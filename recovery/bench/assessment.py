@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any
 
+from grammar.notation.addresses import Address
 from grammar.notation.edits import (
     AddAlternative,
-    Address,
     Edit,
     Insert,
     MakeOptional,

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from grammar.notation.addresses import sequences
 from grammar.notation.edits import (
     Edit,
     RemoveAlternative,
@@ -19,9 +20,9 @@ from grammar.notation.edits import (
     RemoveRule,
     apply,
     describe,
-    sequences,
 )
-from grammar.notation.g4 import Grammar, GrammarError, Literal, Reference, Repeat, read
+from grammar.notation.g4 import read
+from grammar.notation.model import Grammar, GrammarError, Literal, Reference, Repeat
 
 __all__ = ["Mutant", "combined", "mutants"]
 

@@ -18,8 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from grammar.notation import g4
+from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
-from grammar.parser.recognizer import Core, Recognizer
+from grammar.parser.lazy_automaton import Core
+from grammar.parser.recognizer import Recognizer
 from recovery.bench.resampling import readable, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
 from support.files.discovery import Found, IngestError, Skipped, decode, digest, discover, read
@@ -37,7 +39,7 @@ ANTLR_BYTES_PER_S = 60_000
 
 def measure(
     roots: Sequence[Path],
-    grammar: g4.Grammar,
+    grammar: Grammar,
     *,
     sizes: Sequence[float] = (1, 10, 100),
     rounds: int = ROUNDS,
@@ -161,7 +163,7 @@ def _surveyed(roots: Sequence[Path], grammar_text: str) -> _Surveyed:
 
 
 def _timed_survey(
-    roots: Sequence[Path], grammar: g4.Grammar, cache: Path | None = None
+    roots: Sequence[Path], grammar: Grammar, cache: Path | None = None
 ) -> tuple[float, Survey]:
     gc.collect()
     began = time.perf_counter()
@@ -169,7 +171,7 @@ def _timed_survey(
     return time.perf_counter() - began, found
 
 
-def _unchanged(roots: Sequence[Path], grammar: g4.Grammar, rounds: int) -> float:
+def _unchanged(roots: Sequence[Path], grammar: Grammar, rounds: int) -> float:
     """Seconds for a survey whose results are all kept."""
     with tempfile.TemporaryDirectory() as folder:
         _, *again = (apart(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1))
@@ -305,9 +307,7 @@ def _recovering_antlr() -> Callable[[str], object]:
 # ---------------------------------------------------------------------------------- scaling
 
 
-def _scaled_to(
-    size: float, roots: Sequence[Path], grammar: g4.Grammar, seed: int
-) -> dict[str, Any]:
+def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
         apart(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from grammar.notation.edits import AddRule, AddToken, Comment, Edit, Preamble, RemoveRule, apply
-from grammar.notation.g4 import GrammarError
+from grammar.notation.model import GrammarError
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State

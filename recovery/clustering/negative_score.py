@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 
 from grammar.notation.edits import Edit
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Judge
 from recovery.clustering.edit_trial import edited

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from recovery.growth.growth import Steps
 from recovery.growth.timeline import Content, Timeline, read_through
 from recovery.ledger.construct_record import construct_record

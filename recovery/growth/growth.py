@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from recovery.growth.remaining import ambiguous_lines, remaining
 from recovery.growth.timeline import Content, Timeline, contents_of, read_through
 from recovery.ledger.construct import Construct

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.failures import FailureFinder
 from grammar.parser.line_reader import LineReader, Spot

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.inclusion import fixed_texts_added, occurs

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.notation.g4 import Grammar
 from grammar.notation.generate import generate
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.ledger.baseline import Corpora, Standing
 from recovery.ledger.construct import ACCEPTED, Construct, LedgerError

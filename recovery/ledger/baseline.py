@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.generate import generate
 from recovery.negatives.language_facts import BLOCKS

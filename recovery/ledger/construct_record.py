@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from grammar.notation.edits import apply, describe
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence
 
 __all__ = ["START_RECORD", "construct_record"]

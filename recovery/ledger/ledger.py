@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grammar.notation.edits import apply
-from grammar.notation.g4 import Grammar, GrammarError, read_file
+from grammar.notation.g4 import read_file
+from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from recovery.ledger.construct import Construct, LedgerError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence, LedgerError
 from recovery.ledger.construct_record import construct_record
 from recovery.ledger.ledger import Ledger, grown, in_force

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
-from grammar.notation.g4 import Grammar
 from grammar.notation.generate import check, generate
+from grammar.notation.model import Grammar
 from grammar.parser import antlr_reference
 from recovery.ledger.construct import Construct
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast, get_args
 
+from grammar.parser.lazy_automaton import Core, Tail
 from grammar.parser.lexer import EOF, SKIPPED, Lexer
-from grammar.parser.recognizer import Core, Recognizer, State, Tail
+from grammar.parser.recognizer import Recognizer, State
 from support.files.untrusted import read_bytes
 
 __all__ = ["Negative", "NegativeError", "NegativeSet", "Phase", "load"]

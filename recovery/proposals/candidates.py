@@ -15,7 +15,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from grammar.notation.edits import AddAlternative, Address, Edit, Insert, Widen
+from grammar.notation.addresses import Address
+from grammar.notation.edits import AddAlternative, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.alignment import common_phrases
 from recovery.proposals.block_inference import Block, BlockFinder

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from grammar.notation.edits import Address, Edit
+from grammar.notation.addresses import Address
+from grammar.notation.edits import Edit
 from grammar.parser.failures import Form
-from grammar.parser.recognizer import Configuration, Recognizer, State
+from grammar.parser.lazy_automaton import Configuration
+from grammar.parser.recognizer import Recognizer, State
 from recovery.proposals.segmentation import Word
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 

@@ -13,15 +13,8 @@ from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 
-from grammar.notation.edits import (
-    AddAlternative,
-    Address,
-    Edit,
-    Insert,
-    MakeOptional,
-    Widen,
-    sequences,
-)
+from grammar.notation.addresses import Address, sequences
+from grammar.notation.edits import AddAlternative, Edit, Insert, MakeOptional, Widen
 from grammar.notation.model import (
     Alternative,
     Element,

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 
 from grammar.notation.edits import AddAlternative, Insert
 from grammar.parser.failures import Form
-from grammar.parser.recognizer import Configuration, State
+from grammar.parser.lazy_automaton import Configuration
+from grammar.parser.recognizer import State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import Opening, Ranked, places_of, sites_of
 from recovery.proposals.grammar_profile import Layout

@@ -10,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import product
 
-from grammar.notation.edits import AddAlternative, Address, Edit, Insert, MakeOptional
+from grammar.notation.addresses import Address
+from grammar.notation.edits import AddAlternative, Edit, Insert, MakeOptional
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
 from grammar.parser.failures import Form
-from grammar.parser.recognizer import Configuration, State
+from grammar.parser.lazy_automaton import Configuration
+from grammar.parser.recognizer import State
 from recovery.proposals.edit_site import Line, Opening, Ranked, places_of, sites_of
 from recovery.proposals.grammar_profile import Layout
 from recovery.proposals.line_sites import LineOpenings

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import astuple
 from typing import Any
 
-from grammar.notation.g4 import Grammar
+from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
 from recovery.survey.failing_line import Failed
 from support.files.code_digest import code_digest

@@ -17,6 +17,7 @@ from functools import cache
 from pathlib import Path
 
 from grammar.notation import g4
+from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.failing_line import Failed, failures_of, source_lines
@@ -66,7 +67,7 @@ class SurveyedFile:
 class Survey:
     """What reading a corpus under a grammar found. ``seconds`` is wall-clock time."""
 
-    grammar: g4.Grammar
+    grammar: Grammar
     files: tuple[SurveyedFile, ...]
     skipped: tuple[Skipped, ...]
     forms: tuple[Form, ...]
@@ -75,7 +76,7 @@ class Survey:
 
 def survey(
     roots: Sequence[Path],
-    grammar: g4.Grammar,
+    grammar: Grammar,
     *,
     jobs: int | None = None,
     scheduler: str | None = None,
@@ -115,11 +116,11 @@ def _processes(candidates: Iterable[Found | Skipped]) -> int:
     return 1 if size < _SMALL else os.cpu_count() or 1
 
 
-def _store(cache: Path | None, grammar: g4.Grammar) -> AbstractContextManager[ResultStore | None]:
+def _store(cache: Path | None, grammar: Grammar) -> AbstractContextManager[ResultStore | None]:
     return nullcontext() if cache is None else ResultStore(cache, key_of(grammar))
 
 
-def survey_texts(programs: Sequence[tuple[str, str]], grammar: g4.Grammar) -> Survey:
+def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Survey:
     """Read programs given as (path, text) in this process; each is taken for a file of its own."""
     began = time.perf_counter()
     finder = FailureFinder(Recognizer(grammar))
@@ -209,7 +210,7 @@ class _Gathered:
         numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
         self.contents[key].result = tuple([f.with_form(numbers[f.form]) for f in failures])
 
-    def survey(self, grammar: g4.Grammar, seconds: float) -> Survey:
+    def survey(self, grammar: Grammar, seconds: float) -> Survey:
         files: list[SurveyedFile] = []
         skipped = list(self.skipped)
         for key, content in self.contents.items():

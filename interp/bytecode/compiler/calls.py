@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Space
 from grammar.semantics.types import CHAR, Array, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain

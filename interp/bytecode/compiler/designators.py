@@ -13,6 +13,7 @@ from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.semantics.types import BOOL, INT, INT_MAX, UNKNOWN, Array, Type
 from grammar.syntax import ast
+from grammar.syntax.walk import without_parentheses
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, elements
 from interp.bytecode.compiler.memory import Memory
@@ -208,8 +209,7 @@ class Designators(Memory, ABC):
 
 def literal(node: ast.Expression) -> int | None:
     """The value of a literal that is an INT."""
-    while isinstance(node, ast.Parenthesised):
-        node = node.inner
+    node = without_parentheses(node)
     if isinstance(node, ast.IntegerLiteral) and node.value <= INT_MAX:
         return node.value
     return None

@@ -11,9 +11,10 @@ from pathlib import PurePosixPath
 
 from grammar.semantics.predefined import Parameter, System
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind, Space
+from grammar.semantics.symbols import Kind
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.expressions import Expressions

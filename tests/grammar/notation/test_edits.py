@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from grammar.notation.addresses import element_at, sequences
 from grammar.notation.edits import (
     AddAlternative,
     AddRule,
@@ -25,9 +26,7 @@ from grammar.notation.edits import (
     Widen,
     apply,
     describe,
-    element_at,
     from_data,
-    sequences,
     to_data,
 )
 from grammar.notation.g4 import read, read_file

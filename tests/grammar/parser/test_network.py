@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grammar.notation.edits import AddAlternative, AddToken, apply, element_at, sequences
+from grammar.notation.addresses import element_at, sequences
+from grammar.notation.edits import AddAlternative, AddToken, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, Literal, Reference

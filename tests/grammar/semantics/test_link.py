@@ -12,10 +12,11 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.semantics.symbol_table import table_of
-from grammar.semantics.symbols import Kind, Space
+from grammar.semantics.symbols import Kind
 from grammar.semantics.types import BOOL, INT, REAL, UNKNOWN, Array, Enumeration, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
+from grammar.syntax.references import Space
 from grammar.syntax.walk import walk
 
 CORPUS = GRAMMAR.parents[1] / "corpus"

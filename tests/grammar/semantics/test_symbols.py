@@ -12,13 +12,13 @@ from grammar.semantics.symbols import (
     ModuleTable,
     RoutineSymbol,
     SignalSymbol,
-    Space,
     Symbol,
     TypeSymbol,
     WrittenType,
 )
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
+from grammar.syntax.references import Space
 
 
 def tables(text: str) -> ModuleTable:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grammar import read_file
+from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.bench.resampling import readable, spread, templates, write_corpus

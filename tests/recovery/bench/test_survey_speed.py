@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from grammar import read_file
-from grammar.notation.g4 import Grammar
+from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar
 from recovery.bench import survey_speed
 from recovery.bench.survey_speed import measure, steps
 from support.files.discovery import IngestError

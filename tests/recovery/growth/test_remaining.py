@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from grammar.notation.edits import AddAlternative, apply
-from grammar.notation.g4 import Grammar, read, read_file
+from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar
 from recovery.growth import remaining as leftover
 from recovery.growth.remaining import ambiguous_lines, remaining
 from recovery.growth.timeline import Content, contents_of

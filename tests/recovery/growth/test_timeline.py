@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, RemoveAlternative, apply
-from grammar.notation.g4 import Grammar, read, read_file
+from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth import timeline

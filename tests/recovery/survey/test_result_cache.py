@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from grammar.notation import g4
+from grammar.notation.model import Grammar
 from recovery.survey import survey as survey_module
 from recovery.survey.survey import Survey, survey
 
@@ -27,7 +28,7 @@ def told(found: Survey) -> object:
     return found.files, found.skipped, found.forms
 
 
-def run(corpus: Path, cache: Path | None, grammar: g4.Grammar = PRELIMINARY) -> Survey:
+def run(corpus: Path, cache: Path | None, grammar: Grammar = PRELIMINARY) -> Survey:
     return survey([corpus], grammar, jobs=1, cache=cache)
 
 

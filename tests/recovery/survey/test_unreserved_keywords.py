@@ -4,13 +4,14 @@ from pathlib import Path
 
 from grammar.notation import g4
 from grammar.notation.edits import Edit, RemoveAlternative, RemoveRule, apply
+from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
 from recovery.survey.unreserved_keywords import Suspect, suspects
 
 PRELIMINARY = g4.read_file(Path(g4.__file__).parents[1].joinpath("preliminary.g4"))
 
 
-def without_true() -> g4.Grammar:
+def without_true() -> Grammar:
     rule = PRELIMINARY.by_name["literal"]
     number = next(
         i for i, a in enumerate(rule.alternatives, 1) if rule.source_of(a).strip() == "TRUE"

@@ -7,23 +7,23 @@ from collections.abc import Iterable
 from grammar.diagnostics.diagnostic import Fix
 from grammar.diagnostics.did_you_mean import nearest
 
-__all__ = ["Hints"]
+__all__ = ["NameSuggestions"]
 
 _MOST_NAMES = 3
 # A word of fewer letters is the beginning of too much.
 _SHORTEST = 3
-# A hint costs a look at every name that is known, so only the first faults of a file get one.
-_MOST_HINTS = 20
+# A suggestion costs a look at every name that is known, so only the first faults of a file get one.
+_MOST_SUGGESTIONS = 20
 
 
-class Hints:
-    """Gives hints at names, to the first that ask."""
+class NameSuggestions:
+    """Suggests names for the first unknown ones of a file."""
 
     def __init__(self) -> None:
-        self._left = _MOST_HINTS
+        self._left = _MOST_SUGGESTIONS
 
-    def meant(self, name: str, names: Iterable[str], mark: str = "") -> Fix | None:
-        """A hint at those of ``names`` that are like ``name``, each with a ``mark`` in front."""
+    def suggest(self, name: str, names: Iterable[str], mark: str = "") -> Fix | None:
+        """Those of ``names`` that are like ``name``, each with a ``mark`` in front."""
         if not self._left:
             return None
         self._left -= 1
