@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import pytest
 
@@ -151,91 +150,76 @@ CONSTRUCTS = {
 }
 
 
-@cache
-def grammar_of(name: str) -> Grammar:
-    """A grammar without the construct."""
-    return apply(PRELIMINARY, CONSTRUCTS[name].removed)
+@dataclass(frozen=True)
+class Example:
+    """A construct, the grammar without it, and what each candidate for it makes of that."""
+
+    missing: Missing
+    grammar: Grammar
+    line: Line
+    candidates: list[Candidate]
+    edited: list[tuple[Grammar, Network]]
 
 
-@cache
-def candidates_of(name: str) -> list[Candidate]:
-    """The candidates for the first failing line of an example."""
-    return CandidateFinder(Recognizer(grammar_of(name))).find(failing_line(name))
+def edited(grammar: Grammar, candidate: Candidate) -> tuple[Grammar, Network]:
+    made = apply(grammar, candidate.edits)
+    return made, network_of(made)
 
 
-def failing_line(name: str) -> Line:
-    """The first failing line of an example."""
-    missing = CONSTRUCTS[name]
-    found = survey_texts([("a.src", missing.text)], grammar_of(name))
+@pytest.fixture(scope="module", params=CONSTRUCTS)
+def example(request: pytest.FixtureRequest) -> Example:
+    """The first failing line of a construct, with all candidates for it."""
+    missing = CONSTRUCTS[request.param]
+    grammar = apply(PRELIMINARY, missing.removed)
+    found = survey_texts([("a.src", missing.text)], grammar)
     failed = found.files[0].failures[0]
     meant = ((i, word) for i, word in enumerate(failed.words) if word in missing.keywords)
-    return Line(found.forms[failed.form], tuple(meant))
+    line = Line(found.forms[failed.form], tuple(meant))
+    candidates = CandidateFinder(Recognizer(grammar)).find(line)
+    return Example(missing, grammar, line, candidates, [edited(grammar, one) for one in candidates])
 
 
-@cache
-def hopeful(name: str) -> list[tuple[Grammar, Network]]:
-    """What the candidates that a search would try make of the grammar."""
-    line, grammar = failing_line(name), grammar_of(name)
-    found = CandidateFinder(Recognizer(grammar)).find_common([line], FIRST)
-    grammars = (apply(grammar, candidate.edits) for candidate in found)
-    return [(grammar, network_of(grammar)) for grammar in grammars]
+def test_the_right_edit_is_among_the_first(example: Example) -> None:
+    """One of the first candidates accepts what was meant, and nothing that was not."""
+    missing, grammar = example.missing, example.grammar
 
-
-@cache
-def edited(name: str) -> list[tuple[Grammar, Network]]:
-    """What each of the candidates makes of the grammar."""
-    grammars = (apply(grammar_of(name), candidate.edits) for candidate in candidates_of(name))
-    return [(grammar, network_of(grammar)) for grammar in grammars]
-
-
-@pytest.mark.parametrize("name", CONSTRUCTS)
-def test_the_right_edit_is_among_the_first(name: str) -> None:
-    """One of the first candidates lets in what was meant, and nothing that was not."""
-    missing = CONSTRUCTS[name]
-
-    def is_right(grammar: Grammar, network: Network) -> bool:
+    def is_right(candidate: Candidate) -> bool:
+        changed, network = edited(grammar, candidate)
         if is_left_recursive(network):
             return False
-        accepts = Recognizer(grammar, network).accepts
+        accepts = Recognizer(changed, network).accepts
         wanted = all(map(accepts, [missing.text, *missing.good]))
         return wanted and not any(map(accepts, missing.bad))
 
-    assert any(is_right(*pair) for pair in hopeful(name))
+    first = CandidateFinder(Recognizer(grammar)).find_common([example.line], FIRST)
+    assert any(map(is_right, first))
 
 
-@pytest.mark.parametrize("name", CONSTRUCTS)
-def test_the_most_restrictive_come_first_and_each_once(name: str) -> None:
-    """Candidates are ordered by how much they let in, and no two are the same edits."""
-    found = candidates_of(name)
+def test_the_most_restrictive_come_first_and_each_once(example: Example) -> None:
+    """Candidates are ordered by how much they accept, and no two are the same edits."""
+    found = example.candidates
     assert sorted(c.breadth for c in found) == [c.breadth for c in found]
     assert len({c.edits for c in found}) == len(found)
 
 
-@pytest.mark.parametrize("name", CONSTRUCTS)
-def test_every_candidate_changes_the_grammar_into_another(name: str) -> None:
+def test_every_candidate_changes_the_grammar_into_another(example: Example) -> None:
     """All can be applied, and what they make is a grammar that can be read back."""
-    texts = [g.text for g, network in edited(name) if not is_left_recursive(network)]
-    assert grammar_of(name).text not in texts
+    texts = [grammar.text for grammar, _ in example.edited]
+    assert example.grammar.text not in texts
     sample = texts[:: max(1, len(texts) // 3)]
     assert sample == [read(text).text for text in sample]
 
 
-def test_no_candidate_is_left_recursive() -> None:
+def test_no_candidate_is_left_recursive(example: Example) -> None:
     """What no recogniser could read is not proposed."""
-    recursive = {
-        name: [c.edits for c, (_, network) in pairs if is_left_recursive(network)]
-        for name in CONSTRUCTS
-        for pairs in [zip(candidates_of(name), edited(name), strict=True)]
-    }
-    assert {name: [] for name in CONSTRUCTS} == recursive
+    assert not any(is_left_recursive(network) for _, network in example.edited)
 
 
-@pytest.mark.parametrize("name", CONSTRUCTS)
-def test_words_are_reserved_by_the_candidates_that_use_them(name: str) -> None:
+def test_words_are_reserved_by_the_candidates_that_use_them(example: Example) -> None:
     """A candidate reserves words that the line means as keywords, and no others."""
-    known = grammar_of(name).by_name.keys()
-    reserved = {new for grammar, _ in edited(name) for new in grammar.by_name.keys() - known}
-    assert set(CONSTRUCTS[name].keywords) == reserved
+    known = example.grammar.by_name.keys()
+    reserved = {new for grammar, _ in example.edited for new in grammar.by_name.keys() - known}
+    assert set(example.missing.keywords) == reserved
 
 
 def test_the_same_line_has_the_same_candidates() -> None:
