@@ -16,7 +16,7 @@ from grammar.check.framework import Findings, check_module
 from grammar.check.suppression_comments import Silencer, silencers
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.diagnostics.syntax_errors import syntax_findings
-from grammar.semantics.link import File, Project, link
+from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
@@ -68,7 +68,7 @@ class Looked:
     """What came of one file.
 
     ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
-    by number, ``comments`` those that silence.
+    by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
     """
 
     findings: Findings = _NOTHING
@@ -76,6 +76,7 @@ class Looked:
     table: ModuleTable | None = None
     lines: Mapping[int, str] | None = None
     comments: tuple[Silencer, ...] = ()
+    words: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +140,9 @@ def _read(content: Content, wishes: Wishes) -> tuple[Looked, _Tree | None]:
 def _failed(failures: list[SyntaxFailure], source: Source) -> Looked:
     found = tuple(syntax_findings(failures, source))
     lines = _lines(source, (one.region.line for one in found))
-    return Looked(Findings(found, ()), lines=lines, comments=silencers(source))
+    return Looked(
+        Findings(found, ()), lines=lines, comments=silencers(source), words=words_of(source.text)
+    )
 
 
 def check_part(
@@ -161,7 +164,7 @@ def check_part(
         known, tree = looked[index], kept.get(index)
         if known.skipped is None:
             table = tree.table if tree else known.table
-            files.append(File(path, None, origin, table))
+            files.append(File(path, None, origin, table, known.words))
     # modules are told by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}

@@ -1,17 +1,21 @@
 """Names that nothing declares.
 
-An error only where nothing is missing: a look-up says `NotFound` when every file that could declare
-the name is at hand. Elsewhere the name may come from a package, so it is told as a note, once for a
-whole project: a file gives its `References`, and `of_project` makes findings of all of them.
+A look-up says `NotFound` where the whole project is at hand. Real backups seldom are whole, so what
+decides then is whether what could declare this very name has been read, and whether it is a slip of
+a name that is seen there: a file gives its `Reference`s, and `of_project` grades all of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 
 from grammar.check.context import Context
-from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.diagnostics.codes import Severity
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.typos import Typos
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Table
@@ -26,7 +30,8 @@ __all__ = ["Reference", "check", "of_project", "references"]
 class Reference:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
-    ``region`` is the first place of ``count``.
+    ``region`` is the first place of ``count``. ``near`` are names seen there that it may be a slip
+    of; ``is_all_read``: no file is missing that could declare it.
     """
 
     space: Space
@@ -35,6 +40,8 @@ class Reference:
     region: Region
     count: int
     is_system: bool
+    near: tuple[str, ...] = ()
+    is_all_read: bool = False
 
 
 _SLUGS = {
@@ -127,6 +134,13 @@ def _names(table: Table, space: Space, access: Access | None = None) -> Iterator
 
 # ------------------------------------------------------------------------ what may be elsewhere
 
+# A slip is made once or twice; what is written more often is called so.
+_MOST_SLIPS = 2
+# So many names that are near one and the same are a series.
+_SERIES = 3
+# Data that more modules use were declared in a file that has gone, rather than nowhere.
+_MOST_MODULES = 2
+
 
 def references(context: Context) -> tuple[Reference, ...]:
     """The names in a file that other files may declare, in the order of their first places."""
@@ -134,6 +148,7 @@ def references(context: Context) -> tuple[Reference, ...]:
     for use in context.resolution.open_uses:
         if use.space in _SLUGS and _may_be_elsewhere(use):
             uses.setdefault((use.space, use.name.key), []).append(use)
+    own = cache(partial(_own_typos, context))
     return tuple(
         Reference(
             space,
@@ -142,6 +157,8 @@ def references(context: Context) -> tuple[Reference, ...]:
             Region.of(context.source, some[0].name.span),
             len(some),
             space is Space.VALUE and key.startswith("$"),
+            _near(context, own, some[0]),
+            _is_all_read(context, some[0]),
         )
         for (space, key), some in uses.items()
     )
@@ -154,19 +171,76 @@ def _may_be_elsewhere(use: Use) -> bool:
     return isinstance(use.answer, Found)  # only EXT announces it
 
 
+def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[str, ...]:
+    """The names that are seen there and that this one may be a slip of."""
+    space = use.space
+    if space is None or isinstance(use.answer, Found):
+        return ()
+    here = own(space).meant(use.name.text)
+    return here or context.project.typos[space].meant(use.name.text)
+
+
+def _own_typos(context: Context, space: Space) -> Typos:
+    """The names of the file itself, of its routines and of its data list."""
+    tables = [context.table.table, *(routine.table.table for routine in context.routines)]
+    data = context.project.data_of(context.module)
+    if data is not None and data.table is not None:
+        tables.append(data.table.table)
+    return Typos(name for table in tables for name in _names(table, space))
+
+
+def _is_all_read(context: Context, use: Use) -> bool:
+    """Whether every file that a controller would look into for this name is at hand and read.
+
+    For a variable: its data list, if it has one, and $CONFIG. What else is GLOBAL lies in packages,
+    and these are known by what they declare, not by what some other file calls.
+    """
+    project = context.project
+    if not isinstance(use.answer, MaybeElsewhere) or use.answer.reason is Reason.UNREADABLE:
+        return False
+    if use.space in (Space.VALUE, Space.CHANNEL):
+        return project.has_config and not use.name.text.startswith("$")
+    return False
+
+
 def of_project(found: Iterable[Reference]) -> Iterator[Diagnostic]:
-    """One note for each name that the files of a project take from elsewhere."""
+    """What is to be said of the names that the files of a project take from elsewhere.
+
+    An error in each file for what nothing declares though all that could is read; a warning for
+    what is a slip of a name that is seen there; one note for each name that remains.
+    """
     uses: dict[tuple[Space, str], list[Reference]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
+    series = Counter(near for some in uses.values() for near in {n for r in some for n in r.near})
     for some in uses.values():
-        first = min(some, key=lambda reference: (reference.path, reference.region))
+        near = tuple(n for n in some[0].near if series[n] < _SERIES)
         count = sum(reference.count for reference in some)
-        uses_of_it = "used once" if count == 1 else f"used {count} times"
-        if first.is_system:
-            slug = "unknown-system-name"
-            message = f"{first.name} is in no table of system variables; {uses_of_it}"
+        is_slip = bool(near) and count <= _MOST_SLIPS
+        if is_slip or (all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES):
+            for reference in some:
+                yield _undeclared(reference, near)
         else:
-            slug = "unknown-external"
-            message = f"the {_WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
-        yield diagnose(slug, first.path, first.region, message, severity="note")
+            yield _from_elsewhere(some, count)
+
+
+def _undeclared(reference: Reference, near: Sequence[str]) -> Diagnostic:
+    severity: Severity = "error" if reference.is_all_read else "warning"
+    slug = _SLUGS[reference.space]
+    message = f"no {_WORDS[reference.space]} is called {reference.name}"
+    if reference.is_system:
+        slug, message = "unknown-system-name", f"no system variable is called {reference.name}"
+    fix = Fix(f"did you mean {' or '.join(near)}?") if near else None
+    return diagnose(slug, reference.path, reference.region, message, severity=severity, fix=fix)
+
+
+def _from_elsewhere(some: Sequence[Reference], count: int) -> Diagnostic:
+    first = min(some, key=lambda reference: (reference.path, reference.region))
+    uses_of_it = "used once" if count == 1 else f"used {count} times"
+    if first.is_system:
+        slug = "unknown-system-name"
+        message = f"{first.name} is in no table of system variables; {uses_of_it}"
+    else:
+        slug = "unknown-external"
+        message = f"the {_WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
+    return diagnose(slug, first.path, first.region, message, severity="note")

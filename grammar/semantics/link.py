@@ -17,11 +17,14 @@ one of ``module.table.routines``; then ``scope.find(Space.VALUE, "NAME")``.
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import PurePosixPath
 
+from grammar.diagnostics.typos import Typos
 from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import (
@@ -43,7 +46,7 @@ from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, R
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 
-__all__ = ["Clash", "File", "Project", "Workspace", "link"]
+__all__ = ["Clash", "File", "Project", "Workspace", "link", "words_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +54,16 @@ class File:
     """A file to link. ``path`` has ``/``; files of different origins never share a project.
 
     A file that cannot be read has neither ``syntax`` nor ``table``: that it is there matters all
-    the same. ``table`` may come from a cache, as it depends on the content alone; without
-    ``syntax`` others can refer to the file.
+    the same, and ``words``, the names that occur in it (`words_of`), bound what it may declare.
+    ``table`` may come from a cache, as it depends on the content alone; without ``syntax`` others
+    can refer to the file.
     """
 
     path: str
     syntax: ast.Module | None
     origin: str = ""
     table: ModuleTable | None = None
+    words: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +80,7 @@ class Project:
     ``is_controller``: whether it is laid out like a controller's drive. ``is_complete``: whether
     what is declared nowhere is certain to be missing. ``clashes`` are names that several modules
     declare for everybody; outside a controller's drive these may just be copies. ``types`` are the
-    types of what is declared.
+    types of what is declared. ``has_config``: whether its $CONFIG list is at hand and can be read.
     """
 
     def __init__(
@@ -98,13 +103,15 @@ class Project:
         self._names: dict[Space, dict[str, list[Found]]] = {space: {} for space in Space}
         self._hidden: dict[Space, dict[str, Found]] = {space: {} for space in Space}
         self._gap: dict[Space, Reason] = {}
-        self._globals = Globals(self._names, self._hidden, self._gap, system)
+        unread = {space: _words_in_unread(modules, space) for space in Space}
+        self._globals = Globals(self._names, self._hidden, self._gap, unread, system)
         self._collect()
         if is_complete is None:
             is_complete = _has_all(modules) and not any(map(self._misses, modules))
         self.is_complete = is_complete
         self._gap.update(_gap(modules, is_complete))
         self.types = DeclaredTypes()
+        self.has_config = any(_is_config(module) and module.table for module in modules)
         self.clashes = tuple(
             Clash(space, tuple(found))
             for space, names in self._names.items()
@@ -128,6 +135,19 @@ class Project:
     def data_of(self, module: Module) -> Module | None:
         """The data list that belongs to a program, readable or not."""
         return None if module.suffix == ".dat" else self._data.get(_place(module))
+
+    @cached_property
+    def typos(self) -> Mapping[Space, Typos]:
+        """What names may be slips of, by space: all that is seen from everywhere."""
+        return {
+            space: Typos(
+                (
+                    *(found[0].symbol.name for found in names.values()),
+                    *self._globals.system.names(space),
+                )
+            )
+            for space, names in self._names.items()
+        }
 
     def imported(self, found: Found) -> Answer:
         """What an IMPORT stands for: data of another list, which has to be PUBLIC [ADV-05]."""
@@ -153,7 +173,7 @@ class Project:
         outer: Outer = self._globals.near(module.folder)
         data = self.data_of(module)
         if data is not None:
-            outer = self.scope(data) if data.table else Veiled(outer)
+            outer = self.scope(data) if data.table else Veiled(outer, data.words)
         return Scope(module, None, module.table.table, outer, module.table.externals)
 
     def _misses(self, module: Module) -> bool:
@@ -218,6 +238,13 @@ def link(
 
 # ------------------------------------------------------------------------------------- modules
 
+_WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)", re.IGNORECASE)
+
+
+def words_of(text: str) -> frozenset[str]:
+    """The names that occur in a text outside comments, in upper case: it declares no other."""
+    return frozenset(word.upper() for word in _WORD.findall(text) if word)
+
 
 def _module(file: File) -> Module:
     path = PurePosixPath(file.path.replace("\\", "/"))
@@ -225,7 +252,7 @@ def _module(file: File) -> Module:
     if table is None and file.syntax is not None:
         table = table_of(file.syntax)
     folder, suffix = path.parent.as_posix(), path.suffix.lower()
-    return Module(file.path, folder, path.stem.upper(), suffix, table, file.syntax)
+    return Module(file.path, folder, path.stem.upper(), suffix, table, file.syntax, file.words)
 
 
 def _place(module: Module) -> tuple[str, str]:
@@ -243,6 +270,10 @@ def _is_exported(symbol: Symbol, module: Module) -> bool:
     )
 
 
+def _is_config(module: Module) -> bool:
+    return module.name == "$CONFIG" and module.suffix == ".dat"
+
+
 def _is_public(found: Found) -> bool:
     table = found.module.table if found.module else None
     return table is not None and (table.is_public or table.is_system)
@@ -253,10 +284,19 @@ def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
     everything = [Space.VALUE, Space.ROUTINE, Space.TYPE, Space.CHANNEL]
     gap = {} if is_complete else dict.fromkeys(everything, Reason.MODULES_MISSING)
     for module in modules:
-        if module.table is None:
+        if module.table is None and module.words is None:
             spaces = everything if module.suffix == ".dat" else [Space.ROUTINE]
             gap |= dict.fromkeys(spaces, Reason.UNREADABLE)
     return gap
+
+
+def _words_in_unread(modules: Sequence[Module], space: Space) -> frozenset[str]:
+    """The words of files that cannot be read and may declare names of a space for everybody."""
+    is_data = space is not Space.ROUTINE
+    unread = (module for module in modules if module.table is None)
+    return frozenset().union(
+        *(module.words or () for module in unread if not is_data or module.suffix == ".dat")
+    )
 
 
 def _has_all(modules: Sequence[Module]) -> bool:

@@ -12,7 +12,7 @@ silent about the rest; `Reason` says why.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Protocol
@@ -56,6 +56,7 @@ class Module:
     ``path`` as it was handed in, with ``/``. ``name`` is that of the file without its ending, in
     upper case, and ``suffix`` its ending in lower case. ``table`` is ``None`` where the file cannot
     be read; ``syntax`` also where only its tables are at hand, so that it can be referred to.
+    ``words`` are the names in the text of a file that cannot be read, if these are known.
     """
 
     path: str
@@ -64,6 +65,7 @@ class Module:
     suffix: str
     table: ModuleTable | None
     syntax: ast.Module | None
+    words: frozenset[str] | None = None
 
     @property
     def is_misnamed(self) -> bool:
@@ -215,6 +217,17 @@ class SystemScope(Scope):
         super().__init__(None, None, Table({space: {} for space in Space}, ()), self)
         self.system = system
 
+    def names(self, space: Space) -> Iterable[str]:
+        """All names that the controller knows."""
+        match space:
+            case Space.VALUE:
+                return self.system.variables
+            case Space.ROUTINE:
+                return self.system.functions
+            case Space.TYPE:
+                return (*SCALARS, *self.system.types)
+        return ()
+
     def own(self, space: Space, key: str) -> Found | None:
         """The symbol of that name if the controller has it."""
         answer = self.find(space, key)
@@ -290,13 +303,14 @@ class Globals:
 
     ``names`` may hold several declarations of a name. ``hidden`` are declarations that are not
     GLOBAL. ``gap`` is why a name that is not here may be declared all the same, by space; a space
-    without a reason is known completely.
+    without a reason is known completely. ``unread`` are the words of files that cannot be read.
     """
 
     names: Mapping[Space, Mapping[str, Sequence[Found]]]
     hidden: Mapping[Space, Mapping[str, Found]]
     gap: Mapping[Space, Reason]
-    system: Scope
+    unread: Mapping[Space, frozenset[str]]
+    system: SystemScope
     _copies: dict[tuple[Space, str], Mapping[str, Answer]] = field(default_factory=dict)
 
     def near(self, folder: str) -> Outer:
@@ -318,7 +332,7 @@ class Globals:
         if key.startswith("$"):
             return MaybeElsewhere(Reason.SYSTEM)
         hidden = self.hidden[space].get(key)
-        reason = self.gap.get(space)
+        reason = Reason.UNREADABLE if key in self.unread[space] else self.gap.get(space)
         if reason is None:
             return NotFound(hidden)
         return MaybeElsewhere(reason, (hidden,) if hidden else ())
@@ -337,14 +351,17 @@ class _Near:
 
 @dataclass(frozen=True, slots=True)
 class Veiled:
-    """What is seen through a data list that cannot be read: it may declare any variable itself."""
+    """What is seen through a data list that cannot be read: it may declare any of its words."""
 
     outer: Outer
+    words: frozenset[str] | None
 
     def find(self, space: Space, key: str) -> Answer:
         """Look a name in upper case up."""
         answer = self.outer.find(space, key)
         if space is Space.ROUTINE or key.startswith("$"):
+            return answer
+        if self.words is not None and key not in self.words:
             return answer
         if isinstance(answer, Found) and answer.module is None:  # what every program is made of
             return answer

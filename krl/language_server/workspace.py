@@ -16,7 +16,7 @@ from grammar.check.framework import Checked, check_module, check_project
 from grammar.check.suppression_comments import silenced, silencers
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.syntax_errors import syntax_findings
-from grammar.semantics.link import File, Project, link
+from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
 from grammar.syntax import ast
@@ -146,7 +146,8 @@ def _read(path: str, text: str) -> _Read:
     syntax = read_module(text, path)
     if isinstance(syntax, ast.Module):
         return _Read(source, syntax, (), File(path, syntax, table=table_of(syntax)))
-    return _Read(source, None, tuple(syntax), File(path, None))
+    unread = File(path, None, words=words_of(source.text))
+    return _Read(source, None, tuple(syntax), unread)
 
 
 def _kept(source: Source, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
