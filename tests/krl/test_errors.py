@@ -102,11 +102,11 @@ def _program(body: str) -> list[str]:
     """A Python program whose only command does `body`."""
     lines = [
         "import sys, typer",
-        "from krl import door",
+        "from krl import errors",
         "app = typer.Typer()",
         "@app.command()",
         f"def go() -> None: {body}",
-        "sys.exit(door.run(app, []))",
+        "sys.exit(errors.run(app, []))",
     ]
     return [sys.executable, "-c", "\n".join(lines)]
 

@@ -80,7 +80,7 @@ def test_generated_files_say_what_made_them() -> None:
     for name in ("KRLLexer.py", "KRLParser.py"):
         first = (GENERATED / name).read_text(encoding="utf-8").splitlines()[0]
         assert f"# Generated from KRL.g4 by ANTLR {ANTLR_VERSION}" == first
-    assert "grammar.notation.generate" in (GENERATED / "__init__.py").read_text(encoding="utf-8")
+    assert "make grammar" in (GENERATED / "__init__.py").read_text(encoding="utf-8")
 
 
 # -------------------------------------------------------------------- generating, without Java
