@@ -20,7 +20,8 @@ from conformance.evaluation.observation import Observation
 from conformance.evaluation.trace_comparison import Divergence, first_divergence
 from conformance.evaluation.verdicts import KnownFailures, Verdict, verdict_of
 from conformance.suite.case import Case
-from support.parallel.executor import WorkersError, in_order
+from support.parallel.ordered_map import ordered_map
+from support.parallel.workers import WorkersError
 
 __all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
 
@@ -137,7 +138,7 @@ def run_cases(
 
     ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is called
     with the number of cases finished. A case that kills its process has failed, and no other with
-    it. Raises `support.parallel.executor.WorkersError`, also where a worker lacks what there is
+    it. Raises `support.parallel.workers.WorkersError`, also where a worker lacks what there is
     here.
     """
     listed = known if known is not None else KnownFailures.load()
@@ -153,12 +154,12 @@ def run_cases(
     ) -> list[CaseResult]:
         """Each case by itself, where one of them killed its process."""
         singles = (([case], lacking, known) for case in share)
-        found = in_order(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
+        found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
         return [result for results in found for result in results]
 
     done: list[CaseResult] = []
     tasks = ((share, lacking, listed) for share in shares)
-    for results in in_order(_run_share, tasks, jobs=wanted, scheduler=scheduler, lost=lost):
+    for results in ordered_map(_run_share, tasks, jobs=wanted, scheduler=scheduler, lost=lost):
         done += results
         on_done(len(results))
     return done

@@ -46,7 +46,7 @@ def expected_errors() -> Iterator[None]:
     from recovery.ledger.construct import LedgerError
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
-    from support.parallel.executor import WorkersError
+    from support.parallel.workers import WorkersError
 
     expected = (
         GrammarError,

@@ -22,7 +22,7 @@ from recovery.survey.result_cache import key_of
 from recovery.survey.survey import Survey
 from recovery.survey_record import record_of
 from support.files.result_store import ResultStore
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["analyse", "with_answers"]
 
@@ -33,8 +33,8 @@ def analyse(
     *,
     grammar_name: str,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """The record of a survey (`recovery.survey_record`); ``negatives`` judge the proposals.
 
@@ -62,8 +62,8 @@ def with_answers(
     *,
     jobs: int | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """The record of the restrictive start as part of another: what the ledger made of it.
 

@@ -18,7 +18,8 @@ from conformance.differential.runs import EXECUTORS, Prepared, available, trace_
 from grammar.generation.programs.programs import seeded
 from grammar.syntax.build import builder
 from interp.values.faults import LinkError
-from support.parallel.executor import WorkersError, in_order
+from support.parallel.ordered_map import ordered_map
+from support.parallel.workers import WorkersError
 
 __all__ = ["Finding", "Findings", "fuzz", "record_of"]
 
@@ -91,7 +92,7 @@ def fuzz(
     ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
     address; reducing what was found is left to the process that asks. ``on_done`` is told how many
     programs were done since it was told last. The result depends on ``programs``, ``seed`` and
-    ``executors`` alone. Raises `support.parallel.executor.WorkersError`, also where a worker has
+    ``executors`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker has
     not these executors.
     """
     names = tuple(executors)
@@ -103,7 +104,7 @@ def fuzz(
     counts: Counts = Counter()
     ends: Counter[str] = Counter()
     facts = 0
-    done = in_order(
+    done = ordered_map(
         _run, ((shard,) for shard in shards), jobs=min(jobs, len(shards)), scheduler=scheduler
     )
     for shard, outcome in zip(shards, done, strict=True):

@@ -17,7 +17,7 @@ from interp.bytecode.program import Instruction
 from interp.bytecode.vm.executor import Machine
 from interp.port.events import Sink
 from interp.program.load import Limits
-from support.parallel.executor import in_order
+from support.parallel.ordered_map import ordered_map
 
 __all__ = ["Pool", "Verdict", "hunt", "mutated", "record_of"]
 
@@ -111,7 +111,7 @@ def hunt(
     shares = [tuple(range(first, count, jobs)) for first in range(jobs)]
     found: dict[int, Verdict] = {}
     tasks = ((share, seed, programs) for share in shares)
-    for share, verdicts in zip(shares, in_order(_judged, tasks, jobs=jobs), strict=True):
+    for share, verdicts in zip(shares, ordered_map(_judged, tasks, jobs=jobs), strict=True):
         found.update(zip(share, verdicts, strict=True))
         on_done(len(share))
     return [found[number] for number in range(count)]

@@ -16,7 +16,8 @@ from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program
 from conformance.suite.case import Case
 from interp.executors import available
-from support.parallel.executor import WorkersError, in_order
+from support.parallel.ordered_map import ordered_map
+from support.parallel.workers import WorkersError
 
 __all__ = ["Standing", "laws", "record_of", "try_laws"]
 
@@ -59,13 +60,13 @@ def try_laws(
     """Try each law on so many cases, generated programs and such that move, where it applies.
 
     Which these are follows from the seed. ``jobs`` processes try them, or the Dask cluster of
-    ``scheduler`` (`support.parallel.executor`). ``on_done`` is called with the number of laws
+    ``scheduler`` (`support.parallel.ordered_map`). ``on_done`` is called with the number of laws
     tried.
     """
     running = [case for case in cases if case.phase == "run"]
     tasks = ((law.name, running, programs, seed) for law in laws())
     found = []
-    for counted in in_order(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
+    for counted in ordered_map(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
         found.append(_whole(counted))
         on_done(1)
     return found

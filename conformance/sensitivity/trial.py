@@ -30,7 +30,7 @@ from conformance.suite.case import Case
 from interp.controller.controller import Controller
 from interp.robot.api.control_core import ControlCore
 from interp.values.faults import LinkError
-from support.parallel.executor import in_order
+from support.parallel.ordered_map import ordered_map
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
 
@@ -89,7 +89,7 @@ def _verdicts(faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int) -> It
         return (_verdict_of(one, cases) for one in faults)
     known = {id(one): number for number, one in enumerate(all_faults())}
     tasks = ((known[id(one)], _of_suites(one, cases)) for one in faults)
-    return in_order(_verdict_of_number, tasks, jobs=jobs)
+    return ordered_map(_verdict_of_number, tasks, jobs=jobs)
 
 
 def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:

@@ -27,8 +27,8 @@ from grammar.semantics.link import File, link
 from support.files import archives
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
-from support.parallel.progress import Progress, unheard
-from support.parallel.sticky_pool import Lanes
+from support.parallel.progress import Progress, no_progress
+from support.parallel.sticky_pool import StickyPool
 
 __all__ = ["Checkup", "Wishes", "checkup"]
 
@@ -63,8 +63,8 @@ def checkup(
     *,
     jobs: int | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> Checkup:
     """Check everything below ``roots``.
 
@@ -83,8 +83,8 @@ def checkup(
     size = sum(candidate.size for candidate in found)
     wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     outcomes = []
-    with _store(cache) as store, Lanes(wanted) as lanes:
-        for outcome in _run(_projects(found), lanes, store, wishes):
+    with _store(cache) as store, StickyPool(wanted) as pool:
+        for outcome in _run(_projects(found), pool, store, wishes):
             outcomes.append(outcome)
             on_done(outcome.files + len(outcome.skipped))
     return _together(outcomes, skipped)
@@ -157,16 +157,15 @@ class _Project:
         self._whole: Future[list[Looked]] | None = None
         self._parts: list[Future[dict[int, Looked]]] = []
 
-    def start(self, number: int, lanes: Lanes) -> None:
-        """Have the project checked; with several lanes this waits until it has been read."""
-        if lanes.count == 1 or self.size < _LARGE:
-            lane = lanes.least(self.size)
-            self._whole = lanes.submit(lane, check_whole, self.contents, self.wishes)
+    def start(self, number: int, pool: StickyPool) -> None:
+        """Have the project checked; with several processes this waits until it has been read."""
+        if pool.count == 1 or self.size < _LARGE:
+            process = pool.least_loaded(self.size)
+            self._whole = pool.submit(process, check_whole, self.contents, self.wishes)
             return
-        shares = self._shares(lanes.count)
         reading = [
-            lanes.submit(lane, read_part, number, share, self.wishes)
-            for lane, share in enumerate(shares)
+            pool.submit(process, read_part, number, share, self.wishes)
+            for process, share in enumerate(self._shares(pool.count))
         ]
         looked: dict[int, Looked] = {}
         for part in reading:
@@ -174,8 +173,8 @@ class _Project:
         places = [(content.path, content.origin) for content in self.contents]
         self._read = looked
         self._parts = [
-            lanes.submit(lane, check_part, number, places, looked, self.wishes)
-            for lane in range(lanes.count)
+            pool.submit(process, check_part, number, places, looked, self.wishes)
+            for process in range(pool.count)
         ]
 
     def _shares(self, count: int) -> list[dict[int, Content]]:
@@ -184,9 +183,9 @@ class _Project:
         sizes = [0] * count
         by_size = sorted(enumerate(self.contents), key=lambda item: -len(item[1].data))
         for index, content in by_size:
-            lane = sizes.index(min(sizes))
-            sizes[lane] += len(content.data)
-            shares[lane][index] = content
+            smallest = sizes.index(min(sizes))
+            sizes[smallest] += len(content.data)
+            shares[smallest][index] = content
         return [dict(sorted(share.items())) for share in shares]
 
     def outcome(self) -> Outcome:
@@ -219,7 +218,7 @@ class _Project:
 
 
 def _run(
-    projects: Iterator[list[Found]], lanes: Lanes, store: ResultStore | None, wishes: Wishes
+    projects: Iterator[list[Found]], pool: StickyPool, store: ResultStore | None, wishes: Wishes
 ) -> Iterator[Outcome]:
     """The outcomes of projects, in their order; only so many wait for their turn."""
     waiting: deque[_Project | Outcome] = deque()
@@ -243,7 +242,7 @@ def _run(
         if known is not None:
             waiting.append(known)
         else:
-            project.start(number, lanes)
+            project.start(number, pool)
             waiting.append(project)
             size += project.size
         while waiting and (size > _MOST_WAITING or isinstance(waiting[0], Outcome)):

@@ -107,7 +107,7 @@ def conform(
 @contextmanager
 def _expected_errors() -> Iterator[None]:
     """What is not installed, here or on workers, and workers that cannot do the work."""
-    from support.parallel.executor import WorkersError
+    from support.parallel.workers import WorkersError
 
     try:
         with expected_extras():

@@ -47,7 +47,7 @@ def fuzz(
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of
-    from support.parallel.executor import WorkersError
+    from support.parallel.workers import WorkersError
 
     check_files(json_file)
     names = _chosen(executor or [])

@@ -6,9 +6,7 @@ import statistics
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import Any
 
 from grammar.notation.addresses import Address
@@ -35,8 +33,8 @@ from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import survey_texts
 from recovery.survey.unreserved_keywords import suspects
-from support.parallel.parent_watch import end_with_parent
-from support.parallel.progress import Progress, unheard
+from support.parallel.processes import process_pool
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Material", "Verdict", "assess", "covering", "examine", "figures"]
 
@@ -266,7 +264,7 @@ def examine(
     chosen: Sequence[Mutant],
     *,
     jobs: int = 1,
-    on_done: Progress = unheard,
+    on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """Assess mutants in ``jobs`` processes and gather the figures; see `assess`."""
     verdicts: list[Verdict] = []
@@ -276,7 +274,7 @@ def examine(
             verdicts.append(examiner(mutant))
             on_done(1)
     else:
-        with ProcessPoolExecutor(jobs, get_context("spawn"), _prepare, (material,)) as pool:
+        with process_pool(jobs, _prepare, material) as pool:
             for verdict in pool.map(_examine, chosen, chunksize=4):
                 verdicts.append(verdict)
                 on_done(1)
@@ -314,7 +312,6 @@ _examiners: list[_Examiner] = []  # of a worker process
 
 
 def _prepare(material: Material) -> None:
-    end_with_parent()
     _examiners[:] = [_Examiner(material)]
 
 

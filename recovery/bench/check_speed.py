@@ -27,7 +27,7 @@ from grammar.semantics.symbol_table import table_of
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.discovery import Found, IngestError, decode, discover, read
-from support.measure.isolated import apart
+from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
 from support.parallel.gc_pause import uncollected
 
@@ -68,12 +68,14 @@ def measure_check(
         pass
     timed = []
     for _ in range(rounds):
-        timed.append(apart(_timed, roots))
+        timed.append(call_isolated(_timed, roots))
         on_step()
     best = min(timed, key=lambda one: float(one["seconds"]))
     if not best["bytes"]:
         raise IngestError("none of the files is KRL")
-    phases = min((apart(_phased, roots) for _ in range(rounds)), key=lambda p: sum(p.values()))
+    phases = min(
+        (call_isolated(_phased, roots) for _ in range(rounds)), key=lambda p: sum(p.values())
+    )
     on_step()
     unchanged = _unchanged(roots)
     on_step()
@@ -126,15 +128,15 @@ def _timed(roots: Sequence[Path], cache: Path | None = None) -> dict[str, Any]:
 def _unchanged(roots: Sequence[Path]) -> float:
     """Seconds for a check of which all results are kept."""
     with tempfile.TemporaryDirectory() as folder:
-        apart(_timed, roots, Path(folder))
-        return float(apart(_timed, roots, Path(folder))["seconds"])
+        call_isolated(_timed, roots, Path(folder))
+        return float(call_isolated(_timed, roots, Path(folder))["seconds"])
 
 
 def _scaled(size: float, seed: int) -> dict[str, Any]:
     """A check of a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
         write_cells(Path(folder), round(size * MB), seed)
-        timed = apart(_timed, [Path(folder)])
+        timed = call_isolated(_timed, [Path(folder)])
     return {"mb": size, **timed, "s_per_mb": timed["seconds"] * MB / timed["bytes"]}
 
 

@@ -10,17 +10,15 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import get_context
 
 from recovery.bench.assessment import Material
 from recovery.bench.mutation import Mutant
 from recovery.clustering.cluster import Clusters, cluster
 from recovery.clustering.negative_score import judge_of
 from recovery.survey.survey import survey_texts
-from support.parallel.parent_watch import end_with_parent
-from support.parallel.progress import Progress, unheard
+from support.parallel.processes import process_pool
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["rankings", "same_ranking"]
 
@@ -37,7 +35,7 @@ def same_ranking(runs: Sequence[Sequence[str]]) -> float | None:
 
 
 def rankings(
-    material: Material, chosen: Sequence[Mutant], runs: int, on_done: Progress = unheard
+    material: Material, chosen: Sequence[Mutant], runs: int, on_done: Progress = no_progress
 ) -> list[list[str]]:
     """For each run, a digest of the ranking of each mutant.
 
@@ -48,7 +46,7 @@ def rankings(
         processes = 1 + run % _MOST_PROCESSES
         with (
             _hash_seed(run),
-            ProcessPoolExecutor(processes, get_context("spawn"), _prepare, (material,)) as pool,
+            process_pool(processes, _prepare, material) as pool,
         ):
             found.append(list(pool.map(_ranking, chosen)))
         on_done(1)
@@ -73,7 +71,6 @@ _materials: list[Material] = []  # of a worker process
 
 
 def _prepare(material: Material) -> None:
-    end_with_parent()
     _materials[:] = [material]
 
 

@@ -25,7 +25,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.bench.resampling import readable, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
 from support.files.discovery import Found, IngestError, Skipped, decode, digest, discover, read
-from support.measure.isolated import apart
+from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
 
 __all__ = ["measure", "steps"]
@@ -66,11 +66,11 @@ def measure(
         pass
     surveyed, phased = [], []
     for _ in range(rounds):
-        surveyed.append(apart(_surveyed, roots, grammar.text))
+        surveyed.append(call_isolated(_surveyed, roots, grammar.text))
         if not surveyed[0].bytes:
             raise IngestError("none of the files is KRL")
         on_step()
-        phased.append(apart(_phased, roots, grammar.text))
+        phased.append(call_isolated(_phased, roots, grammar.text))
         on_step()
     of = surveyed[0]
     cold = min(s.cold for s in surveyed)
@@ -79,7 +79,7 @@ def measure(
     phases["recording"] = max(cold - sum(phases.values()), 0.0)
     total = sum(phases.values())
     recognising = sum(phases[name] for name in ("decoding", "building", "lexing", "recognising"))
-    beside = apart(_beside_antlr, roots, grammar.text, antlr_seconds)
+    beside = call_isolated(_beside_antlr, roots, grammar.text, antlr_seconds)
     on_step()
     unchanged = _unchanged(roots, grammar, rounds)
     on_step()
@@ -174,7 +174,9 @@ def _timed_survey(
 def _unchanged(roots: Sequence[Path], grammar: Grammar, rounds: int) -> float:
     """Seconds for a survey whose results are all kept."""
     with tempfile.TemporaryDirectory() as folder:
-        _, *again = (apart(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1))
+        _, *again = (
+            call_isolated(_kept, roots, grammar.text, Path(folder)) for _ in range(rounds + 1)
+        )
     return min(again)
 
 
@@ -310,8 +312,8 @@ def _recovering_antlr() -> Callable[[str], object]:
 def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
-        apart(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
-        return {"mb": size, **apart(_scaled, Path(folder), grammar.text)}
+        call_isolated(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
+        return {"mb": size, **call_isolated(_scaled, Path(folder), grammar.text)}
 
 
 def _synthesise(

@@ -19,7 +19,7 @@ from recovery.clustering.search import Search
 from recovery.proposals.candidates import Line
 from recovery.tuning import CAUSES_PER_GROUP, HEAVY_GROUPS, TRIAL_GARBAGE
 from support.parallel.gc_pause import uncollected
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["find_causes"]
 
@@ -30,7 +30,7 @@ def find_causes(
     weights: Sequence[int],
     groups: Sequence[Sequence[int]],
     judge: Judge,
-    on_done: Progress = unheard,
+    on_done: Progress = no_progress,
     whole: WholeFiles | None = None,
     readable: Readable = nothing_readable,
 ) -> list[Cause]:

@@ -17,7 +17,7 @@ from recovery.clustering.regression import Readable
 from recovery.proposals.candidates import Line
 from recovery.survey.signature import Shape, Shaper
 from recovery.survey.survey import Failed, Survey, SurveyedFile
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Cluster", "Clusters", "Member", "cluster"]
 
@@ -81,8 +81,8 @@ def cluster(
     *,
     judge: Judge = no_judge,
     text_of: Callable[[SurveyedFile], str] = text_on_disk,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> Clusters:
     """Group the failures of a survey by cause.
 

@@ -15,7 +15,7 @@ from recovery.growth.growth import Steps
 from recovery.growth.timeline import Content, Timeline, read_through
 from recovery.ledger.construct_record import construct_record
 from recovery.survey.survey import Survey
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["answered"]
 
@@ -27,8 +27,8 @@ def answered(
     *,
     jobs: int | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """Clusters with their answers, and the constructs that gave them.
 

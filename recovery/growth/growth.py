@@ -24,7 +24,7 @@ from recovery.ledger.metrics import MEANINGS, metrics
 from recovery.survey.result_cache import key_of
 from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Steps", "growth"]
 
@@ -41,8 +41,8 @@ def growth(
     *,
     jobs: int | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """The record of the growth from ``start`` over ``steps`` on the corpus below ``roots``.
 

@@ -25,8 +25,8 @@ from recovery.growth.inclusion import fixed_texts_added, occurs
 from recovery.survey.result_cache import key_of
 from support.files.discovery import Found, Skipped, Source, decode, digest, discover, read
 from support.files.result_store import ResultStore
-from support.parallel.executor import in_order
-from support.parallel.progress import Progress, unheard
+from support.parallel.ordered_map import ordered_map
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Content", "Timeline", "contents_of", "read_through"]
 
@@ -104,8 +104,8 @@ def read_through(
     *,
     jobs: int | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> list[Timeline]:
     """Read each content under each of the grammars; the timelines stand in the given order.
 
@@ -128,7 +128,7 @@ def read_through(
             (tuple((n, grammars[n]) for n in run), tuple(m.content for m in block.members))
             for block, run in runs
         )
-        read = in_order(_perform, tasks, jobs=jobs)
+        read = ordered_map(_perform, tasks, jobs=jobs)
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)

@@ -20,7 +20,7 @@ from recovery.ledger.evaluation import Evaluation, evaluate, losses
 from recovery.ledger.ledger import UNFINISHED, Ledger, broken_examples, grown, in_force
 from recovery.ledger.regeneration import Generator, parser_of
 from support.files.atomic_write import write_together
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Acceptance", "Home", "Refused", "enter", "write"]
 
@@ -70,7 +70,7 @@ def enter(
     ledger: Ledger,
     corpora: Corpora,
     current: Grammar | None = None,
-    on_done: Progress = unheard,
+    on_done: Progress = no_progress,
 ) -> Acceptance:
     """Weigh constructs, in order, as what the grammar takes in next; nothing is written.
 

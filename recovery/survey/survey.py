@@ -24,8 +24,8 @@ from recovery.survey.failing_line import Failed, failures_of, source_lines
 from recovery.survey.result_cache import Kept, keep, key_of, recall
 from support.files.discovery import Found, Skipped, decode, digest, discover, read
 from support.files.result_store import ResultStore
-from support.parallel.executor import in_order, meet
-from support.parallel.progress import Progress, unheard
+from support.parallel.ordered_map import check_scheduler, ordered_map
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
 
@@ -81,29 +81,29 @@ def survey(
     jobs: int | None = None,
     scheduler: str | None = None,
     cache: Path | None = None,
-    on_found: Progress = unheard,
-    on_done: Progress = unheard,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
 ) -> Survey:
     """Read everything below ``roots`` under ``grammar``.
 
     ``jobs`` is the number of processes, by default one a core, or one for a small corpus;
-    ``scheduler`` the address of a Dask cluster that reads instead (`support.parallel.executor`).
+    ``scheduler`` the address of a Dask cluster that reads instead (`support.parallel.ordered_map`).
     ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
     ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
     more have been dealt with.
 
     Raises `support.files.discovery.IngestError` where there is nothing to survey, and
-    `support.parallel.executor.WorkersError` where there is nobody to read.
+    `support.parallel.workers.WorkersError` where there is nobody to read.
     """
     began = time.perf_counter()
     candidates = list(discover(roots))
     on_found(len(candidates))
-    meet(scheduler)  # before anything is written
+    check_scheduler(scheduler)  # before anything is written
     with _store(cache, grammar) as store:
         gathered = _Gathered(store)
         tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
         count = jobs or _processes(candidates)
-        for done in in_order(_perform, tasks, jobs=count, scheduler=scheduler):
+        for done in ordered_map(_perform, tasks, jobs=count, scheduler=scheduler):
             gathered.add(done)
             on_done(len(done))
     on_done(len(candidates) - gathered.read_now)
@@ -177,7 +177,7 @@ class _Gathered:
         self.submitted: deque[str] = deque()
         self.read_now = 0
 
-    def meet(self, found: Found, data: bytes) -> bool:
+    def register(self, found: Found, data: bytes) -> bool:
         """Note a content and where it lies; returns whether it has to be read."""
         place = (found.path, found.origin)
         key = digest(data)
@@ -233,7 +233,7 @@ def _tasks(
         data = candidate if isinstance(candidate, Skipped) else read(candidate)
         if isinstance(data, Skipped):
             gathered.skipped.append(data)
-        elif isinstance(candidate, Found) and gathered.meet(candidate, data):
+        elif isinstance(candidate, Found) and gathered.register(candidate, data):
             contents.append(data)
             size += len(data)
             if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:

@@ -1,15 +1,15 @@
-"""How long work tells that it goes on."""
+"""How long work reports that it goes on."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["Progress", "unheard"]
+__all__ = ["Progress", "no_progress"]
 
-#: Is told a number: of things there are to do, or of things done since it was last told.
+#: Is given a number: of things there are to do, or of things done since the last call.
 Progress = Callable[[int], object]
 
 
-def unheard(count: int) -> None:
-    """Tell nobody."""
+def no_progress(count: int) -> None:
+    """Do nothing."""
     del count

@@ -1,42 +1,36 @@
-"""Processes that remember: what is sent to the same lane meets what it left there.
+"""Processes chosen by number, so that a task finds what an earlier one left in its process.
 
-A pool gives work to whichever process is free. Here each process has a queue of its own, so that
-what is read into one, syntax trees above all, is there when it is asked for and never travels.
+A pool gives a task to whichever process is free. Here each process is a pool of its own: what is
+read into one, syntax trees above all, is there when it is asked for and is never sent.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future
 from types import TracebackType
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, Self, TypeVar
 
-from support.parallel.parent_watch import end_with_parent
+from support.parallel.processes import process_pool
 
-__all__ = ["Lanes"]
+__all__ = ["StickyPool"]
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 
-class Lanes:
+class StickyPool:
     """So many processes, numbered from 0; one alone is the process that asks. A context manager.
 
     What is submitted, and what comes back, must be picklable.
     """
 
     def __init__(self, count: int) -> None:
-        # 'spawn' behaves the same on every system and never copies a process with threads in it
-        context = multiprocessing.get_context("spawn")
         self.count = max(1, count)
-        self._pools = [
-            ProcessPoolExecutor(1, context, end_with_parent)
-            for _ in range(self.count if count > 1 else 0)
-        ]
+        self._pools = [process_pool(1) for _ in range(self.count if count > 1 else 0)]
         self._loads = [0] * self.count
 
-    def __enter__(self) -> Lanes:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -48,18 +42,18 @@ class Lanes:
         for pool in self._pools:
             pool.shutdown(wait=error is None, cancel_futures=True)
 
-    def least(self, load: int) -> int:
-        """The lane with the least to do, to which ``load`` is added."""
-        lane = self._loads.index(min(self._loads))
-        self._loads[lane] += load
-        return lane
+    def least_loaded(self, load: int) -> int:
+        """The process that was given the least to do so far, to which ``load`` is added."""
+        number = self._loads.index(min(self._loads))
+        self._loads[number] += load
+        return number
 
     def submit(
-        self, lane: int, function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs
+        self, number: int, function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs
     ) -> Future[_T]:
-        """Have a function called in a lane, after all that was submitted there before."""
+        """Have a function called in a process, after all that was submitted to it before."""
         if self._pools:
-            return self._pools[lane].submit(function, *arguments, **named)
+            return self._pools[number].submit(function, *arguments, **named)
         done: Future[_T] = Future()
         try:
             done.set_result(function(*arguments, **named))

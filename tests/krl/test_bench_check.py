@@ -13,7 +13,9 @@ def test_figures_are_printed_and_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Stdout and the record have the cost of a MB, the phases and the growth."""
-    monkeypatch.setattr(check_speed, "apart", lambda function, *arguments: function(*arguments))
+    monkeypatch.setattr(
+        check_speed, "call_isolated", lambda function, *arguments: function(*arguments)
+    )
     (tmp_path / "A.src").write_text("DEF A()\nEXIT\nEND\n", encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "speed.json"
     given = ["bench", "check", str(tmp_path), "--sizes", "0.01", "--json", str(target)]

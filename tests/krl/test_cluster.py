@@ -22,19 +22,22 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from krl.cli import main
 from recovery.survey.survey import survey
-from support.parallel import executor
-from support.parallel.executor import WorkersError, in_order, meet
+from support.parallel import dask_cluster
+from support.parallel.ordered_map import check_scheduler, ordered_map
+from support.parallel.workers import WorkersError
 
 pytest.importorskip("distributed")
 
 
 #: What workers run first: whoever edits this checkout while it is tested is not another release.
-_SAME_RELEASE = "from support.parallel import executor; executor.code_digest = lambda *_: 'ours'"
+_SAME_RELEASE = (
+    "from support.parallel import dask_cluster; dask_cluster.code_digest = lambda *_: 'ours'"
+)
 
 
 @pytest.fixture(autouse=True)
 def _same_release(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executor, "code_digest", lambda *_: "ours")
+    monkeypatch.setattr(dask_cluster, "code_digest", lambda *_: "ours")
 
 
 class _Cluster:
@@ -254,7 +257,7 @@ def test_what_kills_workers_is_told_from_what_was_beside_it(of_two: _Cluster) ->
     """Only the result of the task that kills is lost, and another worker goes on."""
     tasks = ((number,) for number in range(7))
     done = []
-    for result in in_order(_deadly, tasks, scheduler=of_two.address, lost=lambda n: -n):
+    for result in ordered_map(_deadly, tasks, scheduler=of_two.address, lost=lambda n: -n):
         done.append(result)
         if len(done) == 1:
             of_two.hire()
@@ -263,7 +266,7 @@ def test_what_kills_workers_is_told_from_what_was_beside_it(of_two: _Cluster) ->
 
 def test_scheduler_that_goes_away_is_one_clear_line(of_two: _Cluster) -> None:
     """Work does not wait for a scheduler that was killed."""
-    results = in_order(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
     assert 18 == next(results)
     of_two.scheduler.kill()
     with pytest.raises(WorkersError, match=r"the scheduler at .* has gone"):
@@ -274,8 +277,8 @@ def test_workers_that_all_go_are_one_clear_line(
     of_two: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Work does not wait for ever where nobody is left to do it."""
-    monkeypatch.setattr(executor, "_PATIENCE", 1.0)
-    results = in_order(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    monkeypatch.setattr(dask_cluster, "_PATIENCE", 1.0)
+    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
     assert 18 == next(results)
     of_two.kill_a_worker()
     of_two.kill_a_worker()
@@ -287,6 +290,6 @@ def test_workers_of_another_release_are_refused(
     cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What other code finds is not mixed with ours."""
-    monkeypatch.setattr(executor, "code_digest", lambda *_: "another")
+    monkeypatch.setattr(dask_cluster, "code_digest", lambda *_: "another")
     with pytest.raises(WorkersError, match="has another release of krl than this"):
-        meet(cluster.address)
+        check_scheduler(cluster.address)

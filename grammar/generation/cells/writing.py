@@ -7,7 +7,7 @@ from itertools import count
 from pathlib import Path
 
 from grammar.generation.cells.cells import files
-from support.parallel.progress import Progress, unheard
+from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Written", "write_cells"]
 
@@ -21,7 +21,9 @@ class Written:
     bytes: int
 
 
-def write_cells(folder: Path, size: int, seed: int = 1, on_bytes: Progress = unheard) -> Written:
+def write_cells(
+    folder: Path, size: int, seed: int = 1, on_bytes: Progress = no_progress
+) -> Written:
     """Write cells below ``folder`` until they have ``size`` bytes, or less than a file more.
 
     The same size and seed give the same files everywhere, and a larger size the same and more.

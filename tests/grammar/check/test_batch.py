@@ -11,7 +11,6 @@ from grammar.check.batch import Checkup, checkup
 from grammar.check.project_check import Wishes
 from grammar.diagnostics.diagnostic import Diagnostic
 from support.files.discovery import IngestError
-from support.parallel.sticky_pool import Lanes
 
 CALLER = "DEF CALLER()\nSHIFT(5)\nEXIT\nEND\n"
 CALLED = "GLOBAL DEF SHIFT(N:IN)\nDECL INT N\n$OUT[N] = TRUE\nEND\n"
@@ -168,32 +167,6 @@ def test_nothing_to_check_is_said(tmp_path: Path) -> None:
     """A folder without programs is an error of who named it."""
     with pytest.raises(IngestError):
         check(tmp_path)
-
-
-def _remembered(key: str, value: int | None = None, _memory: dict[str, int] = {}) -> int | None:  # noqa: B006
-    # what a lane remembers lies in its process, here as a default that is kept between calls
-    if value is not None:
-        _memory[key] = value
-    return _memory.get(key)
-
-
-@pytest.mark.parametrize("count", [1, 2])
-def test_lanes_remember(count: int) -> None:
-    """What is left in a lane is there for what comes later, errors come back."""
-    with Lanes(count) as lanes:
-        written = [lanes.submit(lane, _remembered, "k", lane) for lane in range(count)]
-        assert list(range(count)) == [one.result() for one in written]
-        read = [lanes.submit(lane, _remembered, "k") for lane in range(count)]
-        assert list(range(count)) == [one.result() for one in read]
-        with pytest.raises(ZeroDivisionError):
-            lanes.submit(0, divmod, 1, 0).result()
-
-
-def test_the_lane_with_least_to_do_is_next() -> None:
-    """Loads are added up by lane."""
-    with Lanes(1) as lanes:
-        lanes.count, lanes._loads = 3, [0, 0, 0]
-        assert [0, 1, 2, 1, 0] == [lanes.least(load) for load in (5, 1, 9, 5, 1)]
 
 
 def test_findings_name_their_files_as_given(tmp_path: Path) -> None:

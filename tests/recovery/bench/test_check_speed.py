@@ -12,7 +12,9 @@ from support.files.discovery import IngestError
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """A process for each figure is what makes a bench true and a test slow."""
-    monkeypatch.setattr(check_speed, "apart", lambda function, *arguments: function(*arguments))
+    monkeypatch.setattr(
+        check_speed, "call_isolated", lambda function, *arguments: function(*arguments)
+    )
 
 
 def test_record(tmp_path: Path) -> None:

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from krl.cli import main
-from support.parallel import executor
-from support.parallel.executor import WorkersError, in_order, meet
+from support.parallel import ordered_map as module
+from support.parallel.ordered_map import check_scheduler, ordered_map
+from support.parallel.workers import WorkersError
 
 
 def _double(number: int, folder: str) -> int:
@@ -28,7 +29,7 @@ def _double(number: int, folder: str) -> int:
 def test_results_come_in_order_though_a_process_dies(tmp_path: Path) -> None:
     """A process that is killed loses no result, and none comes twice."""
     tasks = ((number, str(tmp_path)) for number in range(12))
-    assert [2 * n for n in range(12)] == list(in_order(_double, tasks, jobs=2))
+    assert [2 * n for n in range(12)] == list(ordered_map(_double, tasks, jobs=2))
     assert (tmp_path / "died").exists()
 
 
@@ -43,12 +44,12 @@ def _deadly(number: int) -> int:
 def test_work_that_kills_every_process_is_given_up() -> None:
     """A task that kills each process it is given to ends with one clear line."""
     with pytest.raises(WorkersError, match="workers die again and again over the same work"):
-        list(in_order(_deadly, [(4,)], jobs=2))
+        list(ordered_map(_deadly, [(4,)], jobs=2))
 
 
 def test_what_kills_is_told_from_what_was_beside_it() -> None:
     """Where a lost result can be replaced, only that of the task that kills is."""
-    done = in_order(_deadly, ((number,) for number in range(7)), jobs=2, lost=lambda n: -n)
+    done = ordered_map(_deadly, ((number,) for number in range(7)), jobs=2, lost=lambda n: -n)
     assert [0, 2, 4, 6, -4, 10, 12] == list(done)
 
 
@@ -65,7 +66,7 @@ def test_what_answers_and_is_no_scheduler_is_told(
     monkeypatch: pytest.MonkeyPatch, answer: bytes
 ) -> None:
     """A server that says nothing, or something else than a scheduler, is not waited for."""
-    monkeypatch.setattr("support.parallel.executor._GREETING", 0.2)
+    monkeypatch.setattr("support.parallel.dask_cluster._GREETING", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as server:
         callers: list[socket.socket] = []
 
@@ -78,7 +79,7 @@ def test_what_answers_and_is_no_scheduler_is_told(
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         began = time.monotonic()
         with pytest.raises(WorkersError, match=f"^no Dask scheduler answers at {address}$"):
-            meet(address)
+            check_scheduler(address)
         assert time.monotonic() - began < 5
         replying.join()
         callers[0].close()
@@ -91,9 +92,9 @@ class _Death(Exception):
 class _Told:
     """Takes tasks and tells of it; whoever is first given 0 dies of it."""
 
-    ahead = 4
-    chances = 1
-    broken: tuple[type[BaseException], ...] = (_Death,)
+    most_pending = 4
+    retries = 1
+    deaths: tuple[type[BaseException], ...] = (_Death,)
 
     def __init__(self) -> None:
         self.log: list[tuple[str, int]] = []
@@ -103,8 +104,8 @@ class _Told:
         self.log.append(("out", task[0]))
         return _Result(self.log, task[0], is_deadly)
 
-    def renew(self) -> None:
-        """Nobody new is needed."""
+    def restart(self) -> None:
+        """Do nothing."""
 
 
 class _Result:
@@ -120,8 +121,8 @@ class _Result:
 
 def test_what_died_is_tried_again_when_nothing_else_is_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """Then it is known whether the task itself kills, and nobody beside it is taken along."""
-    crew = _Told()
-    monkeypatch.setattr(executor, "_crew", lambda _jobs, _scheduler: nullcontext(crew))
-    assert [0, 1, 2] == list(in_order(abs, ((n,) for n in range(3)), jobs=2))
-    again = len(crew.log) - 1 - crew.log[::-1].index(("out", 0))
-    assert {("back", 1), ("back", 2)} <= set(crew.log[:again])
+    workers = _Told()
+    monkeypatch.setattr(module, "_workers", lambda _jobs, _scheduler: nullcontext(workers))
+    assert [0, 1, 2] == list(ordered_map(abs, ((n,) for n in range(3)), jobs=2))
+    again = len(workers.log) - 1 - workers.log[::-1].index(("out", 0))
+    assert {("back", 1), ("back", 2)} <= set(workers.log[:again])

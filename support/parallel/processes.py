@@ -1,0 +1,74 @@
+"""Processes of this machine: started afresh, and ended with the process that started them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
+from typing import TypeVar, TypeVarTuple
+
+__all__ = ["LocalWorkers", "process_pool"]
+
+_T = TypeVar("_T")
+_Ts = TypeVarTuple("_Ts")
+
+
+def process_pool(
+    count: int, prepare: Callable[[*_Ts], object] | None = None, *arguments: *_Ts
+) -> ProcessPoolExecutor:
+    """So many processes that know nothing of this one; ``prepare`` is called first in each."""
+    # 'spawn' behaves the same on every system and never copies a process with threads in it
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(count, context, _begin, (prepare, arguments))
+
+
+def _begin(prepare: Callable[..., object] | None, arguments: tuple[object, ...]) -> None:
+    """Begin a process of a pool."""
+    # an interrupt reaches all processes of a terminal; the one that asked for the work reports it
+    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    if prepare is not None:
+        prepare(*arguments)
+
+
+def _end_with_parent() -> None:
+    """Wait for the end of the process that made the pool.
+
+    A killed process ends no pool, and a worker that waits for a task would wait for ever.
+    """
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+class LocalWorkers:
+    """Processes of this machine as `support.parallel.workers.Workers`."""
+
+    deaths: tuple[type[BaseException], ...] = (BrokenExecutor,)
+    retries = 2  # one death more may be bad luck
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self.most_pending = 2 * count
+        self.restart()
+
+    def submit(self, function: Callable[..., _T], task: tuple[object, ...]) -> Future[_T]:
+        """See `Workers.submit`; a death is raised when the result is asked for, as all are."""
+        try:
+            return self._pool.submit(function, *task)
+        except BrokenExecutor as error:
+            dead: Future[_T] = Future()
+            dead.set_exception(error)
+            return dead
+
+    def restart(self) -> None:
+        """Start other processes: a pool in which one died takes no more tasks."""
+        self._pool = process_pool(self._count)
+
+    def close(self) -> None:
+        """End the processes; tasks that none of them has begun are not done."""
+        self._pool.shutdown(wait=True, cancel_futures=True)
