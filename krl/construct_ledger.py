@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import Unusable, one_line
+from krl.errors import InputError, one_line
 
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
@@ -59,7 +59,7 @@ def expected_errors() -> Iterator[None]:
     try:
         yield
     except expected as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def print_evaluation(found: "Evaluation") -> None:

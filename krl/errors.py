@@ -1,6 +1,6 @@
 """The one place where an expected error becomes one line on stderr and an exit status.
 
-Commands return their status, or raise `Unusable` with a sentence for the person at the keyboard.
+Commands return their status, or raise `InputError` with a sentence for the person at the keyboard.
 Nothing that reaches this door leaves it as a traceback. Somebody who hunts a defect in krl itself
 sets the environment variable KRL_TRACEBACK to any value and gets the traceback of it.
 """
@@ -15,12 +15,12 @@ from typing import Final
 import typer
 
 __all__ = [
+    "BAD_INPUT",
     "FINDINGS",
     "FINE",
     "INTERRUPTED",
     "READER_GONE",
-    "UNUSABLE",
-    "Unusable",
+    "InputError",
     "one_line",
     "run",
     "shown",
@@ -28,7 +28,7 @@ __all__ = [
 
 FINE: Final = 0
 FINDINGS: Final = 1
-UNUSABLE: Final = 2
+BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
 """As a shell reports a program that Ctrl-C ended."""
 READER_GONE: Final = 141
@@ -37,7 +37,7 @@ READER_GONE: Final = 141
 _LONGEST_LINE = 2_000  # words of input may be of any length; two long paths fit in
 
 
-class Unusable(Exception):
+class InputError(Exception):
     """Wrong usage or unreadable input; its text is the line that the person reads."""
 
 
@@ -67,7 +67,7 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
         return status
     except KeyboardInterrupt:
         return _refuse("interrupted", INTERRUPTED)
-    except Unusable as error:
+    except InputError as error:
         return _refuse(str(error))
     except typer.TyperException as error:
         return _refuse(_usage(error), name="")
@@ -95,7 +95,7 @@ def _invoke(app: typer.Typer, arguments: list[str]) -> int:
     return result if isinstance(result, int) else FINE
 
 
-def _refuse(message: str, status: int = UNUSABLE, name: str = "krl: ") -> int:
+def _refuse(message: str, status: int = BAD_INPUT, name: str = "krl: ") -> int:
     line = one_line(message)
     if len(line) > _LONGEST_LINE:
         line = line[:_LONGEST_LINE] + " …"

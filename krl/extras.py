@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 
-from krl.errors import Unusable
+from krl.errors import InputError
 
 __all__ = ["expected_extras", "need"]
 
@@ -35,13 +35,13 @@ def expected_extras() -> Iterator[None]:
 
 
 def need(name: str) -> None:
-    """Raise `Unusable` where the package is not installed, before any work."""
+    """Raise `InputError` where the package is not installed, before any work."""
     if find_spec(name) is None:
         raise _refused(name)
 
 
-def _refused(name: str) -> Unusable:
+def _refused(name: str) -> InputError:
     extra = _EXTRA_OF[name]
-    return Unusable(
+    return InputError(
         f"this needs {name}, which is not installed: pip install 'krl-workbench[{extra}]'"
     )

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from krl.errors import Unusable
+from krl.errors import InputError
 
 __all__ = [
     "CorpusArgument",
@@ -60,7 +60,7 @@ _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
 def programs_or_ours(paths: list[Path] | None) -> list[Path]:
     """What was named, or the programs of the corpus in the working folder.
 
-    Raises `Unusable` where nothing was named and there is no corpus.
+    Raises `InputError` where nothing was named and there is no corpus.
     """
     return paths or _there(_OURS)
 
@@ -73,5 +73,5 @@ def corpus_or_ours(paths: list[Path] | None) -> list[Path]:
 def _there(folders: Iterable[Path]) -> list[Path]:
     roots = [folder for folder in folders if folder.is_dir()]
     if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+        raise InputError("there is no corpus/ here: name files, folders or .zip archives")
     return roots

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from krl.errors import Unusable
+from krl.errors import InputError
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
@@ -22,7 +22,7 @@ def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, 
     """The program that begins with a file, and why files of its project were left out.
 
     ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
-    checker finds is no obstacle: what it is about fails when it is reached. Raises `Unusable` for
+    checker finds is no obstacle: what it is about fails when it is reached. Raises `InputError` for
     what cannot be read, and `interp.values.faults.LinkError` for what cannot be run.
     """
     from interp.program.load import load
@@ -34,14 +34,14 @@ def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
     """The files below folders and in archives that can be read, each with where it comes from.
 
-    Raises `Unusable` where there is no root, or one that cannot be looked into.
+    Raises `InputError` where there is no root, or one that cannot be looked into.
     """
     from grammar.syntax.source import Source
     from support.files.decode import decode
     from support.files.discovery import Found, IngestError, Skipped, discover, read
 
     if not roots:
-        raise Unusable("there is no corpus/ here: name files, folders or .zip archives")
+        raise InputError("there is no corpus/ here: name files, folders or .zip archives")
     try:
         for one in discover(roots):
             data = read(one) if isinstance(one, Found) else one
@@ -49,7 +49,7 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
             if not isinstance(text, str):
                 yield one.origin, Source(text.text, one.path)
     except IngestError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
@@ -70,7 +70,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         root = archive or _root_of(file)
         found = [one for one in discover([root]) if isinstance(one, Found)]
     except IngestError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     if archive is None and root == file.resolve().parent:  # a loose file: not what lies below
         found = [one for one in found if one.file.parent == root and one.member is None]
     sources: list[Source] = []
@@ -82,7 +82,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         decoded = data.reason if isinstance(data, Skipped) else decode(data)
         if isinstance(decoded, str):
             if is_main:
-                raise Unusable(f"{one.path}: {decoded}")
+                raise InputError(f"{one.path}: {decoded}")
             left.append(f"{one.path}: {decoded}")
             continue
         source = Source(decoded.text, _shown(one, root))
@@ -93,7 +93,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
             left.append(f"{one.path}:{syntax[0].line}: it cannot be read")
         main = source.path if is_main else main
     if not main:
-        raise Unusable(f"{file}: no KRL program")
+        raise InputError(f"{file}: no KRL program")
     return sources, main, left
 
 
@@ -126,6 +126,6 @@ def _is_asked_for(found: "Found", file: Path, inner: str) -> bool:
 def _root_of(file: Path) -> Path:
     """The folder that holds the project of a file: it lies below R1 or STEU there, or alone."""
     if not file.is_file():
-        raise Unusable(f"{file}: no such file")
+        raise InputError(f"{file}: no such file")
     folders = file.resolve().parents
     return next((one.parent for one in folders if one.name.upper() in _PARTS), folders[0])

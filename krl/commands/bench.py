@@ -14,7 +14,7 @@ from krl.commands.bench_mutation import mutation
 from krl.commands.bench_programs import programs
 from krl.commands.bench_real_code import real_code
 from krl.commands.bench_vm import bench_vm
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -70,10 +70,9 @@ def recover(
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure(roots, grammar, sizes=wanted, on_step=advance)
     except (GrammarError, IngestError) as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print_speed(record)
     return FINE
 
@@ -101,10 +100,9 @@ def check(
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure_check(roots, sizes=wanted, on_step=advance)
     except IngestError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     record = {"bench": "check", **record}
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print_check(record)
     return FINE
 
@@ -116,7 +114,7 @@ def _sizes(given: str) -> list[float]:
     except ValueError:
         sizes = [0]
     if not all(0 < size <= _LARGEST for size in sizes):
-        raise Unusable(f"--sizes {given}: not a list of MB, each above 0 and up to {_LARGEST:,}")
+        raise InputError(f"--sizes {given}: not a list of MB, each above 0 and up to {_LARGEST:,}")
     return sizes
 
 

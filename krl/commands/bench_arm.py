@@ -31,8 +31,7 @@ def arm(
         from interp.bench.arm import STEPS, measure
     with progress_bar("measuring", STEPS) as advance:
         record = {"bench": "arm", **measure(motions, advance)}
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print(record)
     return FINE
 

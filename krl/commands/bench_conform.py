@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
@@ -38,19 +38,18 @@ def conform(
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in groups:
-            raise Unusable(f"--group {name}: the groups are {', '.join(groups)}")
+            raise InputError(f"--group {name}: the groups are {', '.join(groups)}")
     faults = [one for one in all_faults() if not group or one.group in group]
     try:
         cases = find_cases()
     except CaseError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
         found = measure(faults, cases, jobs or os.cpu_count() or 1, bar)
     record = {"bench": "conform", **found, **speed}
-    if json_file is not None:
-        write_json(record, json_file)
+    write_json(record, json_file)
     _print(record)
     return FINE
 

@@ -34,8 +34,7 @@ def fuzz(
     with progress_bar("hunting mutants", len(mutants())) as bar:
         verdicts = hunt(programs, seed, jobs or os.cpu_count() or 1, bar)
     record = record_of(verdicts, programs, seed)
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
         f"{record['caught']:,} of {record['mutants']:,} planted faults found "

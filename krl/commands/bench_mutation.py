@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -80,7 +80,7 @@ def mutation(
         with progress_bar("repeating", runs) as bar:
             same = same_ranking(rankings(material, again, runs, bar)) if again else None
     except (GrammarError, IngestError, NegativeError) as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     record = {
         "bench": "mutation",
         "grammar": (grammar or GRAMMAR).name,
@@ -91,8 +91,7 @@ def mutation(
         "repeated": len(again),
         "runs": runs,
     }
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
         figures(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])

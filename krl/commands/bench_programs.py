@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.run import Executor, Robot
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.program_loading import sources_below
@@ -92,7 +92,7 @@ def programs(
                 try:
                     ran = run_main(main, setup, _script(scripts, origin, main))
                 except ScriptError as error:
-                    raise Unusable(f"--scripts: {error}") from error
+                    raise InputError(f"--scripts: {error}") from error
                 rows.append({"origin": origin, "path": main.path, **asdict(ran)})
                 bar()
     record = {
@@ -103,8 +103,7 @@ def programs(
         "programs": rows,
         "unread": unread,
     }
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print(record)
     return FINDINGS if "crash" in record["results"] else FINE
 
@@ -114,7 +113,7 @@ def _script(folder: Path | None, origin: str, main: "MainProgram") -> str:
     if folder is None:
         return ""
     if not folder.is_dir():
-        raise Unusable(f"--scripts: {folder}: no such folder")
+        raise InputError(f"--scripts: {folder}: no such folder")
     names = (Path(origin).name, Path(main.path).stem)
     files = [folder / f"{name}.io" for name in names]
     return "\n".join(file.read_text(encoding="utf-8") for file in files if file.is_file())

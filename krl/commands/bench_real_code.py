@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.program_loading import sources_below
@@ -65,7 +65,7 @@ def real_code(
     chosen = list(dict.fromkeys(executors or available()))
     for name in chosen:
         if name not in available():
-            raise Unusable(f"--executor: there is no {name} here, but {', '.join(available())}")
+            raise InputError(f"--executor: there is no {name} here, but {', '.join(available())}")
     roots = programs_or_ours(paths)
     sources = [source for _, source in sources_below(roots)]
     tried: list[Trial] = []
@@ -79,8 +79,7 @@ def real_code(
             else:
                 tried.append(one)
     record = _record(chosen, len(sources), tried, unread)
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print(record)
     return FINDINGS if record["differences"] else FINE
 

@@ -8,7 +8,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.options import JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -46,15 +46,16 @@ def bench_vm(
     names = [name.strip() for name in kernels.split(",") if name.strip()] or list(KERNELS)
     unknown = [name for name in names if name not in KERNELS]
     if unknown:
-        raise Unusable(f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(KERNELS)}")
+        raise InputError(
+            f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(KERNELS)}"
+        )
     try:
         with progress_bar("measuring", steps(names)) as advance:
             record = measure_executors(names, rounds, on_step=advance)
     except MeasurementError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     record = {"bench": "vm", **record}
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _print(record)
     return FINE
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import check_files
 from krl.program_loading import load_program
 from support.files.atomic_write import write_atomic
@@ -47,7 +47,7 @@ def compile_file(
         program, left = load_program(file, strict=strict)
         compiled = compile_program(program)
     except LinkError as error:
-        raise Unusable(f"{file}: {error}") from error
+        raise InputError(f"{file}: {error}") from error
     target = output or file.with_suffix(".krlb")
     write_image_of(compiled.program, file, target)
     told = [f"left out: {why}" for why in left]
@@ -75,9 +75,9 @@ def assemble_file(
     try:
         program = assemble(_read(file).decode("utf-8-sig"))
     except UnicodeDecodeError:
-        raise Unusable(f"{file}: not a text in UTF-8") from None
+        raise InputError(f"{file}: not a text in UTF-8") from None
     except AssemblyError as error:
-        raise Unusable(f"{file}: {error}") from error
+        raise InputError(f"{file}: {error}") from error
     write_image_of(program, file, output or file.with_suffix(".krlb"))
 
 
@@ -93,7 +93,7 @@ def disassemble_image(
         program = read_image(_read(image))
         verify(program)
     except (ImageError, VerificationError) as error:
-        raise Unusable(f"{image}: {error}") from error
+        raise InputError(f"{image}: {error}") from error
     typer.echo(disassemble(program), nl=False)
 
 
@@ -105,7 +105,7 @@ def write_image_of(program: "Program", source: Path, target: Path) -> None:
     try:
         verify(program)
     except VerificationError as error:
-        raise Unusable(f"{source}: {error}") from error
+        raise InputError(f"{source}: {error}") from error
     check_files(target)
     write_atomic(target, write_image(program))
 
@@ -114,5 +114,5 @@ def _read(file: Path) -> bytes:
     from support.files.untrusted import read_bytes
 
     if file.is_dir():
-        raise Unusable(f"{file}: a folder, not a file")
+        raise InputError(f"{file}: a folder, not a file")
     return read_bytes(file, _LARGEST)

@@ -14,7 +14,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JobsOption
 from krl.output_files import check_files
 from krl.progress import progress_bar
@@ -89,7 +89,7 @@ def check(
     try:
         selection = Selection.of(select or (), ignore or ())
     except ValueError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     wishes = Wishes(syntax_only, stops or _asks_for_stops(selection))
     folder = None if no_cache else _usable(cache, _users_cache())
     try:
@@ -98,10 +98,10 @@ def check(
                 paths, wishes, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
             )
     except IngestError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     if not found.files:
         first = found.skipped[0]
-        raise Unusable(f"{first.path}: {first.reason}")
+        raise InputError(f"{first.path}: {first.reason}")
     kept = [one for one in found.diagnostics if selection.keeps(one.code)]
     _write(kept, found, format_, out)
     _sum_up(kept, found)
@@ -141,7 +141,7 @@ def _usable(wanted: Path | None, default: Path | None) -> Path | None:
     except OSError:
         usable = False
     if not usable and wanted is not None:
-        raise Unusable(f"{wanted}: not a folder that can be written to")
+        raise InputError(f"{wanted}: not a folder that can be written to")
     return folder if usable else None
 
 

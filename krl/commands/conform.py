@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, one_line, shown
 from krl.extras import expected_extras, need
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
@@ -96,7 +96,9 @@ def conform(
         from krl.commands.conform_fault import planted
 
         if scheduler is not None or jobs not in (None, 1):
-            raise Unusable("--fault is planted into this process: leave --jobs and --scheduler out")
+            raise InputError(
+                "--fault is planted into this process: leave --jobs and --scheduler out"
+            )
         with planted(fault) as name:
             typer.echo(one_line(f"planted: {name}"))
             return _conform(
@@ -113,7 +115,7 @@ def _expected_errors() -> Iterator[None]:
         with expected_extras():
             yield
     except WorkersError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def _conform(
@@ -177,7 +179,7 @@ def _cases(words: Sequence[str]) -> "list[Case]":
                 cases += find_cases(path) if path.is_dir() else _one_case(path)
         return selected(cases, words)
     except CaseError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def _one_case(path: Path) -> "list[Case]":
@@ -196,7 +198,7 @@ def _chosen(wanted: list[str] | None, what: str) -> list[str]:
         return there if what == "executor" else there[:2]
     for name in wanted:
         if name not in known:
-            raise Unusable(f"{name}: the {what} is one of {', '.join(known)}")
+            raise InputError(f"{name}: the {what} is one of {', '.join(known)}")
     return list(dict.fromkeys(wanted))
 
 
@@ -213,7 +215,7 @@ def _run(
     try:
         known = KnownFailures.load()
     except (OSError, ValueError) as error:
-        raise Unusable(f"the list of known failures cannot be read: {error}") from error
+        raise InputError(f"the list of known failures cannot be read: {error}") from error
     with progress_bar("running cases", len(cases)) as bar:
         return run_cases(cases, executors, robots, known, jobs, bar, scheduler)
 
@@ -235,8 +237,7 @@ def _write(
         record = record_of(results, executors, robots, version=version, seconds=seconds)
         if fault:
             record["fault"] = fault
-        if json_file is not None:
-            write_json(record, json_file)
+        write_json(record, json_file)
         if html is not None:
             from reports.conform_page import write_conformance_page
 
@@ -291,7 +292,7 @@ def _lint(words: Iterable[str]) -> int:
     folders = [Path(word) for word in words] or [CASES]
     for folder in folders:
         if not folder.is_dir():
-            raise Unusable(f"{folder}: no such folder of cases")
+            raise InputError(f"{folder}: no such folder of cases")
     found = [fault for folder in folders for fault in lint(folder)]
     for fault in found:
         typer.echo(one_line(str(fault)))
@@ -306,17 +307,17 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     from conformance.suite.case import CaseError, find_cases
 
     if len(words) != 1:
-        raise Unusable("krl conform import takes one file")
+        raise InputError("krl conform import takes one file")
     begun = time.perf_counter()
     try:
         recording = Recording.read(Path(words[0]))
         results, wrong = evaluate_recording(recording, find_cases())
     except (RecordingError, CaseError) as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     for text in wrong:
         typer.echo(one_line(text), err=True)
     if not results:
-        raise Unusable(f"{words[0]}: none of its cases can be evaluated")
+        raise InputError(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
     if json_file is not None:
         version = metadata.version("krl-workbench")

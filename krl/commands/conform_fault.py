@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from krl.errors import Unusable
+from krl.errors import InputError
 
 if TYPE_CHECKING:
     from conformance.sensitivity import Fault
@@ -18,7 +18,7 @@ _SHOWN = 12
 def planted(words: str) -> Iterator[str]:
     """Plant a fault as long as the context lasts; gives its whole name.
 
-    ``words`` are some of it, enough to tell it apart. Raises `Unusable` where they are not.
+    ``words`` are some of it, enough to tell it apart. Raises `InputError` where they are not.
     """
     fault = _chosen(words)
     with fault.plant():
@@ -35,7 +35,9 @@ def _chosen(words: str) -> "Fault":
     if len(exact or fitting) == 1:
         return (exact or fitting)[0]
     if not fitting:
-        raise Unusable(f"--fault {words}: there is none; 'krl bench conform --json' names them all")
+        raise InputError(
+            f"--fault {words}: there is none; 'krl bench conform --json' names them all"
+        )
     told = "; ".join(one.words for one in fitting[:_SHOWN])
     more = f"; and {len(fitting) - _SHOWN} more" if len(fitting) > _SHOWN else ""
-    raise Unusable(f"--fault {words}: which one? {told}{more}")
+    raise InputError(f"--fault {words}: which one? {told}{more}")

@@ -32,8 +32,7 @@ def check_laws(
     seed = 1
     with progress_bar("trying laws", len(laws())) as bar:
         found = try_laws(cases, programs, seed, jobs or os.cpu_count() or 1, bar, scheduler)
-    if json_file is not None:
-        write_json({"metamorphic": record_of(found, programs, seed)}, json_file)
+    write_json({"metamorphic": record_of(found, programs, seed)}, json_file)
     for one in found:
         broken = f", {len(one.broken)} broken" if one.broken else ""
         typer.echo(f"{one.law.name:26} {one.held:5,} of {one.applied:5,} held{broken}")

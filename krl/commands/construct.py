@@ -7,7 +7,7 @@ import typer
 
 from krl.commands import construct_accept, construct_oracle
 from krl.construct_ledger import LEDGER, PRELIMINARY, expected_errors, print_table, there
-from krl.errors import FINE, Unusable, one_line
+from krl.errors import FINE, InputError, one_line
 from krl.output_files import check_files, write_json
 
 __all__ = ["app"]
@@ -52,8 +52,7 @@ def show_all(
     if asked:
         typer.echo("\nWaiting for a verdict (krl construct oracle)")
         print_table((), asked)
-    if json_file is not None:
-        write_json({"constructs": [row_of(c) for c in ledger.constructs]}, json_file)
+    write_json({"constructs": [row_of(c) for c in ledger.constructs]}, json_file)
     return FINE
 
 
@@ -96,11 +95,11 @@ def propose(
         record = json_of(read_bytes(survey).decode("utf-8"))
         typer.echo(one_line(f"wrote {write(record, cluster, number, out).as_posix()}"))
     except FileNotFoundError as error:
-        raise Unusable(f"{survey}: no such survey; run krl recover first") from error
+        raise InputError(f"{survey}: no such survey; run krl recover first") from error
     except (GrammarError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise Unusable(f"{survey}: not a survey that krl recover wrote") from error
+        raise InputError(f"{survey}: not a survey that krl recover wrote") from error
     except LedgerError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     return FINE
 
 

@@ -16,7 +16,7 @@ from krl.construct_ledger import (
     print_refusals,
     there,
 )
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JobsOrOneOption
 from krl.progress import progress_bar
 from support.files.atomic_write import write_atomic
@@ -93,7 +93,9 @@ def accept(
 
     home = _home()
     if shutil.which("java") is None:
-        raise Unusable("accept generates the parser, ANTLR needs Java, and no java is on the PATH")
+        raise InputError(
+            "accept generates the parser, ANTLR needs Java, and no java is on the PATH"
+        )
     with expected_errors():
         current = read_file(home.grammar)
         found = _weighed(Ledger.read(home.ledger), files, corpus, jobs, current)
@@ -128,7 +130,7 @@ def replay(
     from recovery.ledger.ledger import replay as replayed
 
     if check and (out is not None or until is not None):
-        raise Unusable("--check goes with neither --out nor --until")
+        raise InputError("--check goes with neither --out nor --until")
     with expected_errors():
         preliminary = preliminary_of(PRELIMINARY)
         ledger = Ledger.read(LEDGER)

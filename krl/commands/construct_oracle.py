@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.construct_ledger import LEDGER, expected_errors, print_table, there
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def oracle(
     from recovery.ledger.verdicts import RecordedOracle, write_bundle
 
     if sum(option is not None for option in (bundle, record, command)) > 1:
-        raise Unusable("only one of --bundle, --record and --command")
+        raise InputError("only one of --bundle, --record and --command")
     with expected_errors():
         ledger = Ledger.read(there(LEDGER))
         waiting = [c for c in ledger.constructs if reason_to_ask(c)]
@@ -68,19 +68,19 @@ def oracle(
             if command is not None:
                 words = shlex.split(command, posix=os.name != "nt")
                 if not words:
-                    raise Unusable("--command is empty")
+                    raise InputError("--command is empty")
                 return _ask(chosen, CommandOracle(words, name or Path(words[0]).name, timeout))
             if bundle is not None:
                 programs = [program for c in chosen for program in programs_of(c)]
                 if not programs:
-                    raise Unusable("nothing waits for a verdict: name constructs")
+                    raise InputError("nothing waits for a verdict: name constructs")
                 write_bundle(programs, bundle)
                 typer.echo(
                     one_line(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
                 )
                 return FINE
         except OracleError as error:
-            raise Unusable(str(error)) from error
+            raise InputError(str(error)) from error
     if not chosen:
         typer.echo("nothing waits for a verdict")
     print_table(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, one_line, shown
 
 if TYPE_CHECKING:
     from recovery.corpus.public import PublicSource
@@ -67,11 +67,11 @@ def fetch(
 
     sources = _sources()
     if shutil.which("git") is None:
-        raise Unusable("fetching needs git, and there is none on the PATH")
+        raise InputError("fetching needs git, and there is none on the PATH")
     if mirror is not None and not mirror.is_dir():
-        raise Unusable(f"{mirror}: no such folder of mirrors")
+        raise InputError(f"{mirror}: no such folder of mirrors")
     if out.exists() and not out.is_dir():
-        raise Unusable(f"{out}: not a folder")
+        raise InputError(f"{out}: not a folder")
     typer.echo(
         "These files belong to their authors, under the licence named here. Where none is stated,\n"
         "all rights are theirs: read and measure the files, and do not pass them on."
@@ -115,7 +115,7 @@ def synth(
     wanted = _bytes(size)
     folder = out or _SYNTHETIC / f"{wanted}-{seed}"
     if folder.exists() and not folder.is_dir():
-        raise Unusable(f"{folder}: not a folder")
+        raise InputError(f"{folder}: not a folder")
     with progress_bar("writing", wanted) as advance:
         written = write_cells(folder, wanted, seed, advance)
     cells = "1 cell" if written.cells == 1 else f"{written.cells} cells"
@@ -133,7 +133,7 @@ def _bytes(text: str) -> int:
     found = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?([kmg]?)b?", text.strip(), re.IGNORECASE)
     size = int(float(found[1]) * _UNITS[found[2].lower()]) if found else 0
     if size < 1:
-        raise Unusable(f"--size {text}: not a number of bytes such as 500000, 300kB or 10MB")
+        raise InputError(f"--size {text}: not a number of bytes such as 500000, 300kB or 10MB")
     return size
 
 
@@ -141,11 +141,11 @@ def _sources() -> "tuple[PublicSource, ...]":
     from recovery.corpus.public import SourceListError, read_sources
 
     if not CORPUS.is_dir():
-        raise Unusable(f"no {CORPUS} folder here: run this in a checkout of the workbench")
+        raise InputError(f"no {CORPUS} folder here: run this in a checkout of the workbench")
     try:
         return read_sources(CORPUS)
     except SourceListError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def _own_cells(programs: Path) -> Iterator[tuple[str, int, int]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, UNUSABLE, Unusable, one_line
+from krl.errors import BAD_INPUT, FINDINGS, FINE, InputError, one_line
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
@@ -56,13 +56,13 @@ def format_programs(
             counts[_format(found, check)] += 1
     except IngestError as error:
         if counts[_Outcome.SKIPPED]:  # that was told where it was met
-            return UNUSABLE
-        raise Unusable(str(error)) from error
+            return BAD_INPUT
+        raise InputError(str(error)) from error
     typer.echo(
         ", ".join(f"{counts[outcome]:,} {outcome.value}" for outcome in _Outcome if counts[outcome])
     )
     if counts[_Outcome.NOT_WRITTEN]:
-        return UNUSABLE
+        return BAD_INPUT
     return FINDINGS if counts[_Outcome.LEFT] or counts[_Outcome.WOULD_CHANGE] else FINE
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from krl.errors import FINDINGS, FINE, Unusable
+from krl.errors import FINDINGS, FINE, InputError
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -56,10 +56,9 @@ def fuzz(
         with progress_bar("running programs", programs) as bar:
             found = run(programs, seed, names, jobs or os.cpu_count() or 1, bar, scheduler)
     except WorkersError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     record = record_of(found, time.perf_counter() - begun)
-    if json_file is not None:
-        write_json(record, json_file, indent=1)
+    write_json(record, json_file, indent=1)
     _tell(found, record["seconds"])
     return FINDINGS if found.findings else FINE
 
@@ -71,12 +70,12 @@ def _chosen(wanted: list[str]) -> list[str]:
     there = available()
     for name in wanted:
         if name not in EXECUTORS:
-            raise Unusable(f"{name}: the executor is one of {', '.join(EXECUTORS)}")
+            raise InputError(f"{name}: the executor is one of {', '.join(EXECUTORS)}")
         if name not in there:
-            raise Unusable(f"{name}: this executor is not available here")
+            raise InputError(f"{name}: this executor is not available here")
     names = list(dict.fromkeys(wanted or there))
     if len(names) < 2:
-        raise Unusable("name two executors at least: one alone has nobody to be compared with")
+        raise InputError("name two executors at least: one alone has nobody to be compared with")
     return names
 
 

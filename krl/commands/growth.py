@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from krl.construct_ledger import expected_errors
-from krl.errors import FINE, Unusable, one_line
+from krl.errors import FINE, InputError, one_line
 from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
@@ -46,7 +46,7 @@ def growth(
 
     roots = corpus_or_ours(paths)
     if constructs is not None and not constructs.is_dir():
-        raise Unusable(f"{constructs}: not a folder")
+        raise InputError(f"{constructs}: not a folder")
     check_targets(out, json_file)
     with expected_errors():
         start = preliminary_of(GRAMMAR.with_name("preliminary.g4"))

@@ -6,7 +6,7 @@ from typing import Annotated, BinaryIO, cast
 
 import typer
 
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
 __all__ = ["lsp"]
@@ -41,11 +41,11 @@ class _Bounded:
         """A line of the head of a message."""
         line = self._stream.readline(_LONGEST_LINE)
         if len(line) == _LONGEST_LINE:
-            raise Unusable(f"a line of more than {_LONGEST_LINE:,} bytes before a message")
+            raise InputError(f"a line of more than {_LONGEST_LINE:,} bytes before a message")
         return line
 
     def read(self, size: int) -> bytes:
         """A message."""
         if size > _LARGEST:
-            raise Unusable(f"a message of {size:,} bytes; the largest may have {_LARGEST:,}")
+            raise InputError(f"a message of {size:,} bytes; the largest may have {_LARGEST:,}")
         return self._stream.read(size)

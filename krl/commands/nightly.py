@@ -18,7 +18,7 @@ from typing import IO, Annotated, Any
 
 import typer
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import write_json
 
 __all__ = ["nightly"]
@@ -74,12 +74,12 @@ def nightly(
 
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
-        raise Unusable(f"--date: {name!r} is not fit for the name of a folder")
+        raise InputError(f"--date: {name!r} is not fit for the name of a folder")
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
     steps = [one for one in _steps(paths or [Path("corpus")], folder, minutes) if _is_in(one, only)]
     if not steps:
-        raise Unusable(f"there is no step {', '.join(only or ())}")
+        raise InputError(f"there is no step {', '.join(only or ())}")
     made: dict[str, Any] = {}
     went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
     for step, how, seconds in _performed(steps, folder, minutes):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.errors import FINE, Unusable
+from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
 if TYPE_CHECKING:
@@ -88,17 +88,17 @@ def _arm(path: Path) -> "Arm":
 
     source = decode(read_bytes(path))
     if isinstance(source, str):
-        raise Unusable(f"{path}: not machine data: {source}")
+        raise InputError(f"{path}: not machine data: {source}")
     try:
         machine = read_machine(source.text, str(path))
     except (DataListError, MachineDataError) as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
     with expected_extras():
         from interp.robot.kinematics.solver import Arm
     try:
         return Arm(machine)
     except MachineDataError as error:
-        raise Unusable(f"{path}: {error}") from error
+        raise InputError(f"{path}: {error}") from error
 
 
 def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
@@ -128,13 +128,13 @@ def _read_points(path: Path) -> list[_Point]:
         text = read_bytes(path).decode("utf-8-sig")
         given = json.loads(text)
     except UnicodeDecodeError:
-        raise Unusable(f"{path}: not a text in UTF-8") from None
+        raise InputError(f"{path}: not a text in UTF-8") from None
     except json.JSONDecodeError as error:
-        raise Unusable(f"{path}:{error.lineno}: not JSON: {error.msg}") from None
+        raise InputError(f"{path}:{error.lineno}: not JSON: {error.msg}") from None
     except (RecursionError, ValueError):  # nested too deeply, or a number of too many digits
-        raise Unusable(f"{path}: not JSON that can be read") from None
+        raise InputError(f"{path}: not JSON that can be read") from None
     if not isinstance(given, list):
-        raise Unusable(f"{path}: not a list of points")
+        raise InputError(f"{path}: not a list of points")
     return [_point(f"{path}: point {place}", point) for place, point in enumerate(given, start=1)]
 
 
@@ -143,10 +143,10 @@ def _point(where: str, given: object) -> _Point:
 
     members = _members(where, given)
     if "id" not in members:
-        raise Unusable(f"{where} has no id")
+        raise InputError(f"{where} has no id")
     name = members["id"]
     if isinstance(name, bool) or not (isinstance(name, str | int) or _is_finite(name)):
-        raise Unusable(f"{where}: its id is neither a text nor a number")
+        raise InputError(f"{where}: its id is neither a text nor a number")
     where = f"{where} ({name!r})"
     pose = Pose.of(*(_number(where, members, key) for key in _COMPONENTS))
     turn = _bits(where, members, "t") if members.get("t") is not None else None
@@ -162,29 +162,29 @@ def _frame(where: str, given: object) -> "Pose | None":
         return None
     members = _members(where, given)
     if unknown := sorted(set(members) - set(_COMPONENTS)):
-        raise Unusable(f"{where}: {unknown[0]} is no component of a frame")
+        raise InputError(f"{where}: {unknown[0]} is no component of a frame")
     return Pose.of(*(_number(where, {key: 0} | dict(members), key) for key in _COMPONENTS))
 
 
 def _members(where: str, given: object) -> Mapping[str, Any]:
     """An object of JSON with its keys in lower case."""
     if not isinstance(given, dict):
-        raise Unusable(f"{where} is not an object with named members")
+        raise InputError(f"{where} is not an object with named members")
     return {key.lower(): value for key, value in given.items()}
 
 
 def _number(where: str, members: Mapping[str, Any], key: str) -> float:
     if key not in members:
-        raise Unusable(f"{where} has no {key}")
+        raise InputError(f"{where} has no {key}")
     value = members[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise Unusable(f"{where}: {key} is not a number")
+        raise InputError(f"{where}: {key} is not a number")
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise Unusable(f"{where}: {key} is not a finite number")
+        raise InputError(f"{where}: {key} is not a finite number")
     return number
 
 
@@ -195,7 +195,7 @@ def _is_finite(value: object) -> bool:
 def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
     number = _number(where, members, key)
     if not 0 <= number <= _LARGEST_INT or not number.is_integer():
-        raise Unusable(f"{where}: {key} is not a whole number from 0 to {_LARGEST_INT}")
+        raise InputError(f"{where}: {key} is not a whole number from 0 to {_LARGEST_INT}")
     return int(number)
 
 
@@ -208,5 +208,5 @@ def _listed(option: str, text: str) -> "Pose":
     except ValueError:
         numbers = []
     if len(numbers) != len(_COMPONENTS) or not all(map(math.isfinite, numbers)):
-        raise Unusable(f"{option} takes six numbers X,Y,Z,A,B,C, not {text!r}")
+        raise InputError(f"{option} takes six numbers X,Y,Z,A,B,C, not {text!r}")
     return Pose.of(*numbers)

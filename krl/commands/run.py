@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
-from krl.errors import FINDINGS, FINE, Unusable, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.extras import expected_extras
 from krl.output_files import check_files
 from krl.program_loading import load_program
@@ -154,18 +154,18 @@ def _expected_errors() -> Iterator[None]:
         with expected_extras():
             yield
     except RuntimeFailure as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def _text(file: Path) -> str:
     from support.files.untrusted import read_text
 
     if file.is_dir():
-        raise Unusable(f"{file}: a folder, not a file")
+        raise InputError(f"{file}: a folder, not a file")
     try:
         return read_text(file, "utf-8-sig")
     except UnicodeDecodeError:
-        raise Unusable(f"{file}: not a text in UTF-8") from None
+        raise InputError(f"{file}: not a text in UTF-8") from None
 
 
 def _check_targets(
@@ -174,20 +174,20 @@ def _check_targets(
     """Say now what would only fail after the run."""
     check_files(trace, path, html, video)
     if path is not None and path.suffix.lower() not in (".parquet", ".csv"):
-        raise Unusable(f"--path: {path} ends neither in .parquet nor in .csv")
+        raise InputError(f"--path: {path} ends neither in .parquet nor in .csv")
     if path is not None and robot is Robot.NONE:
-        raise Unusable(
+        raise InputError(
             "--path: the robot none takes no set-points; say --robot kinematic or mujoco"
         )
     if video is not None:
         from interp.robot.simulation.video import VideoError, check
 
         if robot is not Robot.MUJOCO:
-            raise Unusable("--video: only the MuJoCo arm can be filmed; say --robot mujoco")
+            raise InputError("--video: only the MuJoCo arm can be filmed; say --robot mujoco")
         try:
             check(video)
         except VideoError as error:
-            raise Unusable(str(error)) from error
+            raise InputError(str(error)) from error
 
 
 def _performed(program: "CheckedProgram", setup: "Setup", trace: Path | None) -> "Run":
@@ -250,7 +250,7 @@ def _film(done: "Run", target: Path) -> None:
         with filming as bar, atomic_path(target) as part:
             write_video(part, done.machine, done.path.times, shown, on_frame=bar)
     except VideoError as error:
-        raise Unusable(str(error)) from error
+        raise InputError(str(error)) from error
 
 
 def _write_path(columns: Mapping[str, Any], target: Path) -> None:

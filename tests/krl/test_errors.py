@@ -36,19 +36,19 @@ def test_status_is_what_the_command_returns(result: int | None, status: int) -> 
 @pytest.mark.parametrize(
     ("error", "line"),
     [
-        (errors.Unusable("there is nothing here"), "krl: there is nothing here"),
+        (errors.InputError("there is nothing here"), "krl: there is nothing here"),
         (FileNotFoundError(errno.ENOENT, "No such file", "a.src"), "krl: a.src: No such file"),
         (OSError("the disk is gone"), "krl: the disk is gone"),
         (PermissionError(), "krl: PermissionError"),
-        (errors.Unusable("two\n  lines\x1b[2J"), "krl: two lines\\x1b[2J"),
-        (errors.Unusable("x" * 9_000), f"krl: {'x' * 2_000} …"),
+        (errors.InputError("two\n  lines\x1b[2J"), "krl: two lines\\x1b[2J"),
+        (errors.InputError("x" * 9_000), f"krl: {'x' * 2_000} …"),
     ],
 )
 def test_expected_error_is_one_line(
     error: Exception, line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """An expected error is one line on stderr, without control characters, and status 2."""
-    assert errors.UNUSABLE == errors.run(_raising(error), ["go"])
+    assert errors.BAD_INPUT == errors.run(_raising(error), ["go"])
     assert ("", f"{line}\n") == capsys.readouterr()
 
 
@@ -63,7 +63,7 @@ def test_defect_is_one_line(
 ) -> None:
     """An error that nobody foresaw is one line that says so, and status 2."""
     monkeypatch.delenv("KRL_TRACEBACK", raising=False)
-    assert errors.UNUSABLE == errors.run(_raising(error), ["go"])
+    assert errors.BAD_INPUT == errors.run(_raising(error), ["go"])
     said = capsys.readouterr().err
     assert said.startswith(f"krl: a defect in krl itself, {type(error).__name__}: ")
     assert 1 == said.count("\n")
@@ -94,7 +94,7 @@ def test_wrong_usage_is_one_line(
     arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Wrong usage is one line that names the command to ask for help, and status 2."""
-    assert errors.UNUSABLE == errors.run(_app(lambda: None), arguments)
+    assert errors.BAD_INPUT == errors.run(_app(lambda: None), arguments)
     assert ("", f"{line}\n") == capsys.readouterr()
 
 

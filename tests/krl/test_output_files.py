@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from krl.errors import Unusable
+from krl.errors import InputError
 from krl.output_files import check_files, write_json
 
 
@@ -33,5 +33,5 @@ def test_places_where_no_file_can_be(tmp_path: Path) -> None:
     file.touch()
     check_files(None, file, tmp_path / "new" / "deep" / "a.json")
     for target, why in ((tmp_path, "a folder, not a file"), (file / "x" / "b", "is not a folder")):
-        with pytest.raises(Unusable, match=why):
+        with pytest.raises(InputError, match=why):
             check_files(None, target)
