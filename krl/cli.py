@@ -7,10 +7,12 @@ from typing import Annotated
 import typer
 
 from krl import errors
-from krl.commands import bench, construct, corpus, growth, recover, robot
+from krl.commands import corpus, growth, recover, robot
+from krl.commands.bench import app as bench
 from krl.commands.bytecode import assemble_file, compile_file, disassemble_image
 from krl.commands.check import check
-from krl.commands.conform import conform
+from krl.commands.conform.command import conform
+from krl.commands.construct import app as construct
 from krl.commands.format import format_programs
 from krl.commands.fuzz import fuzz
 from krl.commands.lsp import lsp

@@ -2,7 +2,7 @@
 
 ::
 
-    from krl import tables
+    from krl import dataframes as tables
 
     survey = tables.record("recover", "D:/backups", "--no-start")
     tables.clusters(survey).sort_values("unlocks", ascending=False)
@@ -30,7 +30,7 @@ __all__ = [
     "failures",
     "findings",
     "growth",
-    "nights",
+    "nightly_runs",
     "path",
     "proposals",
     "record",
@@ -147,21 +147,20 @@ def rules(conformed: Record | Path | str) -> pd.DataFrame:
     return _frame(_list(conformed, "rules"), columns)
 
 
-def nights(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
-    """A row a night: date, files that parse, verdicts, divergences, and every bench figure."""
-    from reports.history import read_nights
+def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
+    """A row a nightly run: date, files that parse, verdicts, divergences, every bench figure."""
+    from reports.history import read_history
 
     rows = []
-    for night in read_nights(Path(history)):
-        row = {"date": night.get("date")}
+    for run in read_history(Path(history)):
+        row = {"date": run.get("date")}
         for part in ("recover", "fuzz"):
-            figures = night.get(part) or {}
+            figures = run.get(part) or {}
             row |= {f"{part}.{k}": v for k, v in figures.items() if not isinstance(v, Mapping)}
         row |= {
-            f"conform.{k}": v
-            for k, v in ((night.get("conform") or {}).get("verdicts") or {}).items()
+            f"conform.{k}": v for k, v in ((run.get("conform") or {}).get("verdicts") or {}).items()
         }
-        row |= {f"bench.{k}": v for k, v in (night.get("bench") or {}).items()}
+        row |= {f"bench.{k}": v for k, v in (run.get("bench") or {}).items()}
         rows.append(row)
     return _frame(rows, ("date",), True)
 

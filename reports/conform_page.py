@@ -14,7 +14,7 @@ from support.files.atomic_write import write_atomic
 __all__ = ["write_conformance_page"]
 
 _MAX_CASES = 5_000
-_MAX_NIGHTS = 400
+_MAX_RUNS = 400
 _SCRIPTS = ("page", "conform-trend", "conform-timing", "conform-path", "conform-case", "conform")
 _CHECK = ("file", "line", "text", "state", "actual")
 
@@ -38,7 +38,7 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
             "rules": {
                 shown(text(rule, "id"), 20): _rule(rule) for rule in records(record, "rules")
             },
-            "nights": [_night(one) for one in records(record, "history")[-_MAX_NIGHTS:]],
+            "runs": [_run(one) for one in records(record, "history")[-_MAX_RUNS:]],
         }
     )
     script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
@@ -111,10 +111,10 @@ def _rule(rule: Record) -> Json:
     }
 
 
-def _night(night: Record) -> Json:
-    conform = nested(night, "conform") or night
+def _run(run: Record) -> Json:
+    conform = nested(run, "conform") or run
     return {
-        "date": shown(text(night, "date") or text(night, "generated"), 40),
+        "date": shown(text(run, "date") or text(run, "generated"), 40),
         "verdicts": {name: count(nested(conform, "verdicts"), name) for name in VERDICTS},
         "seconds": number(conform, "seconds"),
     }

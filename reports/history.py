@@ -1,7 +1,7 @@
-"""The nights so far, and what changed from one to the next.
+"""The nightly runs so far, and what changed from one to the next.
 
-``history.jsonl`` has a line a night. A line that cannot be read is passed over: a night that was
-cut off must not hide those before it.
+``history.jsonl`` has a line for each. A line that cannot be read is passed over: a run that was cut
+off must not hide those before it.
 """
 
 import hashlib
@@ -14,13 +14,13 @@ from typing import Any
 from reports.record_fields import Record, count, nested, number, records, text
 from support.files.atomic_write import write_atomic
 
-__all__ = ["append_night", "changes", "known_before", "night_of", "read_nights"]
+__all__ = ["append_run", "changes", "known_before", "nightly_record", "read_history"]
 
 Json = dict[str, Any]
 
-#: A figure of a bench that is so much worse than the night before is told; machines are noisy.
+#: A figure of a bench that is so much worse than in the run before is reported; machines are noisy.
 _WORSE = 1.25
-#: Events whose times are compared between nights.
+#: Events whose times are compared between nightly runs.
 _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
@@ -32,51 +32,51 @@ _SIZES = frozenset(
 )
 
 
-def read_nights(file: Path) -> list[Json]:
-    """The nights of a history, the oldest first; none where there is no file."""
+def read_history(file: Path) -> list[Json]:
+    """The nightly runs of a history, the oldest first; none where there is no file."""
     try:
         lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     except FileNotFoundError:
         return []
-    return [night for line in lines if (night := _night(line)) is not None]
+    return [run for line in lines if (run := _run(line)) is not None]
 
 
-def append_night(file: Path, night: Mapping[str, Any]) -> None:
+def append_run(file: Path, run: Mapping[str, Any]) -> None:
     """Write the history anew with one more line, whole or not at all.
 
-    A night of the same date, which was broken off or repeated, gives way to it. Raises OSError.
+    A run of the same date, which was broken off or repeated, gives way to it. Raises OSError.
     """
     before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
-    kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, night)]
-    kept.append(json.dumps(night, ensure_ascii=False, separators=(",", ":"), allow_nan=False))
+    kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, run)]
+    kept.append(json.dumps(run, ensure_ascii=False, separators=(",", ":"), allow_nan=False))
     write_atomic(file, "\n".join(kept) + "\n")
 
 
-def known_before(nights: Sequence[Json]) -> Json | None:
-    """What is known from nights together, the last of them first; ``None`` where there are none.
+def known_before(runs: Sequence[Json]) -> Json | None:
+    """What is known from all runs together, the last of them first; ``None`` where there are none.
 
-    A night that did some steps only does not hide what those before it told. ``of`` says by its
-    date which night each part is of.
+    A run of some steps only does not hide what those before it found. ``of`` has for each part the
+    date of the run that it is of.
     """
-    if not nights:
+    if not runs:
         return None
     known: Json = {"of": {}, "bench": {}}
-    for night in nights:
-        date = text(night, "date")
-        parts = {name: part for name, part in night.items() if isinstance(part, dict) and part}
+    for run in runs:
+        date = text(run, "date")
+        parts = {name: part for name, part in run.items() if isinstance(part, dict) and part}
         bench = {**known["bench"], **parts.pop("bench", {})}
         of = {**known["of"], **dict.fromkeys(parts, date)}
         known = {**known, **parts, "date": date, "bench": bench, "of": of}
     return known
 
 
-def _night(line: str) -> Json | None:
-    """The night of a line; ``None`` where it is damaged or has numbers that are not finite."""
+def _run(line: str) -> Json | None:
+    """The run of a line; ``None`` where it is damaged or has numbers that are not finite."""
     try:
-        night = json.loads(line, parse_float=_finite, parse_constant=_finite)
+        run = json.loads(line, parse_float=_finite, parse_constant=_finite)
     except (ValueError, RecursionError):
         return None
-    return night if isinstance(night, dict) else None
+    return run if isinstance(run, dict) else None
 
 
 def _finite(written: str) -> float:
@@ -86,17 +86,17 @@ def _finite(written: str) -> float:
     return value
 
 
-def _is_of(line: str, night: Mapping[str, Any]) -> bool:
-    other = _night(line)
-    return other is not None and other.get("date") == night.get("date")
+def _is_of(line: str, run: Mapping[str, Any]) -> bool:
+    other = _run(line)
+    return other is not None and other.get("date") == run.get("date")
 
 
-def night_of(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:
-    """The line of a night: from the records of its steps by name, and how each step went.
+def nightly_record(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:
+    """The line of a nightly run: from the records of its steps by name, and how each step went.
 
-    What a step would have told is left out where it has no record: nothing is known of it then.
+    A step without a record is left out: nothing is known of it.
     """
-    night: Json = {"date": date, "steps": dict(steps)}
+    run: Json = {"date": date, "steps": dict(steps)}
     for name, section in (
         ("recover", _surveyed),
         ("growth", _grown),
@@ -104,14 +104,14 @@ def night_of(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -
         ("fuzz", _fuzzed),
     ):
         if name in made:
-            night[name] = section(made[name])
-    night["bench"] = {
+            run[name] = section(made[name])
+    run["bench"] = {
         f"{name.removeprefix('bench-')}.{figure}": value
         for name, record in sorted(made.items())
         if name.startswith("bench-")
         for figure, value in _figures(record)
     }
-    return night
+    return run
 
 
 def _surveyed(record: Record) -> Json:
@@ -184,11 +184,11 @@ def _figures(record: Record) -> Iterator[tuple[str, float]]:
 def changes(
     before: Record | None, now: Record, old: Record | None = None, new: Record | None = None
 ) -> list[str]:
-    """What changed since the night before, a sentence each; nothing where nothing did.
+    """What changed since the nightly run before, a sentence each; nothing where nothing did.
 
-    ``old`` and ``new`` are the records of the judge of both nights, where they are still there:
-    they tell what a shift in time was. Of a first night it is told what is wrong. What one of the
-    nights knows nothing of, since its step has no record, has not changed.
+    ``old`` and ``new`` are the conformance records of both runs, where they are still there: they
+    have the times of events that were shifted. Of a first run everything that failed is reported.
+    What one of the runs has no record of has not changed.
     """
     if before is None:
         return ["this is the first night", *_steps({}, now), *_wrong(now)]
@@ -204,7 +204,7 @@ def changes(
 
 
 def _wrong(now: Record) -> Iterator[str]:
-    """What would be new failures, had there been a night before."""
+    """What would be new failures, had there been a nightly run before."""
     for name, (verdict, _) in _by_case(nested(now, "conform")).items():
         if verdict == "fail":
             yield f"new failure: {name}"

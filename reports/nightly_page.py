@@ -1,4 +1,4 @@
-"""The page of a night: what changed, how its steps went, and the curves over all nights."""
+"""The page of a nightly run: what changed, how its steps went, and curves over all runs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from reports.record_fields import Record, count, nested, number, records, text, 
 from reports.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_night_page"]
+__all__ = ["write_nightly_page"]
 
-_MAX_NIGHTS = 400
+_MAX_RUNS = 400
 _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
@@ -39,7 +39,7 @@ _IN_WORDS = {
     "arm.simulated_s_batch": "the same in batches, simulated s",
     "arm.inverse_per_s": "inverse kinematics, poses a second",
     "conform.share": "planted faults found, share",
-    "conform.failing_share": "planted faults that turn a night red, share",
+    "conform.failing_share": "planted faults that turn a nightly run red, share",
     "conform.cases_per_s": "cases a second",
     "mutation.detected": "damaged grammars noticed, share",
     "mutation.rule_top1": "right rule first, share",
@@ -63,8 +63,8 @@ class _Step:
 
 
 @dataclass(frozen=True, slots=True)
-class _NightView:
-    """``wrong`` says what makes it a bad night; ``bench`` has words, value, that of before."""
+class _NightlyView:
+    """``wrong`` says what failed; ``bench`` has words, value, that of before."""
 
     date: str
     wrong: tuple[str, ...]
@@ -72,50 +72,50 @@ class _NightView:
     changes: tuple[tuple[str, str], ...]
     steps: tuple[_Step, ...]
     bench: tuple[tuple[str, str, str], ...]
-    nights: int
+    runs: int
 
 
-def write_night_page(record: Mapping[str, Any], folder: Path) -> Path:
-    """Write ``folder``/index.html, the page of one night, and return its path.
+def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of one nightly run, and return its path.
 
     ``record`` is a line of the history with ``changes``, the sentences of
     `reports.history.changes`, and ``history``, the lines up to it; every field may be absent. The
     page appears whole or not at all. Raises OSError when the folder cannot be made or written.
     """
-    nights = records(record, "history")[-_MAX_NIGHTS:]
-    data = embedded_json({"nights": [_short(night) for night in nights]})
+    runs = records(record, "history")[-_MAX_RUNS:]
+    data = embedded_json({"runs": [_short(run) for run in runs]})
     scripts = "\n".join(source(f"{name}.js") for name in ("page", "nightly"))
     page = render(
         "nightly.html.j2",
         script=f'"use strict";\n{{\n{scripts}}}\n',
         styles=["page.css", "conform.css", "nightly.css"],
         data=data,
-        view=_view(record, nights),
+        view=_view(record, runs),
     )
     return write_atomic(folder / "index.html", page)
 
 
-def _short(night: Record) -> Json:
-    """A night as its curves need it."""
-    recover, fuzz = nested(night, "recover"), nested(night, "fuzz")
-    verdicts = nested(nested(night, "conform"), "verdicts")
+def _short(run: Record) -> Json:
+    """A nightly run as its curves need it."""
+    recover, fuzz = nested(run, "recover"), nested(run, "fuzz")
+    verdicts = nested(nested(run, "conform"), "verdicts")
     return {
-        "date": shown(text(night, "date"), 40),
+        "date": shown(text(run, "date"), 40),
         "parsed": share(count(recover, "parsed"), count(recover, "files")) if recover else None,
         "passed": count(verdicts, "pass") if verdicts else None,
         "failed": count(verdicts, "fail") if verdicts else None,
         "divergences": count(fuzz, "divergences") if fuzz else None,
         "bench": {
             _in_words(name): plain(value)
-            for name, value in nested(night, "bench").items()
+            for name, value in nested(run, "bench").items()
             if isinstance(value, int | float)
         },
     }
 
 
-def _view(record: Mapping[str, Any], nights: Sequence[Record]) -> _NightView:
-    before = nested(nights[-2], "bench") if len(nights) > 1 else {}
-    return _NightView(
+def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
+    before = nested(runs[-2], "bench") if len(runs) > 1 else {}
+    return _NightlyView(
         date=shown(text(record, "date"), 40),
         wrong=tuple(_wrong(record)),
         figures=tuple(_figures(record)),
@@ -128,7 +128,7 @@ def _view(record: Mapping[str, Any], nights: Sequence[Record]) -> _NightView:
             for name, value in nested(record, "bench").items()
             if isinstance(value, int | float)
         ),
-        nights=len(nights),
+        runs=len(runs),
     )
 
 
@@ -155,7 +155,7 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
 
 
 def _wrong(record: Mapping[str, Any]) -> Iterator[str]:
-    """Why it was no good night; nothing where it was one."""
+    """What failed, in words."""
     for name, step in nested(record, "steps").items():
         status = text(step, "status") if isinstance(step, Mapping) else ""
         if status not in _FINE:

@@ -1,4 +1,4 @@
-"""`krl nightly`: everything once, into one dated folder, and what changed since the last night."""
+"""`krl nightly`: all measurements in one dated folder, and what changed since the last run."""
 
 import os
 import re
@@ -25,7 +25,7 @@ __all__ = ["nightly"]
 
 _DEFAULT_OUT = Path("reports", "out", "nightly")
 _DEFAULT_HISTORY = Path("reports", "history.jsonl")
-#: Programs that the fuzzer runs in an hour's night; other lengths have their share.
+#: Programs that the fuzzer runs where there is an hour; other lengths have their share.
 _PROGRAMS = 12_000
 #: What moves the cursor and colours text on a terminal.
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
@@ -34,7 +34,7 @@ _TAIL = 4_000
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A command of the night; ``share`` of the night's length is the most that it may take."""
+    """A command; ``share`` is the largest part of the whole time that it may take."""
 
     name: str
     arguments: tuple[str, ...]
@@ -54,23 +54,23 @@ def nightly(
         Path, typer.Option(metavar="FILE", help="The history that gets one line more.")
     ] = _DEFAULT_HISTORY,
     minutes: Annotated[
-        float, typer.Option(min=1, metavar="N", help="How long the night may be.")
+        float, typer.Option(min=1, metavar="N", help="How long the run may take.")
     ] = 60,
     date: Annotated[
-        str | None, typer.Option(metavar="DATE", help="The night's name; default: today.")
+        str | None, typer.Option(metavar="DATE", help="The name of the run; default: today.")
     ] = None,
     only: Annotated[
         list[str] | None, typer.Option(metavar="STEP", help="Only this step; may be repeated.")
     ] = None,
 ) -> int:
-    """Survey, growth, conformance, fuzzing and benches; then tell what changed since last night.
+    """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
-    A night that was broken off goes on where it was: steps whose record is there are not done
-    again. On a terminal each step shows how far it is. Exit status 1 where a step failed or a case
-    did.
+    A run that was broken off goes on where it was: steps whose record is there are not done again.
+    On a terminal each step shows how far it is. Exit status 1 where a step failed or a case did.
     """
-    from reports import write_claims_page, write_night_page
-    from reports.history import append_night, changes, known_before, night_of, read_nights
+    from reports.claims_page import write_claims_page
+    from reports.history import append_run, changes, known_before, nightly_record, read_history
+    from reports.nightly_page import write_nightly_page
 
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
@@ -91,25 +91,25 @@ def nightly(
         record = _record(folder, step.name)
         if record is not None:
             made[step.name] = record
-    nights = [one for one in read_nights(history) if one.get("date") != name]
-    last = known_before(nights)
-    night = night_of(name, made, went)
+    runs = [one for one in read_history(history) if one.get("date") != name]
+    last = known_before(runs)
+    run = nightly_record(name, made, went)
     judged = "" if last is None else str(last["of"].get("conform", ""))
     before = _record(out / judged, "conform") if judged else None
-    told = changes(last, night, before, made.get("conform"))
-    append_night(history, night)
-    write_json({**night, "changes": told}, folder / "night.json")
+    told = changes(last, run, before, made.get("conform"))
+    append_run(history, run)
+    write_json({**run, "changes": told}, folder / "night.json")
     write_claims_page(made, folder / "claims")
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
-    night = {**night, "steps": {**night["steps"], **pages}}
-    page = write_night_page({**night, "changes": told, "history": [*nights, night]}, folder)
+    run = {**run, "steps": {**run["steps"], **pages}}
+    page = write_nightly_page({**run, "changes": told, "history": [*runs, run]}, folder)
     for line in told or ["nothing changed since the last night"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
     failed = any(one["status"] not in ("ok", "findings") for one in went.values())
     wrong = (
-        night.get("conform", {}).get("verdicts", {}).get("fail"),
-        night.get("fuzz", {}).get("divergences"),
+        run.get("conform", {}).get("verdicts", {}).get("fail"),
+        run.get("fuzz", {}).get("divergences"),
     )
     return FINDINGS if failed or any(wrong) else FINE
 
@@ -119,7 +119,7 @@ def _is_in(step: _Step, only: list[str] | None) -> bool:
 
 
 def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
-    """The commands of a night, the most telling ones first."""
+    """The commands of a nightly run, the most telling ones first."""
     given = tuple(map(str, paths))
     seed = folder.name.replace("-", "").replace(".", "")
     seed = seed if seed.isdigit() else "1"
@@ -181,18 +181,18 @@ def _say(seconds: float, told: str) -> None:
 
 
 def _recall(folder: Path, name: str) -> None:
-    """Let a step have the results that the last night kept; they are found by digest only."""
+    """Give a step the results that the last run kept; they are found by digest only."""
     kept = Path(name, "cache", "results.sqlite")
-    nights = sorted(folder.parent.glob(f"*/{kept.as_posix()}"), key=lambda one: one.stat().st_mtime)
-    if nights and not (folder / kept).exists():
+    runs = sorted(folder.parent.glob(f"*/{kept.as_posix()}"), key=lambda one: one.stat().st_mtime)
+    if runs and not (folder / kept).exists():
         (folder / kept).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(nights[-1], folder / kept)
+        shutil.copyfile(runs[-1], folder / kept)
 
 
 def _watched(command: list[str], seconds: float) -> tuple[int | None, str]:
-    """Run a command so long at most: its status, ``None`` where it was cut off, and its last line.
+    """Run a command for some seconds at most: its status, ``None`` if cut off, and its last line.
 
-    On a terminal what it tells of its progress is shown; elsewhere it tells none.
+    On a terminal its progress is shown.
     """
     is_seen = sys.stderr.isatty()
     size = shutil.get_terminal_size()
@@ -223,8 +223,8 @@ def _watched(command: list[str], seconds: float) -> tuple[int | None, str]:
 
 @contextmanager
 def _termination_raises() -> Iterator[None]:
-    """Whoever ends the night ends the step that it is in, and not the night alone."""
-    if current_thread() is not main_thread():  # nobody else may say what a signal does
+    """Let a signal that ends the run end the step that it is in, too."""
+    if current_thread() is not main_thread():  # only the main thread may set a handler
         yield
         return
 

@@ -65,7 +65,7 @@ def recover(
     from grammar.notation.generate import GRAMMAR
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load
-    from reports import write_survey_page
+    from reports.survey_page import write_survey_page
 
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)

@@ -233,7 +233,7 @@ def _write(
     if path is not None and done.path is not None:
         _write_path(done.path.columns(), path)
     if html is not None:
-        from reports import write_run_page
+        from reports.run_page import write_run_page
 
         write_run_page(_record(done, program, setup), html)
     if video is not None and done.path is not None:

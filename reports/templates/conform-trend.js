@@ -15,16 +15,16 @@ function whenResized(holder, draw) {
 
 function trend() {
   const holder = byId("trend");
-  const nights = page.nights;
-  if (!holder || nights.length < 2) return;
+  const runs = page.runs;
+  if (!holder || runs.length < 2) return;
   holder.style.minHeight = "120px";
-  const passed = nights.map((night) => night.verdicts.pass);
-  const failed = nights.map((night) => night.verdicts.fail);
+  const passed = runs.map((run) => run.verdicts.pass);
+  const failed = runs.map((run) => run.verdicts.fail);
   whenResized(holder, () => {
     const [width, height] = [holder.clientWidth || 900, 120];
     const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img" });
-    root.append(svg("title", {}, `${counted(nights.length, "nightly run")}; the last: ${passed.at(-1)} passed, ${failed.at(-1)} failed`));
-    const x = (n) => 50 + ((width - 110) * n) / (nights.length - 1);
+    root.append(svg("title", {}, `${counted(runs.length, "nightly run")}; the last: ${passed.at(-1)} passed, ${failed.at(-1)} failed`));
+    const x = (n) => 50 + ((width - 110) * n) / (runs.length - 1);
     const band = (values, top, bottom, name, label) => {
       const high = Math.max(...values, 1);
       const y = (value) => bottom - ((bottom - top) * value) / high;
@@ -35,8 +35,8 @@ function trend() {
     };
     band(passed, 6, 58, "pass-line", "passed");
     band(failed, 68, 100, "fail-line", "failed");
-    root.append(svg("text", { x: 50, y: 116 }, nights[0].date.slice(0, 10)),
-      svg("text", { x: width - 60, y: 116, "text-anchor": "end" }, nights.at(-1).date.slice(0, 10)));
+    root.append(svg("text", { x: 50, y: 116 }, runs[0].date.slice(0, 10)),
+      svg("text", { x: width - 60, y: 116, "text-anchor": "end" }, runs.at(-1).date.slice(0, 10)));
     holder.replaceChildren(root);
   });
 }

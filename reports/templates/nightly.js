@@ -1,9 +1,9 @@
-// Small curves over the nights, one a figure.
+// Small curves over the nightly runs, one a figure.
 
-const nights = page.nights;
+const runs = page.runs;
 const short = (value) => value.toLocaleString("en-GB", { maximumSignificantDigits: 4 });
 
-function nightCurve(title, values) {
+function runCurve(title, values) {
   const known = values.filter((value) => typeof value === "number");
   if (!known.length) return null;
   const [width, height] = [260, 64];
@@ -22,12 +22,12 @@ function nightCurve(title, values) {
   return el("figure", "chart", el("h3", "", title, el("span", "", short(known.at(-1)))), holder);
 }
 
-const benches = [...new Set(nights.flatMap((night) => Object.keys(night.bench)))];
+const benches = [...new Set(runs.flatMap((run) => Object.keys(run.bench)))];
 const curves = [
-  ["files that parse, share", nights.map((night) => night.parsed)],
-  ["runs of cases that pass", nights.map((night) => night.passed)],
-  ["runs of cases that fail", nights.map((night) => night.failed)],
-  ["divergences of the fuzzer", nights.map((night) => night.divergences)],
-  ...benches.map((name) => [name, nights.map((night) => night.bench[name] ?? null)]),
+  ["files that parse, share", runs.map((run) => run.parsed)],
+  ["runs of cases that pass", runs.map((run) => run.passed)],
+  ["runs of cases that fail", runs.map((run) => run.failed)],
+  ["divergences of the fuzzer", runs.map((run) => run.divergences)],
+  ...benches.map((name) => [name, runs.map((run) => run.bench[name] ?? null)]),
 ];
-document.getElementById("curves").append(...curves.map(([title, values]) => nightCurve(title, values)).filter(Boolean));
+document.getElementById("curves").append(...curves.map(([title, values]) => runCurve(title, values)).filter(Boolean));

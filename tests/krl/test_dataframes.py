@@ -50,4 +50,4 @@ def test_a_trace_and_nights_become_tables(tmp_path: Path) -> None:
     assert [0, 5] == dataframes.trace(trace)["t"].tolist()
     history = tmp_path / "h.jsonl"
     history.write_text('{"date":"2031-05-06","bench":{"vm.x":2.5}}\nbroken\n', encoding="utf-8")
-    assert [2.5] == dataframes.nights(history)["bench.vm.x"].tolist()
+    assert [2.5] == dataframes.nightly_runs(history)["bench.vm.x"].tolist()

@@ -16,8 +16,8 @@ from krl.commands import nightly
 DATE = "2026-01-02"
 
 
-def night(folder: Path, capsys: pytest.CaptureFixture[str], *steps: str) -> tuple[int, list[str]]:
-    """A night of some steps: its status, and what it told on stdout."""
+def run(folder: Path, capsys: pytest.CaptureFixture[str], *steps: str) -> tuple[int, list[str]]:
+    """A nightly run of some steps: its status, and what it told on stdout."""
     only = [word for step in steps for word in ("--only", step)]
     given = ["--date", DATE, "--out", str(folder), "--history", str(folder / "h.jsonl")]
     return main(["nightly", *given, *only]), capsys.readouterr().out.splitlines()
@@ -31,13 +31,13 @@ def steps_of(folder: Path) -> dict[str, str]:
 def test_what_is_there_is_not_done_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The record of a step is taken as it is; the night is one line, however often it went on."""
+    """The record of a step is taken as it is; the run is one line, however often it went on."""
     (tmp_path / DATE).mkdir()
     record = tmp_path / DATE / "fuzz.json"
     record.write_text('{"programs": 7, "seed": 1, "differences": []}', encoding="utf-8")
     before = record.stat().st_mtime_ns
     for _ in range(2):
-        assert 0 == night(tmp_path, capsys, "fuzz")[0]
+        assert 0 == run(tmp_path, capsys, "fuzz")[0]
     assert before == record.stat().st_mtime_ns
     assert {"fuzz": "ok"} == steps_of(tmp_path)
     [line] = (tmp_path / "h.jsonl").read_text(encoding="utf-8").splitlines()
@@ -51,20 +51,20 @@ def test_a_damaged_record_is_told(
     """A step whose record cannot be read has failed; it is not taken for done."""
     (tmp_path / DATE).mkdir()
     (tmp_path / DATE / "fuzz.json").write_bytes(content)
-    assert 1 == night(tmp_path, capsys, "fuzz")[0]
+    assert 1 == run(tmp_path, capsys, "fuzz")[0]
     assert {"fuzz": "failed: fuzz.json there is damaged"} == steps_of(tmp_path)
 
 
 def test_a_damaged_history_hides_no_night(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Lines that are no nights are passed over, and the night of before is compared with."""
+    """Lines that are no runs are passed over, and the one before is compared with."""
     (tmp_path / DATE).mkdir()
     (tmp_path / DATE / "fuzz.json").write_text('{"differences": []}', encoding="utf-8")
     old = json.dumps({"date": "2026-01-01", "fuzz": {"divergences": 3}})
     damaged = f'{old}\n{"[" * 90_000}\n{{"date": \n\x00\x1b[31m\n'
     (tmp_path / "h.jsonl").write_text(damaged, encoding="utf-8")
-    status, out = night(tmp_path, capsys, "fuzz")
+    status, out = run(tmp_path, capsys, "fuzz")
     assert (0, "fixed: fuzz: divergences 3 → 0") == (status, out[-2])
 
 
@@ -75,19 +75,19 @@ def test_a_divergence_of_the_fuzzer_is_a_bad_night(
     (tmp_path / DATE).mkdir()
     found = {"programs": 9, "seed": 1, "differences": [{"program": 4, "executor": "vm"}]}
     (tmp_path / DATE / "fuzz.json").write_text(json.dumps(found), encoding="utf-8")
-    status, out = night(tmp_path, capsys, "fuzz")
+    status, out = run(tmp_path, capsys, "fuzz")
     assert (1, "fuzz: 1 divergence") == (status, out[-2])
 
 
 def test_a_night_that_goes_on_knows_how_its_steps_went(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status and seconds of a step that was done before the night broke off are kept."""
+    """Status and seconds of a step that was done before the nightly run broke off are kept."""
     (tmp_path / DATE).mkdir()
     (tmp_path / DATE / "fuzz.json").write_text('{"differences": []}', encoding="utf-8")
     kept = {"fuzz": {"status": "findings", "seconds": 12.5, "page": ""}}
     (tmp_path / DATE / "steps.json").write_text(json.dumps(kept), encoding="utf-8")
-    assert 0 == night(tmp_path, capsys, "fuzz")[0]
+    assert 0 == run(tmp_path, capsys, "fuzz")[0]
     record = json.loads((tmp_path / DATE / "night.json").read_text(encoding="utf-8"))
     assert kept == record["steps"]
 
@@ -119,22 +119,22 @@ def test_a_step_that_takes_too_long_is_cut_off() -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
 def test_a_night_that_is_ended_ends_its_step(tmp_path: Path) -> None:
-    """Nothing of a night that was told to end goes on working."""
+    """Nothing of a nightly run that was told to end goes on working."""
     alive = tmp_path / "alive"
     step = f"import time, pathlib; time.sleep(3); pathlib.Path({str(alive)!r}).touch()"
-    night = (
+    run = (
         "import os, signal, sys, threading; from krl.commands.nightly import _watched;"
         " threading.Timer(1, os.kill, (os.getpid(), signal.SIGTERM)).start();"
         f" _watched([sys.executable, '-c', {step!r}], 60)"
     )
-    done = subprocess.run([sys.executable, "-c", night], check=False, timeout=60)
+    done = subprocess.run([sys.executable, "-c", run], check=False, timeout=60)
     assert 128 + signal.SIGTERM == done.returncode
     time.sleep(3)
     assert not alive.exists()
 
 
 def test_results_of_the_last_night_are_at_hand(tmp_path: Path) -> None:
-    """A step of a new night begins with the results that the one before has kept."""
+    """A step of a new nightly run begins with the results that the one before has kept."""
     old = tmp_path / "2026-01-01" / "recover" / "cache" / "results.sqlite"
     old.parent.mkdir(parents=True)
     old.write_bytes(b"kept")

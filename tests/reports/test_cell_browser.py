@@ -1,4 +1,4 @@
-"""The pages of a run, of the judge and of a night in a real browser."""
+"""The pages of a run, of the judge and of a nightly run in a real browser."""
 
 import math
 from collections.abc import Callable
@@ -9,7 +9,9 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 
-from reports import write_conformance_page, write_night_page, write_run_page
+from reports.conform_page import write_conformance_page
+from reports.nightly_page import write_nightly_page
+from reports.run_page import write_run_page
 
 pytestmark = pytest.mark.browser
 
@@ -197,8 +199,8 @@ def test_cases_are_filtered_by_verdict_and_words(
 def test_the_page_of_a_night_draws_its_curves(
     browser: webdriver.Chrome, opened: Opened, tmp_path: Path
 ) -> None:
-    """Each figure has a curve over the nights; what changed is text and no more."""
-    nights = [
+    """Each figure has a curve over the nightly runs; what changed is text and no more."""
+    runs = [
         {
             "date": f"2031-05-0{n}",
             "bench": {"vm.ratio": 2.0 + n},
@@ -206,8 +208,8 @@ def test_the_page_of_a_night_draws_its_curves(
         }
         for n in (1, 2)
     ]
-    record = {**nights[-1], "changes": [f"new failure: {HOSTILE}"], "history": nights}
-    opened(write_night_page(record, tmp_path), "")
+    record = {**runs[-1], "changes": [f"new failure: {HOSTILE}"], "history": runs}
+    opened(write_nightly_page(record, tmp_path), "")
     titles = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#curves h3")]
     assert any(title.startswith("vm.ratio") for title in titles)
     assert "Nothing failed" == browser.find_element(By.CSS_SELECTOR, ".top .grammar").text
@@ -229,7 +231,7 @@ def test_the_page_of_a_bad_night_says_why(
         "conform": {"verdicts": {"pass": 5, "fail": 2}},
         "fuzz": {"programs": 7, "divergences": 1},
     }
-    opened(write_night_page(record, tmp_path), "")
+    opened(write_nightly_page(record, tmp_path), "")
     told = "step recover: cut off after 9 minutes; 2 runs of cases failed; 1 divergence of the"
     assert browser.find_element(By.CSS_SELECTOR, ".top .bad").text.startswith(told)
     assert _is_sound(browser)

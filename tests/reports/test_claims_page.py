@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from reports import write_claims_page
+from reports.claims_page import write_claims_page
 from reports.claims_view import claims_view
 
 RECORDS: dict[str, dict[str, Any]] = {
@@ -109,7 +109,7 @@ def test_what_was_left_out_has_the_verdict_of_its_executor() -> None:
 
 
 def test_the_simulated_arm_has_a_record_of_its_own() -> None:
-    """A night runs it apart from the other robots, and its verdict is shown."""
+    """A nightly run runs it apart from the other robots, and its verdict is shown."""
     result = {"executor": "native", "robot": "mujoco", "verdict": "pass"}
     arm = {"cases": [{"name": "motion/tracking_lin", "title": "It tracks", "results": [result]}]}
     told = {one.case: one for one in claims_view({**RECORDS, "conform-arm": arm}).left_out}

@@ -9,7 +9,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
 
-from reports import write_growth_page
+from reports.growth_page import write_growth_page
 
 pytestmark = pytest.mark.browser
 

@@ -1,10 +1,10 @@
-"""The history of nights, and what changed from one to the next."""
+"""The history of nightly runs, and what changed from one to the next."""
 
 from pathlib import Path
 from typing import Any
 
-from reports import write_night_page
-from reports.history import append_night, changes, known_before, night_of, read_nights
+from reports.history import append_run, changes, known_before, nightly_record, read_history
+from reports.nightly_page import write_nightly_page
 
 
 def _case(name: str, verdict: str, time: int = 1_000) -> dict[str, Any]:
@@ -16,16 +16,16 @@ def _conform(*cases: dict[str, Any]) -> dict[str, Any]:
     return {"verdicts": {"pass": len(cases)}, "cases": list(cases)}
 
 
-def _night(date: str, conform: dict[str, Any], **bench: float) -> dict[str, Any]:
+def _run(date: str, conform: dict[str, Any], **bench: float) -> dict[str, Any]:
     made = {"conform": conform, "bench-vm": bench, "recover": {"files": 3, "parsed": 3}}
-    return night_of(date, made, {"conform": {"status": "ok", "seconds": 1.0}})
+    return nightly_record(date, made, {"conform": {"status": "ok", "seconds": 1.0}})
 
 
 def test_failures_fixes_and_vanished_cases_are_told() -> None:
     """Only what changed is told, a sentence each."""
     old = _conform(_case("a/x", "pass"), _case("a/y", "fail"), _case("a/z", "pass"))
     new = _conform(_case("a/x", "fail"), _case("a/y", "pass"), _case("a/w", "pass"))
-    told = changes(_night("1", old), _night("2", new), old, new)
+    told = changes(_run("1", old), _run("2", new), old, new)
     assert [
         "new failure: a/x: pass → fail",
         "fixed: a/y: fail → pass",
@@ -35,15 +35,15 @@ def test_failures_fixes_and_vanished_cases_are_told() -> None:
 
 
 def test_the_same_night_again_changes_nothing() -> None:
-    """Two equal nights differ in nothing."""
+    """Two equal nightly runs differ in nothing."""
     conform = _conform(_case("a/x", "pass"))
-    assert [] == changes(_night("1", conform, ratio=2.0), _night("2", conform, ratio=2.0))
+    assert [] == changes(_run("1", conform, ratio=2.0), _run("2", conform, ratio=2.0))
 
 
 def test_shifted_times_are_told_with_both_times() -> None:
     """An output that comes a cycle later is named."""
     old, new = _conform(_case("a/x", "pass", 12_000)), _conform(_case("a/x", "pass", 24_000))
-    (told,) = changes(_night("1", old), _night("2", new), old, new)
+    (told,) = changes(_run("1", old), _run("2", new), old, new)
     assert told.startswith("timing shifted: a/x: out $OUT at 0.012000 s")
     assert told.endswith("at 0.024000 s")
 
@@ -51,8 +51,8 @@ def test_shifted_times_are_told_with_both_times() -> None:
 def test_a_slower_bench_is_told_by_its_ratio() -> None:
     """Noise below a quarter is not told; a cost counts the other way round."""
     conform = _conform()
-    before = _night("1", conform, native_vs_tree=300.0, crossing_us=2.0, vm_vs_tree=6.0)
-    after = _night("2", conform, native_vs_tree=200.0, crossing_us=3.0, vm_vs_tree=5.5)
+    before = _run("1", conform, native_vs_tree=300.0, crossing_us=2.0, vm_vs_tree=6.0)
+    after = _run("2", conform, native_vs_tree=200.0, crossing_us=3.0, vm_vs_tree=5.5)
     assert [
         "slower: vm.native_vs_tree 300 → 200 (1.50 times worse)",
         "slower: vm.crossing_us 2 → 3 (1.50 times worse)",
@@ -61,20 +61,20 @@ def test_a_slower_bench_is_told_by_its_ratio() -> None:
 
 def test_what_a_night_did_not_do_has_not_changed() -> None:
     """A step without a record tells nothing: no case vanished, no file is gone."""
-    whole = _night("1", _conform(_case("a/x", "pass")), ratio=2.0)
-    part = night_of("2", {"fuzz": {"programs": 5, "differences": []}}, {})
+    whole = _run("1", _conform(_case("a/x", "pass")), ratio=2.0)
+    part = nightly_record("2", {"fuzz": {"programs": 5, "differences": []}}, {})
     assert [] == changes(whole, part)
     assert "conform" not in part
 
 
 def test_a_night_of_some_steps_hides_none_before_it() -> None:
-    """The next night is compared with the last one that knows of each part."""
-    whole = _night("1", _conform(_case("a/x", "pass")), ratio=2.0)
-    part = night_of("2", {"fuzz": {"programs": 5, "differences": []}}, {})
+    """The next nightly run is compared with the last one that knows of each part."""
+    whole = _run("1", _conform(_case("a/x", "pass")), ratio=2.0)
+    part = nightly_record("2", {"fuzz": {"programs": 5, "differences": []}}, {})
     known = known_before([whole, part])
     assert known is not None
     assert ("1", "2") == (known["of"]["conform"], known["of"]["fuzz"])
-    told = changes(known, _night("3", _conform(_case("a/x", "fail")), ratio=1.0))
+    told = changes(known, _run("3", _conform(_case("a/x", "fail")), ratio=1.0))
     assert [
         "new failure: a/x: pass → fail",
         "slower: vm.ratio 2 → 1 (2.00 times worse)",
@@ -82,7 +82,7 @@ def test_a_night_of_some_steps_hides_none_before_it() -> None:
 
 
 def test_a_first_night_tells_what_is_wrong() -> None:
-    """Nothing is new in a first night, but failures are no secret."""
+    """Nothing is new in a first nightly run, but failures are no secret."""
     made = {
         "conform": _conform(_case("a/x", "fail"), _case("a/y", "pass")),
         "fuzz": {"programs": 5, "differences": [{}, {}]},
@@ -93,30 +93,30 @@ def test_a_first_night_tells_what_is_wrong() -> None:
         "step recover: cut off after 9 minutes",
         "new failure: a/x",
         "fuzz: 2 divergences",
-    ] == changes(None, night_of("1", made, steps))
+    ] == changes(None, nightly_record("1", made, steps))
 
 
 def test_damaged_lines_hide_no_night(tmp_path: Path) -> None:
-    """A line cut off is passed over, kept, and a repeated night replaces its line."""
+    """A line cut off is passed over, kept, and a repeated nightly run replaces its line."""
     file = tmp_path / "history.jsonl"
-    append_night(file, {"date": "1"})
+    append_run(file, {"date": "1"})
     file.write_text(file.read_text(encoding="utf-8") + '{"date": "2", "con', encoding="utf-8")
-    append_night(file, {"date": "3", "try": 1})
-    append_night(file, {"date": "3", "try": 2})
-    assert [{"date": "1"}, {"date": "3", "try": 2}] == read_nights(file)
+    append_run(file, {"date": "3", "try": 1})
+    append_run(file, {"date": "3", "try": 2})
+    assert [{"date": "1"}, {"date": "3", "try": 2}] == read_history(file)
     assert '{"date": "2", "con' in file.read_text(encoding="utf-8")
 
 
 def test_a_night_with_numbers_that_are_none_is_damaged(tmp_path: Path) -> None:
-    """No record may hold them, so nothing that is made of such a night could be written."""
+    """No record may hold them, so nothing that is made of such a nightly run could be written."""
     file = tmp_path / "history.jsonl"
     file.write_text('{"date": "1", "x": 1e999}\n{"date": "2", "x": NaN}\n', encoding="utf-8")
-    append_night(file, {"date": "3"})
-    assert [{"date": "3"}] == read_nights(file)
+    append_run(file, {"date": "3"})
+    assert [{"date": "3"}] == read_history(file)
 
 
 def test_figures_beyond_measure_and_events_of_no_kind_count_nothing(tmp_path: Path) -> None:
-    """A damaged record still gives a night, what changed, and a page."""
+    """A damaged record still gives a nightly run, what changed, and a page."""
     events = [{"kind": [], "t": 5}, {"kind": "out", "t": 10**400}]
     case = {"name": "a/b", "verdict": "pass", "results": [{"events": events}]}
     made: dict[str, Any] = {
@@ -124,20 +124,18 @@ def test_figures_beyond_measure_and_events_of_no_kind_count_nothing(tmp_path: Pa
         "conform": {"cases": [case], "seconds": 10**400},
         "bench-vm": {"ratio": 10**400},
     }
-    night = night_of("1", made, {})
-    assert (
-        0 == night["recover"]["files"] == night["recover"]["parsed"] == night["bench"]["vm.ratio"]
-    )
-    worse = {**night, "bench": {"vm.ratio": 10**400}}
-    assert [] == changes(worse, night, made["conform"], made["conform"])
-    write_night_page({**night, "changes": [], "history": [night]}, tmp_path)
+    run = nightly_record("1", made, {})
+    assert 0 == run["recover"]["files"] == run["recover"]["parsed"] == run["bench"]["vm.ratio"]
+    worse = {**run, "bench": {"vm.ratio": 10**400}}
+    assert [] == changes(worse, run, made["conform"], made["conform"])
+    write_nightly_page({**run, "changes": [], "history": [run]}, tmp_path)
 
 
 def test_the_page_of_a_night_shows_what_changed(tmp_path: Path) -> None:
     """Changes stand on the page, foreign text made harmless."""
-    night = _night("2031-05-06", _conform(_case("a/x", "pass")))
+    run = _run("2031-05-06", _conform(_case("a/x", "pass")))
     told = ["new failure: a/<script>alert(1)</script>: pass → fail"]
-    page = write_night_page({**night, "changes": told, "history": [night]}, tmp_path)
+    page = write_nightly_page({**run, "changes": told, "history": [run]}, tmp_path)
     text = page.read_text(encoding="utf-8")
     assert "new failure: a/&lt;script&gt;" in text
     assert "<script>alert(1)" not in text

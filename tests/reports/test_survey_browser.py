@@ -11,7 +11,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
-from reports import write_survey_page
+from reports.survey_page import write_survey_page
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 pytestmark = pytest.mark.browser

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from reports import write_survey_page
+from reports.survey_page import write_survey_page
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 LOADING_ATTRIBUTES = {"src", "srcset", "href", "data", "action", "formaction", "poster"}

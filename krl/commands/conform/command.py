@@ -86,14 +86,14 @@ def conform(
         if lint:
             return _lint(words)
         if metamorphic is not None:
-            from krl.commands.conform_laws import check_laws
+            from krl.commands.conform.laws import check_laws
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
         if fault is None or list_ or words[:1] == ["import"]:
             return _conform(
                 words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
             )
-        from krl.commands.conform_fault import planted
+        from krl.commands.conform.planted_fault import planted
 
         if scheduler is not None or jobs not in (None, 1):
             raise InputError(

@@ -14,7 +14,7 @@ from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
-__all__ = ["bench_vm"]
+__all__ = ["vm"]
 
 _HEADINGS = {"tree": "tree", "vm": "Python", "native": "C", "lua": "Lua"}
 _AIMS = (
@@ -25,7 +25,7 @@ _AIMS = (
 )
 
 
-def bench_vm(
+def vm(
     kernels: Annotated[
         str,
         typer.Option(metavar="NAME,…", help="Which kernels; default: all of them."),

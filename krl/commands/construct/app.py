@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from krl.commands import construct_accept, construct_oracle
+from krl.commands.construct.accept import accept, replay, weigh
+from krl.commands.construct.oracle import oracle
 from krl.construct_ledger import LEDGER, PRELIMINARY, expected_errors, print_table, there
 from krl.errors import FINE, InputError, one_line
 from krl.output_files import check_files, write_json
@@ -103,7 +104,7 @@ def propose(
     return FINE
 
 
-app.command("try")(construct_accept.weigh)
-app.command("accept")(construct_accept.accept)
-app.command("replay")(construct_accept.replay)
-app.command("oracle")(construct_oracle.oracle)
+app.command("try")(weigh)
+app.command("accept")(accept)
+app.command("replay")(replay)
+app.command("oracle")(oracle)

@@ -1,0 +1,1 @@
+"""`krl bench`: figures of the tools themselves."""

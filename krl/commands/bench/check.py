@@ -1,0 +1,76 @@
+"""`krl bench check`: what checking a corpus costs."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Console
+
+from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.errors import FINE, InputError
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.output_files import check_files, write_json
+from krl.progress import progress_bar
+from krl.text_table import figures
+
+__all__ = ["check"]
+
+
+def check(
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
+    sizes: SizesOption = "1,10",
+) -> int:
+    """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more."""
+    from recovery.bench.check_speed import measure_check, steps
+    from support.files.discovery import IngestError
+
+    check_files(json_file)
+    wanted = sizes_of(sizes)
+    roots = programs_or_ours(paths)
+    try:
+        with progress_bar("measuring", steps(wanted)) as advance:
+            record = measure_check(roots, sizes=wanted, on_step=advance)
+    except IngestError as error:
+        raise InputError(str(error)) from error
+    record = {"bench": "check", **record}
+    write_json(record, json_file, indent=1)
+    _print(record)
+    return FINE
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    counts = record["findings"]
+    told = ", ".join(
+        f"{counts[word]:,} {word}s" for word in ("error", "warning", "note") if word in counts
+    )
+    console.print(
+        f"{record['files']:,} files of {record['projects']:,} projects, "
+        f"{record['bytes'] / MB:.2f} MB; {told or 'no findings'}; Python {record['python']}",
+        soft_wrap=True,
+    )
+    console.print(
+        figures(
+            ("figure", "", "aim"),
+            [
+                ("first check", f"{record['s_per_mb']:.2f} s/MB", "6 s/MB"),
+                ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
+            ],
+        )
+    )
+    console.print(phases_table(record))
+    if record["scaling"]:
+        rows = [
+            (
+                f"{entry['bytes'] / MB:,.1f} MB",
+                f"{entry['files']:,}",
+                f"{entry['seconds']:.1f}",
+                f"{entry['s_per_mb']:.2f} s/MB",
+                peak(entry),
+            )
+            for entry in record["scaling"]
+        ]
+        console.print(
+            figures(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows)
+        )
+        print_growth(console, record, "cost of a MB")

@@ -1,0 +1,120 @@
+"""`krl bench recover`: how fast a corpus is surveyed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.errors import FINE, InputError
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.output_files import check_files, write_json
+from krl.progress import progress_bar
+from krl.text_table import figures
+
+__all__ = ["recover"]
+
+
+def recover(
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
+    sizes: SizesOption = "1,10,100",
+) -> int:
+    """Measure the survey: bytes a second, beside ANTLR, unchanged, and as the corpus grows.
+
+    One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
+    """
+    from grammar.notation.g4 import read_file
+    from grammar.notation.generate import GRAMMAR
+    from grammar.notation.model import GrammarError
+    from recovery.bench.survey_speed import measure, steps
+    from support.files.discovery import IngestError
+
+    check_files(json_file)
+    wanted = sizes_of(sizes)
+    roots = programs_or_ours(paths)
+    try:
+        grammar = read_file(GRAMMAR)
+        with progress_bar("measuring", steps(wanted)) as advance:
+            record = measure(roots, grammar, sizes=wanted, on_step=advance)
+    except (GrammarError, IngestError) as error:
+        raise InputError(str(error)) from error
+    record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
+    write_json(record, json_file, indent=1)
+    _print(record)
+    return FINE
+
+
+def _print(record: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    console.print(
+        f"{record['files']:,} files, {record['bytes'] / MB:.2f} MB; {record['parsed']:,} parse; "
+        f"{record['failures']:,} failures; Python {record['python']}",
+        soft_wrap=True,
+    )
+    console.print(_speeds(record))
+    console.print(phases_table(record))
+    console.print(_beside_antlr(record["antlr"]))
+    if record["scaling"]:
+        console.print(_scaling(record))
+        print_growth(console, record, "speed")
+
+
+def _speeds(record: Mapping[str, Any]) -> Table:
+    ratio = record["ratio_vs_antlr_python"]
+    return figures(
+        ("figure", "", "aim"),
+        [
+            ("all failures, cold", _rate(record["bytes_per_s"]), "2 MB/s"),
+            ("all failures, warm", _rate(record["warm_bytes_per_s"]), ""),
+            ("accept or reject, cold", _rate(record["recognise_bytes_per_s"]), ""),
+            ("against ANTLR's Python runtime", _times(ratio), "20 times"),
+            ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", "0.1 s/MB"),
+        ],
+    )
+
+
+def _beside_antlr(antlr: Mapping[str, Any]) -> Table:
+    rows = []
+    for name, label in (("valid", "valid, yes or no"), ("failing", "failing, all errors")):
+        side = antlr[name]
+        rows.append(
+            (
+                label,
+                f"{side['files']:,}",
+                _in_mb(side["bytes"]),
+                f"{side['tokens']:,}",
+                _in_mb(side["antlr_bytes_per_s"]),
+                _in_mb(side["our_bytes_per_s"]),
+                _times(side["ratio"]),
+            )
+        )
+    return figures(("beside ANTLR, MB/s", "files", "MB", "tokens", "ANTLR", "ours", ""), rows)
+
+
+def _scaling(record: Mapping[str, Any]) -> Table:
+    rows = [
+        (
+            f"{entry['bytes'] / MB:,.1f} MB",
+            f"{entry['files']:,}",
+            f"{entry['seconds']:.1f}",
+            _rate(entry["bytes_per_s"]),
+            peak(entry),
+            f"{entry['cores']:,}",
+        )
+        for entry in record["scaling"]
+    ]
+    return figures(("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"), rows)
+
+
+def _rate(bytes_per_s: float) -> str:
+    return f"{_in_mb(bytes_per_s)} MB/s"
+
+
+def _in_mb(size: float | None) -> str:
+    return "–" if size is None else f"{size / MB:.2f}"
+
+
+def _times(ratio: float | None) -> str:
+    return "–" if ratio is None else f"{ratio:.1f} times"

@@ -1,0 +1,1 @@
+"""`krl conform`: cases, metamorphic laws and planted faults."""

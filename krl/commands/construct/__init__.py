@@ -1,0 +1,1 @@
+"""`krl construct`: constructs on their way into the grammar."""
