@@ -19,7 +19,7 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.robots import ROBOTS, make_robot
-from interp.robot.simulation.tracking import Following
+from interp.robot.simulation.tracking import Tracking
 
 CYCLE = 12_000  # µs: the interpolation cycle
 HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
@@ -42,7 +42,7 @@ def main(robot_name: str) -> None:
     arm = PlannedArm(machine, HOME)
     core = ControlCore(arm, switch, CYCLE)
     robot = make_robot(next(name for name in ROBOTS if name == robot_name), machine, CYCLE)
-    following = Following(arm, robot, machine, CYCLE, HOME)
+    tracking = Tracking(arm, robot, machine, CYCLE, HOME)
 
     torch = Placement(base=Pose.of(x=450, y=-100, z=300), tool=Pose.of(z=150))
     motions = Motions(
@@ -66,15 +66,15 @@ def main(robot_name: str) -> None:
         .link(last_cut.cancelled, "start", gas_off)
     )
     core.load(0, work)
-    following.placed(0, torch)
+    tracking.placed(0, torch)
     while (time := core.next_time()) is not None:
         for event in core.run_until(time):
             if isinstance(event.command, MotionCommand):
                 say(event.time, f"{event.command} {event.what}")
-        following.advance(time)
-    following.settle(core.now)
+        tracking.advance(time)
+    tracking.settle(core.now)
 
-    record = following.record()
+    record = tracking.record()
     points = record.points if record.points_measured is None else record.points_measured
     if len(points) > 1:
         x, y, z, *_ = points[-1]

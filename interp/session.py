@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal
 
-from interp.controller.controller import HOUR, Controller, Outcome
+from interp.controller.controller import Controller
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
+from interp.controller.scheduler import HOUR, RunOutcome
 from interp.controller.trace import Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
 from interp.port.requests import Value
@@ -25,7 +26,7 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDat
 from interp.robot.models import default_machine, model_file
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.robots import Robot, RobotName, make_robot
-from interp.robot.simulation.tracking import Following, PathRecord
+from interp.robot.simulation.tracking import PathRecord, Tracking
 from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
@@ -75,7 +76,7 @@ class Run:
     ``start`` are those that were used.
     """
 
-    outcome: Outcome
+    outcome: RunOutcome
     events: Sequence[TraceEvent]
     path: PathRecord | None
     machine: Machine
@@ -109,7 +110,7 @@ def run_program(
     except Fault as fault:
         raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
     robot = (setup.make_robot or partial(make_robot, setup.robot))(machine, profile.cycle)
-    following = Following(arm, robot, machine, profile.cycle, start)
+    tracking = Tracking(arm, robot, machine, profile.cycle, start)
     trace = Trace(take, is_full=setup.is_full)
     sink, submit_sink = trace.sink(), trace.sink("submit")
     limits = setup.limits or Limits(per_slice=profile.statements)
@@ -131,10 +132,10 @@ def run_program(
         submit_sink=submit_sink,
         machine=machine,
         values=values,
-        following=following,
+        tracking=tracking,
     )
     outcome = _run(controller, setup, on_time)
-    path = following.record() if robot.step else None
+    path = tracking.record() if robot.step else None
     return Run(outcome, trace.events, path, machine, tuple(start), controller)
 
 
@@ -142,7 +143,7 @@ def run_program(
 _REPORT = 1_000_000
 
 
-def _run(controller: Controller, setup: Setup, on_time: Callable[[int], None]) -> Outcome:
+def _run(controller: Controller, setup: Setup, on_time: Callable[[int], None]) -> RunOutcome:
     now = moved = known = 0
     while True:
         now = min(now + _REPORT, setup.until)

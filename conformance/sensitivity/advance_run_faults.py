@@ -5,21 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Final
 
-from conformance.sensitivity.planted_fault import Fault, entry, group_of, on, several
-from interp.controller import request_handling
-from interp.controller.controller import Controller
-from interp.controller.motion_queue import Moving
+from conformance.sensitivity.planted_fault import Fault, group_of, on
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.arm_control import ArmControl
+from interp.controller.messages import Messages
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.motion_requests import MotionRequests
 from interp.controller.motions import MotionBuilder
-from interp.controller.request_handling import Answering
+from interp.controller.scheduler import Scheduler
 from interp.controller.tasks import Blocked
 from interp.controller.variables import Variables
-from interp.controller.world import World
-from interp.port.requests import Continue, Halt, Move, MoveSpline
+from interp.controller.waits import Waits
 
 __all__ = ["faults"]
 
 _AHEAD: Final = ("advance", "program")
-_ANSWERS: Final = vars(request_handling)["_ANSWERS"]
 
 
 def faults() -> tuple[Fault, ...]:
@@ -31,13 +31,15 @@ def _ahead(more: int) -> Any:
     """The program waits until another number of motions is pending."""
 
     def make(right: Any) -> Any:
-        def move(self: Answering, task: Any, request: Any) -> Any:
+        def move(self: MotionRequests, task: Any, request: Any) -> Any:
             answer = right(self, task, request)
             if not isinstance(answer, Blocked):
                 return answer
-            advance: Any = self.variables.read(("$ADVANCE",))
+            advance: Any = self._state.variables.read(("$ADVANCE",))
             return Blocked(
-                request, lambda: self.own_pending(task) <= max(0, advance + more), answer.finish
+                request,
+                lambda: self._queue.own_pending(task) <= max(0, advance + more),
+                answer.finish,
             )
 
         return move
@@ -46,18 +48,13 @@ def _ahead(more: int) -> Any:
 
 
 def _zero_is_one(right: Any) -> Any:
-    def move(self: Answering, task: Any, request: Any) -> Any:
+    def move(self: MotionRequests, task: Any, request: Any) -> Any:
         answer = right(self, task, request)
-        if not isinstance(answer, Blocked) or self.variables.read(("$ADVANCE",)) != 0:
+        if not isinstance(answer, Blocked) or self._state.variables.read(("$ADVANCE",)) != 0:
             return answer
-        return Blocked(request, lambda: self.own_pending(task) <= 1, answer.finish)
+        return Blocked(request, lambda: self._queue.own_pending(task) <= 1, answer.finish)
 
     return move
-
-
-def _motions(make: Any) -> Any:
-    """Both requests that ask for a motion."""
-    return several(entry(_ANSWERS, Move, make), entry(_ANSWERS, MoveSpline, make))
 
 
 class _Everywhere(tuple[str, int]):
@@ -73,8 +70,8 @@ class _Everywhere(tuple[str, int]):
 
 
 def _continue_holds(_right: Any) -> Any:
-    def spare(_self: Answering, task: Any, _request: Any) -> None:
-        task.spared = _Everywhere(("", 0))
+    def spare(_self: AdvanceRun, task: Any, _request: Any) -> None:
+        task.exempt_line = _Everywhere(("", 0))
 
     return spare
 
@@ -83,20 +80,21 @@ def _standing(right: Any) -> Any:
     """A method finds the arm standing, whatever it does."""
 
     def method(self: Any, *given: Any) -> Any:
-        self.own_pending = lambda _task: 0
-        self.core.pending = lambda: 0
+        queue: Any = self.queue if isinstance(self, Scheduler) else self._queue
+        queue.own_pending = lambda _task: 0
+        queue._core.pending = lambda: 0
         try:
             return right(self, *given)
         finally:
-            del self.own_pending, self.core.pending
+            del queue.own_pending, queue._core.pending
 
     return method
 
 
 def _submit_waits(right: Any) -> Any:
-    def when(self: Answering, task: Any, request: Any, then: Any) -> Any:
-        if task.name == "submit" and self.core.pending():
-            return Blocked(request, lambda: not self.core.pending(), then)
+    def when(self: AdvanceRun, task: Any, request: Any, then: Any) -> Any:
+        if task.name == "submit" and self._queue.pending:
+            return Blocked(request, lambda: not self._queue.pending, then)
         return right(self, task, request, then)
 
     return when
@@ -114,24 +112,25 @@ def _stops(reading: bool | None, writing: bool | None) -> Any:
 
 
 def _at_once(_right: Any) -> Any:
-    def put(self: Moving, task: Any, at: Any, path: Any, value: Any) -> None:
-        self.put_at(task.name, at, ("$OUT", *path[1:]), value)
+    def put(self: MotionQueue, task: Any, at: Any, path: Any, value: Any) -> None:
+        self._state.put_at(task.name, at, ("$OUT", *path[1:]), value)
 
     return put
 
 
 def _stale(right: Any) -> Any:
-    def begins(self: Moving, way: Any) -> None:
-        main = self.variables.main
-        right(self, way)
-        self.variables.main = main
+    def begins(self: MotionQueue, queued: Any) -> None:
+        variables = self._state.variables
+        main = variables.main
+        right(self, queued)
+        variables.main = main
 
     return begins
 
 
 def _quiet(*numbers: int) -> Any:
     def make(right: Any) -> Any:
-        def say(self: World, at: Any, number: int, kind: str = "notification") -> None:
+        def say(self: Messages, at: Any, number: int, kind: str = "notification") -> None:
             if number not in numbers:
                 right(self, at, number, kind)
 
@@ -142,29 +141,23 @@ def _quiet(*numbers: int) -> Any:
 
 def _unacknowledged(right: Any) -> Any:
     def say(
-        self: Controller, task: Any, at: Any, number: int, text: str, kind: str = "notification"
+        self: Messages, task: Any, at: Any, number: int, text: str, kind: str = "notification"
     ) -> None:
         right(self, task, at, number, text, "notification" if kind == "acknowledgement" else kind)
 
     return say
 
 
-_NO_OVERRIDE: Final = on(
-    World,
-    "_was_put",
-    lambda right: (
-        lambda self, path, value: None if path[0] == "$OV_PRO" else right(self, path, value)
-    ),
-)
+_NO_OVERRIDE: Final = on(ArmControl, "changed", lambda _: lambda _self, _path, _value: None)
 
 _ADVANCE: Final = (
-    ("the advance run is a motion shorter", _AHEAD, _motions(_ahead(-1))),
-    ("the advance run is a motion longer", _AHEAD, _motions(_ahead(1))),
-    ("$ADVANCE=0 lets the program run ahead", _AHEAD, _motions(_zero_is_one)),
+    ("the advance run is a motion shorter", _AHEAD, on(MotionRequests, "move", _ahead(-1))),
+    ("the advance run is a motion longer", _AHEAD, on(MotionRequests, "move", _ahead(1))),
+    ("$ADVANCE=0 lets the program run ahead", _AHEAD, on(MotionRequests, "move", _zero_is_one)),
     (
         "nothing stops the advance run",
         _AHEAD,
-        on(Answering, "when_reached", lambda _: lambda _self, _task, _request, then: then()),
+        on(AdvanceRun, "when_reached", lambda _: lambda _self, _task, _request, then: then()),
     ),
     ("writing never stops the advance run", _AHEAD, on(Variables, "stops", _stops(None, False))),
     ("reading never stops the advance run", _AHEAD, on(Variables, "stops", _stops(False, None))),
@@ -173,45 +166,45 @@ _ADVANCE: Final = (
     (
         "CONTINUE does nothing",
         _AHEAD,
-        entry(_ANSWERS, Continue, lambda _: lambda _self, _task, _request: None),
+        on(AdvanceRun, "exempt", lambda _: lambda _self, _task, _request: None),
     ),
-    ("CONTINUE holds for all that follows", _AHEAD, entry(_ANSWERS, Continue, _continue_holds)),
-    ("the program ends before the arm stands", _AHEAD, on(Controller, "_end", _standing)),
+    ("CONTINUE holds for all that follows", _AHEAD, on(AdvanceRun, "exempt", _continue_holds)),
+    ("the program ends before the arm stands", _AHEAD, on(Scheduler, "_end", _standing)),
     (
         "HALT does not wait for the arm",
         ("advance", "interrupt", "control"),
-        entry(_ANSWERS, Halt, _standing),
+        on(Waits, "halt", _standing),
     ),
     (
         "the submit program waits for the arm",
         ("submit", "program"),
-        on(Answering, "when_reached", _submit_waits),
+        on(AdvanceRun, "when_reached", _submit_waits),
     ),
     (
         "$OUT_C is switched in the advance run",
         ("advance", "io"),
-        on(Moving, "output_in_main_run", _at_once),
+        on(MotionQueue, "output_in_main_run", _at_once),
     ),
-    ("values of the main run are those of the start", _AHEAD, on(Moving, "_begins", _stale)),
+    ("values of the main run are those of the start", _AHEAD, on(MotionQueue, "_started", _stale)),
     (
         "a blend that fails is never the fault of an advance stop",
         ("advance", "message"),
-        on(Moving, "hold_up", lambda _: lambda _self: None),
+        on(MotionQueue, "stop_advance", lambda _: lambda _self: None),
     ),
     (
         "a blend that fails is not told",
         ("advance", "message"),
-        on(World, "say_number", _quiet(1123, 1442)),
+        on(Messages, "post_number", _quiet(1123, 1442)),
     ),
     (
         "a point reached by the coincidence run is not told",
         ("advance", "message"),
-        on(World, "say_number", _quiet(1350)),
+        on(Messages, "post_number", _quiet(1350)),
     ),
     (
         "messages to be acknowledged stop nothing",
         ("advance", "message"),
-        on(Controller, "say", _unacknowledged),
+        on(Messages, "post", _unacknowledged),
     ),
     ("the override has no effect", ("motion", "blending", "spline"), _NO_OVERRIDE),
     (

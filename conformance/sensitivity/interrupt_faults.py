@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from conformance.sensitivity.planted_fault import Fault, Plant, constant, entry, on
-from interp.controller import interrupts, motion_queue, request_handling
-from interp.controller.activation import Entering
+from conformance.sensitivity.planted_fault import Fault, Plant, constant, on
+from interp.controller import interrupts, motion_queue
+from interp.controller.interrupt_unit import InterruptUnit
 from interp.controller.interrupts import Interrupts
-from interp.controller.motion_queue import Moving
+from interp.controller.levels import Levels
+from interp.controller.motion_queue import MotionQueue
 from interp.controller.motions import MotionBuilder
 from interp.controller.positions import Positions
 from interp.controller.tasks import PROGRAM, Task
-from interp.port.requests import BrakeArm, Resume, SetTrigger, Write
+from interp.controller.variable_access import VariableAccess
 from interp.robot.api.control_core import ControlCore
 from interp.values import faults as run_time
 
 __all__ = ["faults"]
 
-_ANSWERS: Final = vars(request_handling)["_ANSWERS"]
 _SUITES: Final = ("interrupt", "program")
 
 
@@ -104,8 +104,9 @@ def _last(_right: Any) -> Any:
 
 
 def _seldom(right: Any) -> Any:
-    def watch(self: Entering, task: Any) -> None:
-        if self.clock.now // self.clock.cycle % 4 == 0:
+    def watch(self: InterruptUnit, task: Any) -> None:
+        clock = self._state.clock
+        if clock.now // clock.cycle % 4 == 0:
             right(self, task)
 
     return watch
@@ -152,7 +153,7 @@ _INTERRUPTS: Final = (
     ("ENABLE does nothing", on(Interrupts, "switch", _without("ENABLE"))),
     ("OFF does nothing", on(Interrupts, "switch", _without("OFF"))),
     ("ON without a number means the first one", on(Interrupts, "switch", _only_first)),
-    ("events are looked for in every fourth cycle", on(Entering, "watch", _seldom)),
+    ("events are looked for in every fourth cycle", on(InterruptUnit, "watch", _seldom)),
     (
         "declarations outlive their routine",
         on(Interrupts, "forget", lambda _: lambda _self, _depth: None),
@@ -172,7 +173,7 @@ def _always_soft(right: Any) -> Any:
 
 
 def _going_on(right: Any) -> Any:
-    def brake(self: Entering, task: Any, request: Any) -> Any:
+    def brake(self: InterruptUnit, task: Any, request: Any) -> Any:
         right(self, task, request)
 
     return brake
@@ -196,7 +197,7 @@ def _tolerant(slug: str) -> Any:
 
 
 def _global_resume(right: Any) -> Any:
-    def resume(self: Entering, task: Any, request: Any) -> Any:
+    def resume(self: InterruptUnit, task: Any, request: Any) -> Any:
         if task.level is not None and task.level.interrupt is not None:
             task.level.interrupt.is_global = False
         return right(self, task, request)
@@ -205,7 +206,7 @@ def _global_resume(right: Any) -> Any:
 
 
 def _base_stays(right: Any) -> Any:
-    def pop(self: Entering, task: Any) -> None:
+    def pop(self: Levels, task: Any) -> None:
         task.levels[-1].base = None
         right(self, task)
 
@@ -215,7 +216,7 @@ def _base_stays(right: Any) -> Any:
 def _advance_writable(right: Any) -> Any:
     def write(self: Any, task: Any, request: Any) -> Any:
         if request.path == ("$ADVANCE",):
-            return self.put(request.path, request.value)
+            return self._state.put(request.path, request.value)
         return right(self, task, request)
 
     return write
@@ -248,13 +249,13 @@ def _not_kept(word: str) -> Plant:
 _BRAKING: Final = (
     (
         "BRAKE does nothing",
-        entry(_ANSWERS, BrakeArm, lambda _: lambda _self, _task, _request: None),
+        on(InterruptUnit, "brake", lambda _: lambda _self, _task, _request: None),
     ),
     ("BRAKE F is no harder than BRAKE", on(ControlCore, "brake", _always_soft)),
-    ("the routine goes on before the arm stands", entry(_ANSWERS, BrakeArm, _going_on)),
+    ("the routine goes on before the arm stands", on(InterruptUnit, "brake", _going_on)),
     (
         "BRAKE is allowed everywhere",
-        entry(_ANSWERS, BrakeArm, _tolerant("brake_place")),
+        on(InterruptUnit, "brake", _tolerant("brake_place")),
     ),
     (
         "the arm stands for ever after BRAKE",
@@ -262,21 +263,21 @@ _BRAKING: Final = (
     ),
     (
         "after a motion of its own the routine does not come back to the path",
-        on(Entering, "_go_back", lambda _: lambda self, task, _end: self._left(task)),
+        on(Levels, "_return", lambda _: lambda self, task, _end: self._left(task)),
     ),
     (
         "RESUME keeps what was planned",
         on(ControlCore, "discard", lambda _: lambda _self, _now: None),
     ),
-    ("RESUME does nothing", entry(_ANSWERS, Resume, lambda _: lambda _s, _t, _r: None)),
-    ("RESUME is allowed for global interrupts", entry(_ANSWERS, Resume, _global_resume)),
+    ("RESUME does nothing", on(InterruptUnit, "resume", lambda _: lambda _s, _t, _r: None)),
+    ("RESUME is allowed for global interrupts", on(InterruptUnit, "resume", _global_resume)),
     (
         "RESUME is allowed on the declaring level",
-        entry(_ANSWERS, Resume, _tolerant("resume_level")),
+        on(InterruptUnit, "resume", _tolerant("resume_level")),
     ),
-    ("$BASE stays as the routine left it", on(Entering, "_pop", _base_stays)),
-    ("$ADVANCE may be changed in a routine", entry(_ANSWERS, Write, _advance_writable)),
-    ("splines are allowed in a routine", on(Moving, "plan", _outside)),
+    ("$BASE stays as the routine left it", on(Levels, "pop", _base_stays)),
+    ("$ADVANCE may be changed in a routine", on(VariableAccess, "write", _advance_writable)),
+    ("splines are allowed in a routine", on(MotionQueue, "plan", _outside)),
     ("$POS_INT is not kept", _not_kept("INT")),
     ("$POS_RET is not kept", _not_kept("RET")),
 )
@@ -291,7 +292,7 @@ def _placed(alter: Any) -> Plant:
 
 
 def _kept(right: Any) -> Any:
-    def plan(self: Moving, task: Any, request: Any) -> Any:
+    def plan(self: MotionQueue, task: Any, request: Any) -> Any:
         triggers = list(task.triggers)
         found = right(self, task, request)
         task.triggers = triggers
@@ -301,7 +302,7 @@ def _kept(right: Any) -> Any:
 
 
 def _dropped(right: Any) -> Any:
-    def plan(self: Moving, task: Any, request: Any) -> Any:
+    def plan(self: MotionQueue, task: Any, request: Any) -> Any:
         task.triggers = task.triggers[-1:]
         return right(self, task, request)
 
@@ -309,7 +310,7 @@ def _dropped(right: Any) -> Any:
 
 
 def _uncounted(right: Any) -> Any:
-    def place(self: Moving, task: Any, request: Any) -> Any:
+    def place(self: MotionQueue, task: Any, request: Any) -> Any:
         outputs, calls, self._outputs, self._calls = self._outputs, self._calls, {}, {}
         waiting, task.triggers = task.triggers, []
         try:
@@ -336,17 +337,17 @@ _TRIGGERS: Final = (
         "DISTANCE 0 and 1 are exchanged",
         _placed(lambda k, p, s, d: (k, 1 - p if k == "DISTANCE" else p, s, d)),
     ),
-    ("a trigger is for every motion that follows", on(Moving, "plan", _kept)),
-    ("only the last trigger counts", on(Moving, "plan", _dropped)),
+    ("a trigger is for every motion that follows", on(MotionQueue, "plan", _kept)),
+    ("only the last trigger counts", on(MotionQueue, "plan", _dropped)),
     (
         "every priority is allowed",
         constant(motion_queue, "_PRIORITIES", frozenset(range(-1, 1000))),
     ),
     ("a trigger may be as far away as one likes", constant(motion_queue, "_FARTHEST", 1e12)),
-    ("any number of triggers may wait", entry(_ANSWERS, SetTrigger, _uncounted)),
-    ("triggers are allowed in interrupt routines", entry(_ANSWERS, SetTrigger, _outside)),
+    ("any number of triggers may wait", on(MotionQueue, "set_trigger", _uncounted)),
+    ("triggers are allowed in interrupt routines", on(MotionQueue, "set_trigger", _outside)),
     (
         "routines of triggers are never called",
-        on(Moving, "_fire", lambda _: lambda self, command: self._calls.pop(command, None)),
+        on(MotionQueue, "_fire", lambda _: lambda self, command: self._calls.pop(command, None)),
     ),
 )

@@ -1,17 +1,17 @@
 """A planted fault: in words what is wrong, where it should be noticed, and how it is planted.
 
-Faults are planted into the running process: an attribute of a class or module, or an entry of a
-table, is replaced for as long as a case runs.
+Faults are planted into the running process: an attribute of a class or module is replaced for as
+long as a case runs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, MutableMapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from typing import Any, Final, cast
+from typing import Any, Final
 
-__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "entry", "group_of", "on", "several"]
+__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "group_of", "on", "several"]
 
 #: Plants a fault for as long as the context lasts.
 Plant = Callable[[], AbstractContextManager[None]]
@@ -61,22 +61,6 @@ def on(owner: Any, name: str, make: Make) -> Plant:
 def constant(owner: Any, name: str, value: Any) -> Plant:
     """Give an attribute another value."""
     return on(owner, name, lambda _before: value)
-
-
-def entry(table: Any, key: Any, make: Make) -> Plant:
-    """Replace an entry of a table."""
-    rows = cast("MutableMapping[Any, Any]", table)
-    before = rows[key]
-
-    @contextmanager
-    def planted() -> Iterator[None]:
-        rows[key] = make(before)
-        try:
-            yield
-        finally:
-            rows[key] = before
-
-    return planted
 
 
 def several(*plants: Plant) -> Plant:

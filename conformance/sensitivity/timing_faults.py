@@ -8,11 +8,12 @@ from typing import Any, Final
 
 from conformance.sensitivity.planted_fault import Fault, constant, group_of, on
 from interp.controller import signals
-from interp.controller.activation import Entering
 from interp.controller.clock import Clock
-from interp.controller.request_handling import Answering
+from interp.controller.cyclic_evaluation import CyclicEvaluation
 from interp.controller.signals import ALWAYS_TRUE, Signals
 from interp.controller.timers import Timers
+from interp.controller.variable_access import VariableAccess
+from interp.controller.waits import Waits
 
 __all__ = ["faults"]
 
@@ -40,16 +41,16 @@ def _exact(_right: Any) -> Any:
 
 
 def _slow_polls(right: Any) -> Any:
-    def later(self: Answering, task: Any) -> int:
-        more = 9 * self.clock.cycle if task.name == "robot" else 0
+    def later(self: Waits, task: Any) -> int:
+        more = 9 * self._state.clock.cycle if task.name == "robot" else 0
         return int(right(self, task)) + more
 
     return later
 
 
 def _slow_submit(right: Any) -> Any:
-    def later(self: Answering, task: Any) -> int:
-        more = 49 * self.clock.cycle if task.name == "submit" else 0
+    def later(self: Waits, task: Any) -> int:
+        more = 49 * self._state.clock.cycle if task.name == "submit" else 0
         return int(right(self, task)) + more
 
     return later
@@ -71,12 +72,12 @@ _CLOCK: Final = (
     (
         "WAIT FOR looks in every tenth cycle only",
         ("io", "control", "program"),
-        on(Answering, "next_slice", _slow_polls),
+        on(Waits, "next_slice", _slow_polls),
     ),
     (
         "the submit program runs once in half a second",
         ("submit", "program"),
-        on(Answering, "next_slice", _slow_submit),
+        on(Waits, "next_slice", _slow_submit),
     ),
 )
 
@@ -237,7 +238,7 @@ def _once(name: str) -> Any:
     """A cyclic signal is computed the first time only."""
 
     def make(right: Any) -> Any:
-        def enter(self: Entering, task: Any, request: Any) -> None:
+        def enter(self: CyclicEvaluation, task: Any, request: Any) -> None:
             done = self.__dict__.setdefault(name, set())
             if request.name not in done:
                 done.add(request.name)
@@ -279,16 +280,20 @@ _TIMERS: Final = (
     (
         "cyclic flags keep their first value",
         ("io", "interrupt"),
-        on(Entering, "refresh_flags", lambda _: lambda _self: None),
+        on(CyclicEvaluation, "refresh_flags", lambda _: lambda _self: None),
     ),
-    ("cyclic signals are computed once", ("io",), on(Entering, "enter_signal", _once("_entered"))),
+    (
+        "cyclic signals are computed once",
+        ("io",),
+        on(CyclicEvaluation, "enter_signal", _once("_entered")),
+    ),
     (
         "ANOUT ON knows no limits",
         ("io",),
         on(
-            Answering,
+            VariableAccess,
             "_put_cyclic",
-            lambda _: lambda self, _task, request: self.put(request.path, request.value),
+            lambda _: lambda self, request, _signal: self._state.put(request.path, request.value),
         ),
     ),
 )

@@ -27,7 +27,7 @@ from conformance.sensitivity import (
 )
 from conformance.sensitivity.planted_fault import Fault, on, several
 from conformance.suite.case import Case
-from interp.controller.controller import Controller
+from interp.controller.scheduler import Scheduler
 from interp.robot.api.control_core import ControlCore
 from interp.values.faults import LinkError
 from support.parallel.ordered_map import ordered_map
@@ -171,5 +171,5 @@ def _ending() -> Iterator[Callable[[], Any]]:
 
         return counted
 
-    yield on(Controller, "_collect", make)
+    yield on(Scheduler, "_collect", make)
     yield on(ControlCore, "_pass", make)

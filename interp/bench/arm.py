@@ -22,7 +22,7 @@ from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.robots import ROBOTS, RobotName, make_robot
-from interp.robot.simulation.tracking import Following
+from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["AIMS", "STEPS", "drive", "measure", "motions"]
 
@@ -117,7 +117,7 @@ def drive(
     machine = default_machine()
     arm = PlannedArm(machine, _HOME)
     core = core_type(arm, lambda *_: None, _CYCLE)
-    following = Following(arm, make_robot(robot, machine, _CYCLE), machine, _CYCLE, _HOME)
+    tracking = Tracking(arm, make_robot(robot, machine, _CYCLE), machine, _CYCLE, _HOME)
     planning = 0.0
     for motion in program:
         while core.pending() > _ADVANCE and (time := core.next_time()) is not None:
@@ -126,16 +126,16 @@ def drive(
         begun = process_time()
         core.load(core.now, Transaction(MotionCommand(motion)))
         planning += process_time() - begun
-        following.advance(core.now)
+        tracking.advance(core.now)
     begun = process_time()
     core.release(core.now)
     planning += process_time() - begun
     last = core.now
     while (time := core.next_time()) is not None:
         core.run_until(time)
-        following.advance(core.now)
+        tracking.advance(core.now)
         last = time
-    following.settle(last)
+    tracking.settle(last)
     return last, planning
 
 

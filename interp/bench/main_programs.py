@@ -222,7 +222,7 @@ def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
         reason,
         run.machine.name,
         furthest,
-        run.controller.fulfilling.count,
+        run.controller.automatic_inputs.count,
     )
 
 

@@ -1,23 +1,24 @@
 """The controller: clock, advance run, motion queue, interrupts, triggers, submit, I/O, variables.
 
-`Controller` runs a program on a virtual clock; `Trace` tells what happened, `Script` says what the
-world around it does, `Profile` what release the controller has.
+`Controller` runs a program on a virtual clock; `Trace` records what happened, `Script` describes
+what happens around it, `Profile` the release of the controller.
 """
 
-from interp.controller.controller import Controller, Ending, Outcome
+from interp.controller.controller import Controller
 from interp.controller.input_script import Script, ScriptError
 from interp.controller.motion_queue import PlannedPoint
 from interp.controller.profile import Profile, ProfileError, profile_names
+from interp.controller.scheduler import Ending, RunOutcome
 from interp.controller.trace import KINDS, TaskSink, Trace, TraceEvent
 
 __all__ = [
     "KINDS",
     "Controller",
     "Ending",
-    "Outcome",
     "PlannedPoint",
     "Profile",
     "ProfileError",
+    "RunOutcome",
     "Script",
     "ScriptError",
     "TaskSink",

@@ -1,48 +1,39 @@
-"""A cell that obliges: the inputs that a WAIT FOR looks at change until the program goes on.
+"""Automatic inputs: those that a WAIT FOR reads change until the program goes on.
 
 Behind real programs stand grippers, spindles and a PLC whose scripts nobody has. A line ``fulfil
 waits after 1`` stands for all of them: once the robot's program has waited so long, the digital
 inputs that its condition has read change one at a time, a cycle each, through all their
 combinations, beginning with the one it read first. Inputs that a script sets itself stay as they
-are. Where no combination makes the condition TRUE, they are in the end as they were, and the
-program goes on waiting.
+are. Where no combination makes the condition TRUE, they end as they began, and the program goes on
+waiting.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import Final, Protocol
+from typing import Final
 
 from interp.controller.input_script import Assign, Script
-from interp.controller.signals import Signals
-from interp.port.requests import At, Path, Value
+from interp.controller.state import ControllerState
+from interp.port.requests import At, Path
 
-__all__ = ["Fulfilling"]
+__all__ = ["AutomaticInputs"]
 
 #: More inputs than these are not tried: there would be too many combinations.
 _MOST: Final = 10
 
 
-class _Stage(Protocol):
-    """Where the inputs are."""
-
-    signals: Signals
-
-    def assign(self, path: Path, value: Value) -> None:
-        """Something outside gives an input a value."""
-
-
-class Fulfilling:
+class AutomaticInputs:
     """Fulfils the waits of one script; does nothing where that has no such line."""
 
-    def __init__(self, script: Script, stage: _Stage) -> None:
+    def __init__(self, script: Script, state: ControllerState) -> None:
         self._after = script.fulfils
-        self._stage = stage
+        self._state = state
         actions = (action for step in script.steps for action in step.actions)
         paths = [action.path for action in actions if isinstance(action, Assign)]
         self._scripted = frozenset(place for path in paths for place in _places(path))
-        self._looked: dict[int, None] = {}
+        self._read: dict[int, None] = {}
         self._since: tuple[At, int] | None = None
         self._changes: Iterator[tuple[int, bool]] = iter(())
         #: How many inputs were changed.
@@ -53,32 +44,32 @@ class Fulfilling:
         """Whether anything is to be fulfilled."""
         return self._after is not None
 
-    def looked(self, path: Path) -> None:
+    def was_read(self, path: Path) -> None:
         """The program reads a variable, perhaps an input for the condition of a WAIT FOR."""
-        self._looked |= dict.fromkeys(_places(path))
+        self._read |= dict.fromkeys(_places(path))
 
-    def begins(self) -> None:
+    def begin(self) -> None:
         """The program comes to a WAIT FOR."""
-        self._looked.clear()
+        self._read.clear()
         self._since = None
 
-    def waits(self, at: At, now: int) -> None:
+    def was_false(self, at: At, now: int) -> None:
         """The condition there was FALSE at a time in µs."""
         if self._after is None:
             return
         if self._since is None or self._since[0] != at:
             self._since = at, now
             self._changes = iter(())
-            found = [place for place in self._looked if place not in self._scripted]
+            found = [place for place in self._read if place not in self._scripted]
             if len(found) <= _MOST:
                 self._changes = _combinations({place: self._has(place) for place in found})
         if now - self._since[1] >= self._after:
             for place, value in islice(self._changes, 1):
                 self.count += 1
-                self._stage.assign(("$IN", place), value)
+                self._state.assign(("$IN", place), value)
 
     def _has(self, place: int) -> bool:
-        return self._stage.signals.read(("$IN", place)) is True
+        return self._state.signals.read(("$IN", place)) is True
 
 
 def _places(path: Path) -> Iterable[int]:

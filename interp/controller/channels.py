@@ -13,10 +13,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from grammar.semantics.predefined import System
-from grammar.semantics.types import CHAR, REAL, Array, Enumeration, Structure
+from grammar.semantics.types import CHAR, REAL, Array
 from interp.controller.clock import Clock, microseconds
 from interp.controller.messages import own_fault
+from interp.controller.predefined_values import empty_structure, word
 from interp.port.requests import Value
 from interp.values.faults import fault
 from interp.values.formats import sread, swrite
@@ -24,7 +24,6 @@ from interp.values.values import (
     ArrayValue,
     EnumValue,
     StructureValue,
-    constant,
     converted,
     empty,
     known,
@@ -42,15 +41,10 @@ _WRITTEN_VALUES: Final = 4
 COMMANDS: Final = {"$CMD": 1, "$FCT_CALL": 2}
 
 
-def state_value(word: str, hits: int = 0, length: int = 0) -> StructureValue:
+def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
     """A STATE_T [FCT-08]."""
-    types = System.load().types
-    structure, results = types["STATE_T"], types["CMD_STAT"]
-    assert isinstance(structure, Structure)
-    assert isinstance(results, Enumeration)
-    value = empty(structure)
-    assert isinstance(value, StructureValue)
-    value.set("RET1", constant(results, word))
+    value = empty_structure("STATE_T")
+    value.set("RET1", word("CMD_STAT", result))
     value.set("MSG_NO", 0)
     value.set("HITS", hits)
     value.set("LENGTH", length)
@@ -70,10 +64,13 @@ Arguments = Sequence[Value | None]
 
 @dataclass(slots=True)
 class Channels:
-    """All channels by their names; ``sent`` is told what a program writes."""
+    """All channels by their names.
+
+    ``listeners`` are called with the channel and each text that a program writes to it.
+    """
 
     clock: Clock
-    sent: Callable[[str, str], None]
+    listeners: list[Callable[[str, str], None]] = field(default_factory=list)
     _handles: dict[int, str] = field(
         default_factory=lambda: {handle: name[1:] for name, handle in COMMANDS.items()}
     )
@@ -118,11 +115,12 @@ class Channels:
             _, changes = swrite(target, None, 0, pattern, *values)
             after[1] = changes.get(1, state_value("CMD_OK"))
             text = text_of(changes.get(0, target))
-        self.sent(name, text)
+        for listener in self.listeners:
+            listener(name, text)
         return after
 
     def read(self, arguments: Arguments, since: int) -> list[Value | None] | Waiting:
-        """CREAD, asked for at ``since``; tells to wait where there is nothing yet."""
+        """CREAD, requested at ``since``; `Waiting` where there is nothing to read yet."""
         if len(arguments) < _READ_VARIABLES:
             raise fault("argument")
         name = self._name(arguments[0])

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
 
-__all__ = ["Agenda", "Appointment", "Clock", "microseconds"]
+__all__ = ["ActionQueue", "Clock", "TimedAction", "microseconds"]
 
 
 def microseconds(seconds: float) -> int:
@@ -44,34 +44,34 @@ class Clock:
 
 
 @dataclass(slots=True, eq=False)
-class Appointment:
-    """Something to do once, which can be called off."""
+class TimedAction:
+    """Something to do once at ``time``, in µs, unless it is cancelled."""
 
     time: int
     action: Callable[[], None]
-    is_off: bool = False
+    is_cancelled: bool = False
 
 
 @dataclass(slots=True)
-class Agenda:
-    """Appointments in the order of their times, those of one time in the order they were made."""
+class ActionQueue:
+    """Timed actions by their times; those of one time in the order in which they were added."""
 
-    _entries: list[tuple[int, int, Appointment]] = field(default_factory=list)
+    _entries: list[tuple[int, int, TimedAction]] = field(default_factory=list)
     _order: count[int] = field(default_factory=count)
 
-    def add(self, time: int, action: Callable[[], None]) -> Appointment:
+    def add(self, time: int, action: Callable[[], None]) -> TimedAction:
         """Do something at a time."""
-        made = Appointment(time, action)
+        made = TimedAction(time, action)
         heapq.heappush(self._entries, (time, next(self._order), made))
         return made
 
     def next_time(self) -> int | None:
         """When something is to be done next."""
-        while self._entries and self._entries[0][2].is_off:
+        while self._entries and self._entries[0][2].is_cancelled:
             heapq.heappop(self._entries)
         return self._entries[0][0] if self._entries else None
 
-    def do(self, now: int) -> None:
+    def run_until(self, now: int) -> None:
         """Do all that is due."""
         while (time := self.next_time()) is not None and time <= now:
             heapq.heappop(self._entries)[2].action()

@@ -6,13 +6,16 @@ program shows by SET_KRLMSG and SET_KRLDLG stays until it is taken away or answe
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from grammar.semantics.predefined import System
+from interp.controller.trace import TaskName, Trace
+from interp.port.requests import At
 from interp.values.faults import Fault
 
-__all__ = ["Board", "Dialogue", "message_fault", "own_fault"]
+__all__ = ["Messages", "message_fault", "own_fault"]
 
 #: What no message at hand says, in our words.
 _OWN: Final = {
@@ -35,7 +38,7 @@ _OWN: Final = {
 
 
 def message_fault(number: int) -> Fault:
-    """The fault that a message of the catalogue tells; `KeyError` for an unknown number."""
+    """The fault of a message of the catalogue; `KeyError` for an unknown number."""
     found = System.load().message(number)
     if found is None:
         raise KeyError(number)
@@ -50,35 +53,66 @@ def own_fault(slug: str) -> Fault:
 
 
 @dataclass(slots=True)
-class Dialogue:
+class ProgramMessage:
     """A message or a dialogue of a program; ``answer`` is the button that was pressed, from 1."""
 
     handle: int
     kind: str
     number: int
-    text: str
-    is_dialogue: bool = False
     answer: int | None = None
 
+    @property
+    def is_dialogue(self) -> bool:
+        """Whether it waits for an answer."""
+        return self.kind == "DIALOGUE"
 
-class Board:
-    """What is shown to the operator and not taken away yet."""
 
-    def __init__(self) -> None:
-        self._shown: dict[int, Dialogue] = {}
+class Messages:
+    """The messages of a controller and of its programs.
+
+    ``listeners`` are called with the number and the kind of each message that is shown.
+    """
+
+    def __init__(self, trace: Trace) -> None:
+        self.listeners: list[Callable[[int, str], None]] = []
+        self._trace = trace
+        self._shown: dict[int, ProgramMessage] = {}
         self._handle = 0
         #: Numbers of the controller's messages that wait to be acknowledged.
-        self.waiting: list[int] = []
+        self.unacknowledged: list[int] = []
 
-    def show(self, kind: str, number: int, text: str, *, is_dialogue: bool = False) -> Dialogue:
-        """Show a message; notifications are not kept."""
+    def post(
+        self, task: TaskName, at: At | None, number: int, text: str, kind: str = "notification"
+    ) -> None:
+        """Show a message of the controller."""
+        if kind == "acknowledgement":
+            self.unacknowledged.append(number)
+        self._show(task, at, number, text, kind)
+
+    def post_number(
+        self, at: At | None, number: int, kind: str = "notification", task: TaskName = "robot"
+    ) -> None:
+        """Show a message of the catalogue."""
+        found = System.load().message(number)
+        self.post(task, at, number, "" if found is None else found.text, kind)
+
+    def show(self, task: TaskName, at: At, kind: str, number: int, text: str) -> int:
+        """Show a message or a DIALOGUE of a program; returns its handle.
+
+        Notifications are not kept.
+        """
         self._handle += 1
-        made = Dialogue(self._handle, kind, number, text, is_dialogue)
-        if is_dialogue or kind != "NOTIFY":
-            self._shown[made.handle] = made
-        return made
+        if kind != "NOTIFY":
+            self._shown[self._handle] = ProgramMessage(self._handle, kind, number)
+        self._show(task, at, number, text, kind.lower())
+        return self._handle
 
-    def find(self, handle: int) -> Dialogue | None:
+    def _show(self, task: TaskName, at: At | None, number: int, text: str, kind: str) -> None:
+        self._trace.record(task, "message", at, number=number, text=text, type=kind)
+        for listener in self.listeners:
+            listener(number, kind)
+
+    def find(self, handle: int) -> ProgramMessage | None:
         """What is shown under a handle."""
         return self._shown.get(handle)
 
@@ -90,16 +124,21 @@ class Board:
             return had_any
         return self._shown.pop(handle, None) is not None
 
-    def dialogues(self) -> list[Dialogue]:
-        """The dialogues that wait for an answer, oldest first."""
-        return [one for one in self._shown.values() if one.is_dialogue and one.answer is None]
+    def answer(self, button: int) -> None:
+        """Answer the oldest dialogue that waits, if there is one."""
+        for one in self._shown.values():
+            if one.is_dialogue and one.answer is None:
+                one.answer = button
+                return
 
     def is_set(self, number: int) -> bool:
         """Whether a message of this number is shown."""
-        return number in self.waiting or any(one.number == number for one in self._shown.values())
+        return number in self.unacknowledged or any(
+            one.number == number for one in self._shown.values()
+        )
 
-    def acknowledge(self, number: int | None) -> bool:
-        """Acknowledge a message, or all; whether there was any."""
+    def acknowledge(self, number: int | None) -> None:
+        """Acknowledge a message, or all."""
         shown = [
             one.handle
             for one in self._shown.values()
@@ -107,7 +146,7 @@ class Board:
         ]
         for handle in shown:
             del self._shown[handle]
-        left = [] if number is None else [one for one in self.waiting if one != number]
-        had_any = len(left) < len(self.waiting) or bool(shown)
-        self.waiting = left
-        return had_any
+        if number is None:
+            self.unacknowledged.clear()
+        else:
+            self.unacknowledged = [one for one in self.unacknowledged if one != number]

@@ -1,23 +1,27 @@
-"""Motions on their way: planned as transactions of the control core, and what becomes of them.
+"""The motion queue: motions planned as transactions of the control core, until they have ended.
 
 Each KRL motion is one transaction: the motion, for each trigger that switches an output an
 `OutputCommand` at its place, for each other trigger a `CallCommand` [TRG-01 to TRG-08]. So outputs
 are switched inside the core at their exact time, and what has to be computed is entered by the
-controller when the core tells it.
+controller after the core has reported it.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Protocol, runtime_checkable
 
+from interp.controller.arm_control import ArmControl
 from interp.controller.messages import message_fault, own_fault
-from interp.controller.motions import Built, MotionBuilder
+from interp.controller.motions import MotionBuilder, PlannedMotion
+from interp.controller.output_switch import OutputSwitch
+from interp.controller.positions import FramesInForce, Positions
+from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 from interp.controller.trace import path_text
-from interp.controller.world import Setup, World
-from interp.port.requests import At, Code, Move, MoveSpline, Path, SetTrigger, Value
+from interp.port.requests import At, Code, Move, MoveSpline, Path, SetTrigger, SplineStop, Value
 from interp.robot.api.commands import (
     CallCommand,
     CoreEvent,
@@ -25,14 +29,14 @@ from interp.robot.api.commands import (
     OutputCommand,
     Transaction,
 )
-from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Motion, Place, Position
 from interp.robot.kinematics.frames import Pose
+from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 from interp.values.values import EnumValue
 
-__all__ = ["Call", "Moving", "PlannedPoint"]
+__all__ = ["MotionQueue", "PlannedPoint", "TriggerCall"]
 
 #: What triggers that call a routine may have as PRIO [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
@@ -52,29 +56,29 @@ _KINDS: Final = {
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Call:
-    """What a trigger does that is more than switching an output."""
+class TriggerCall:
+    """The action of a trigger that is more than switching an output."""
 
     trigger: SetTrigger
     action: Code
 
 
 @dataclass(slots=True, eq=False)
-class _Way:
-    """A motion on its way, and where it leads, if the arm tells that.
+class _QueuedMotion:
+    """A motion that has not ended, and its end point, if the arm knows that.
 
-    ``is_held_up`` once something has stopped the advance run behind it.
+    ``stops_advance`` once something has stopped the advance run behind it.
     """
 
-    built: Built
+    planned: PlannedMotion
     task: Task
     target: Position | None
-    is_held_up: bool = False
+    stops_advance: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedPoint:
-    """A motion as it was planned, and where it leads, if the arm tells that.
+    """The end point of a motion as it was planned, if the arm knows that.
 
     ``tool`` is $TOOL as it was then.
     """
@@ -88,40 +92,55 @@ class PlannedPoint:
 
 
 @runtime_checkable
-class _Aiming(Protocol):
-    """An arm that knows where the motion planned last leads."""
+class _HasTarget(Protocol):
+    """An arm that knows the end point of the motion planned last."""
 
     def target(self) -> Position: ...
 
 
-class Moving(World):
-    """A controller's motions."""
+class MotionQueue:
+    """Plans motions, and follows what the control core does with them.
 
-    def __init__(self, core: ControlCore, setup: Setup) -> None:
-        super().__init__(core, setup)
-        self.builder = MotionBuilder(self.variables, self.robroot, lambda: self.mode == "T1")
-        self._ways: dict[int, _Way] = {}
+    ``tracking`` is notified of the frames of each motion that starts.
+    """
+
+    def __init__(
+        self,
+        state: ControllerState,
+        arm: ArmControl,
+        outputs: OutputSwitch,
+        positions: Positions,
+        frames: FramesInForce,
+        tracking: Tracking | None,
+    ) -> None:
+        self._state = state
+        self._arm = arm
+        self._core = arm.core
+        self._output_switch = outputs
+        self._positions = positions
+        self._tracking = tracking
+        self._builder = MotionBuilder(state, frames)
+        self._queued: dict[int, _QueuedMotion] = {}
         self._outputs: dict[OutputCommand, SetTrigger] = {}
         self._calls: dict[CallCommand, SetTrigger] = {}
-        #: Outputs that were switched inside the core and are not told yet, in their order.
-        self._switched: deque[list[tuple[str, int, Value]]] = deque()
-        self._is_switching = False
         #: $OUT_C: what is written at the end of a motion, by its number.
         self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
         #: Calls of triggers that have fired and were not entered yet.
         self.fired: list[CallCommand] = []
-        self.has_stopped = False
-        #: Every motion that was planned and leads anywhere, in order.
+        #: Places of STOP WHEN PATH that the arm has passed and that were not looked at yet.
+        self.passed_stops: list[tuple[Task, SplineStop]] = []
+        #: Every motion that was planned and does not end where it starts, in order.
         self.points: list[PlannedPoint] = []
-        #: Where the motion stands in the program that started last.
+        #: The line of the motion that has started last.
         self.running: At | None = None
-        #: How much has happened, so that one can see whether anything did.
+        #: How many events of the core there were.
         self.count = 0
-        self.stops: list[tuple[Task, Any]] = []
+        #: Whether the arm is on its way to the first point of the program [ADV-14].
+        self.is_coincidence_run = False
 
     # ---------------------------------------------------------------------------- planning
 
-    def plan(self, task: Task, request: Move | MoveSpline) -> Built:
+    def plan(self, task: Task, request: Move | MoveSpline) -> None:
         """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned."""
         triggers, task.triggers = task.triggers, []
         if isinstance(request, MoveSpline):
@@ -130,29 +149,37 @@ class Moving(World):
             for item in request.items:
                 if isinstance(item, SetTrigger):
                     self._check_trigger(item)
-            built = self.builder.block(request, triggers)
+            planned = self._builder.block(request, triggers)
         else:
-            built = self.builder.build(request, triggers)
-        self.load(task, built)
-        return built
+            planned = self._builder.build(request, triggers)
+        self._load(task, planned)
 
-    def load(self, task: Task, built: Built) -> None:
-        """Load what was built into the core. Raises `Fault`."""
-        motion = built.motion
+    def plan_return(self, task: Task, at: At, axes: Sequence[float]) -> None:
+        """Plan the motion back to where an interrupt routine has braked. Raises `Fault`."""
+        self._load(task, self._builder.back_to(at, axes))
+
+    @property
+    def is_unused(self) -> bool:
+        """Whether no motion was planned yet."""
+        return self._builder.count == 0
+
+    def _load(self, task: Task, planned: PlannedMotion) -> None:
+        """Load a motion into the core. Raises `Fault`."""
+        motion = planned.motion
         command = MotionCommand(motion)
         transaction = Transaction(command)
         places = [*motion.places, *(place for part in motion.parts for place in part.places)]
-        outputs, calls = self._link(built, command, transaction, places)
+        outputs, calls = self._link(planned, command, transaction, places)
         try:
-            self.core.load(self.clock.now, transaction)
+            self._core.load(self._state.clock.now, transaction)
         except Fault:
-            self.builder.forget()
+            self._builder.forget()
             raise
         self._outputs |= outputs
         self._calls |= calls
-        arm = self.core.arm
-        target = arm.target() if isinstance(arm, _Aiming) else None
-        self._ways[motion.number] = _Way(built, task, target)
+        arm = self._core.arm
+        target = arm.target() if isinstance(arm, _HasTarget) else None
+        self._queued[motion.number] = _QueuedMotion(planned, task, target)
         if _LENGTH_ZERO not in command.notices:
             self.points.append(
                 PlannedPoint(
@@ -168,16 +195,16 @@ class Moving(World):
             task.level.motions.add(motion.number)
             task.level.has_moved = True
         kind = motion.kind
-        self.trace.tell(
+        self._state.trace.record(
             task.name, "motion_planned", motion.at, motion=motion.number, motion_kind=kind
         )
         for number in command.notices:
-            self.say_number(motion.at, number)
+            self._state.messages.post_number(motion.at, number)
         self.collect()
 
     def _link(
         self,
-        built: Built,
+        planned: PlannedMotion,
         command: MotionCommand,
         transaction: Transaction,
         places: list[Place],
@@ -185,13 +212,13 @@ class Moving(World):
         outputs: dict[OutputCommand, SetTrigger] = {}
         calls: dict[CallCommand, SetTrigger] = {}
         for place in places:
-            trigger = built.triggers[place.key]
+            trigger = planned.triggers[place.key]
             then: OutputCommand | CallCommand
             if trigger.output is not None:
                 then = OutputCommand(*trigger.output)
                 outputs[then] = trigger
             else:
-                then = CallCommand(Call(trigger, trigger.action))
+                then = CallCommand(TriggerCall(trigger, trigger.action))
                 calls[then] = trigger
             transaction.add(then).link(command.reached(place), "start", then)
         return outputs, calls
@@ -202,7 +229,7 @@ class Moving(World):
             raise message_fault(1409)
         self._check_trigger(request)
         waiting = len(task.triggers) + len(self._outputs) + len(self._calls)
-        if waiting >= self.profile.most["triggers"]:
+        if waiting >= self._state.profile.most["triggers"]:
             raise message_fault(1524)
         task.triggers.append(request)
 
@@ -217,13 +244,13 @@ class Moving(World):
     def output_in_main_run(self, task: Task, at: At, path: Path, value: Value) -> None:
         """$OUT_C: written when the motion planned last ends or is at its apex [ADV-11]."""
         plain: Path = ("$OUT", *path[1:])
-        own = self._ways if task.level is None else task.level.motions
+        own = self._queued if task.level is None else task.level.motions
         number = max(own, default=0)
         if number and task.name == "robot":
-            self.variables.read(plain)  # whether there is such an output
+            self._state.variables.read(plain)  # whether there is such an output
             self._at_end[number].append((task, at, plain, value))
         else:
-            self.put_at(task.name, at, plain, value)
+            self._state.put_at(task.name, at, plain, value)
 
     def own_pending(self, task: Task) -> int:
         """How many motions of the program, or of the routine that interrupted it, have not ended.
@@ -233,152 +260,144 @@ class Moving(World):
         """
         if task.name == "submit":
             return 0
-        return self.core.pending() if task.level is None else len(task.level.motions)
+        return self._core.pending() if task.level is None else len(task.level.motions)
 
     @property
-    def moves(self) -> bool:
-        """Whether the arm is on its way, and not standing behind a brake."""
-        return self.core.arm.next_event() is not None
+    def pending(self) -> int:
+        """How many motions have not ended."""
+        return self._core.pending()
 
-    def hold_up(self) -> None:
-        """The advance run has been stopped behind the motion planned last, which has no next one.
+    def next_time(self) -> int | None:
+        """When the core does something next, as planned today."""
+        return self._core.next_time()
 
-        Why an earlier one does not blend is told by 1123 and not by 1442 [ADV-12].
+    def release(self) -> None:
+        """Execute all motions: there is no next one before the arm stands."""
+        self._core.release(self._state.clock.now)
+
+    def stop_advance(self) -> None:
+        """Note that the advance run stops behind the motion planned last, which has no next one.
+
+        The message of an earlier one that does not blend is 1123 and not 1442 [ADV-12].
         """
-        if self._ways:
-            self._ways[max(self._ways)].is_held_up = True
+        if self._queued:
+            self._queued[max(self._queued)].stops_advance = True
 
-    # ------------------------------------------------------------------------ what happens
-
-    def switch(self, path: Path, value: Value, time: int) -> None:
-        """The core switches an output. Raises `Fault`."""
-        before, self._is_switching = self._is_switching, True
-        self._switched.append([])
-        now, self.clock.now = self.clock.now, time
-        try:
-            self.variables.write(path, value)
-        except Fault:
-            self._switched.pop()
-            raise
-        finally:
-            self.clock.now = now
-            self._is_switching = before
-
-    def _signal_changed(self, name: str, place: int, value: Value) -> None:
-        if self._is_switching:
-            self._switched[-1].append((name, place, value))
-        else:
-            super()._signal_changed(name, place, value)
+    # ------------------------------------------------------------------ events of the core
 
     def collect(self) -> None:
-        """Take what the arm and the core have done up to now."""
-        for event in self.core.run_until(self.clock.now):
+        """Handle what the arm and the core have done up to now."""
+        for event in self._core.run_until(self._state.clock.now):
             self.count += 1
-            self._happened(event)
+            self._handle(event)
 
-    def _happened(self, event: CoreEvent) -> None:
-        """Something that the core tells."""
+    def _handle(self, event: CoreEvent) -> None:
         command = event.command
         if isinstance(command, MotionCommand):
-            self._moved(event, command.motion.number)
+            self._handle_motion(event, command.motion.number)
         elif isinstance(command, OutputCommand):
-            self._put_out(event, command)
+            self._handle_output(event, command)
         elif isinstance(command, CallCommand) and event.what == "started":
             self._fire(command)
         elif isinstance(command, CallCommand) and event.what == "cancelled":
             self._calls.pop(command, None)
         elif event.what == "stopped":
-            self.has_stopped = True
+            self._arm.has_stopped = True
 
-    def _moved(self, event: CoreEvent, number: int) -> None:
-        way = self._ways.get(number)
-        if way is None:
+    def _handle_motion(self, event: CoreEvent, number: int) -> None:
+        queued = self._queued.get(number)
+        if queued is None:
             return
-        motion, task = way.built.motion, way.task
+        motion, task = queued.planned.motion, queued.task
         if event.what in _KINDS:
             fields: dict[str, Any] = {"motion": number}
             if event.what == "started":
                 fields["motion_kind"] = motion.kind
-            self.trace.tell(task.name, _KINDS[event.what], motion.at, **fields)
+            self._state.trace.record(task.name, _KINDS[event.what], motion.at, **fields)
         match event.what:
             case "started":
-                self._begins(way)
-            case "reached" if event.key in way.built.stops:
-                self.stops.append((task, way.built.stops[event.key]))
+                self._started(queued)
+            case "reached" if event.key in queued.planned.stops:
+                self.passed_stops.append((task, queued.planned.stops[event.key]))
             case "ended":
-                self._ended(event, way)
+                self._ended(event, queued)
             case "cancelled" | "failed":
-                self._gone(number, task)
+                self._remove(number, task)
+                self._at_end.pop(number, None)
 
-    def _begins(self, way: _Way) -> None:
-        self.variables.main = way.built.snapshot
-        self.running = way.built.motion.at
-        self.positions.keep("BACK")
-        if way.target is not None:
-            self.positions.keep("FOR", (way.target.axes, way.target.flange))
-        if self.following is not None:
-            self.following.placed(self.clock.now, way.built.motion.settings.placement)
+    def _started(self, queued: _QueuedMotion) -> None:
+        planned = queued.planned
+        self._state.variables.main = planned.snapshot
+        self.running = planned.motion.at
+        self._positions.keep("BACK")
+        if queued.target is not None:
+            self._positions.keep("FOR", queued.target)
+        if self._tracking is not None:
+            self._tracking.placed(self._state.clock.now, planned.motion.settings.placement)
 
-    def _ended(self, event: CoreEvent, way: _Way) -> None:
-        motion, task, command = way.built.motion, way.task, event.command
-        self._gone(motion.number, task, keeps=True)
+    def _ended(self, event: CoreEvent, queued: _QueuedMotion) -> None:
+        state = self._state
+        motion, task, command = queued.planned.motion, queued.task, event.command
+        self._remove(motion.number, task)
         if isinstance(command, MotionCommand) and _LENGTH_ZERO in command.notices:
-            task.spent += self.profile.requests // 2  # it took no time: a loop of such has to wait
+            task.spent += state.profile.requests // 2  # it took no time: a loop of such has to wait
         for owner, at, path, value in self._at_end.pop(motion.number, ()):
-            self.put_at(owner.name, at, path, value)
-        if self._is_other_way(motion):
-            self.say_number(motion.at, 2936)
+            state.put_at(owner.name, at, path, value)
+        if self._has_other_posture(motion):
+            state.messages.post_number(motion.at, 2936)
         if event.arm is not None and event.arm.is_exact_unwanted:
-            number = 1442 if way.is_held_up else 1123  # [ADV-12]
-            stops = self.variables.read(("$STOPNOAPROX",)) is True
-            self.say_number(motion.at, number, "acknowledgement" if stops else "notification")
+            number = 1442 if queued.stops_advance else 1123  # [ADV-12]
+            stops = state.variables.read(("$STOPNOAPROX",)) is True
+            state.messages.post_number(
+                motion.at, number, "acknowledgement" if stops else "notification"
+            )
 
-    def _is_other_way(self, motion: Motion) -> bool:
+    def _has_other_posture(self, motion: Motion) -> bool:
         """Whether a path motion has ended with another Status or Turn than programmed [POS-10].
 
         Bits 3 and 4 of the Status mean nothing [POS-06].
         """
-        checks = self.variables.read(("$CP_STATMON",))
-        if not isinstance(checks, EnumValue) or motion.kind not in _PATHS or self.machine is None:
+        checks = self._state.variables.read(("$CP_STATMON",))
+        if not isinstance(checks, EnumValue) or motion.kind not in _PATHS:
             return False
-        status, turn = self.positions.status_turn(self.where()[0])
+        if self._state.machine is None:
+            return False
+        status, turn = self._positions.status_turn(self._positions.actual().axes)
         is_other = "S" in motion.target and (int(motion.target["S"]) ^ status) & _STATUS_BITS != 0
         has_turned = "T" in motion.target and int(motion.target["T"]) != turn
         word = checks.name.upper()
         return (word != "NONE" and is_other) or (word == "CHECK_TS" and has_turned)
 
-    def _gone(self, number: int, task: Task, *, keeps: bool = False) -> None:
-        del self._ways[number]
+    def _remove(self, number: int, task: Task) -> None:
+        del self._queued[number]
         for level in task.levels:
             level.motions.discard(number)
-        if not keeps:
-            self._at_end.pop(number, None)
 
-    def _put_out(self, event: CoreEvent, command: OutputCommand) -> None:
+    def _handle_output(self, event: CoreEvent, command: OutputCommand) -> None:
         trigger = self._outputs.get(command)
         if trigger is None or event.what == "started":
             return
+        state = self._state
         del self._outputs[command]
         if event.what != "ended":
             if event.fault is not None:
-                self.say("robot", trigger.at, event.fault.number or 0, event.fault.text)
+                state.messages.post("robot", trigger.at, event.fault.number or 0, event.fault.text)
             return
-        self.trace.tell(
+        state.trace.record(
             "robot",
             "trigger",
             trigger.at,
             sets=path_text(command.path),
             value=to_json(command.value),
         )
-        before, self.acting = self.acting, ("robot", trigger.at)
-        for name, place, value in self._switched.popleft():
-            super()._signal_changed(name, place, value)
-        self.acting = before
-        self._was_put(command.path, command.value)
+        with state.trace.attributed("robot", trigger.at):
+            for name, place, value in self._output_switch.next_changes():
+                state.signal_changed(name, place, value)
+        state.changed(command.path, command.value)
 
     def _fire(self, command: CallCommand) -> None:
         trigger = self._calls.pop(command, None)
         if trigger is None:
             return
-        self.trace.tell("robot", "trigger", trigger.at, priority=trigger.priority)
+        self._state.trace.record("robot", "trigger", trigger.at, priority=trigger.priority)
         self.fired.append(command)

@@ -6,13 +6,14 @@ is no complete PTP 1443.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
 from interp.controller.messages import message_fault, own_fault
-from interp.controller.positions import pose_of
-from interp.controller.variables import Snapshot, Variables
+from interp.controller.positions import FramesInForce, pose_of, word_of
+from interp.controller.state import ControllerState
+from interp.controller.variables import Snapshot
 from interp.port import requests
 from interp.port.requests import At, Move, MoveSpline, SetTrigger, SplineStop, Value
 from interp.robot.arm import (
@@ -24,11 +25,9 @@ from interp.robot.arm import (
     SplineRange,
     Target,
 )
-from interp.robot.kinematics.frames import IDENTITY, Pose
-from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.values.values import ArrayValue, EnumValue, StructureValue
+from interp.values.values import ArrayValue, StructureValue
 
-__all__ = ["Built", "MotionBuilder", "is_complete", "placement_of", "target_of"]
+__all__ = ["MotionBuilder", "PlannedMotion", "is_complete", "target_of"]
 
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})
@@ -36,7 +35,7 @@ _JOINT: Final = frozenset({"PTP", "SPTP"})
 
 
 @dataclass(slots=True, eq=False)
-class Built:
+class PlannedMotion:
     """A motion, the values it was planned with, and what its places mean, by their keys."""
 
     motion: Motion
@@ -58,23 +57,8 @@ def target_of(value: Value) -> Target:
 
 
 def is_complete(target: Target) -> bool:
-    """Whether it tells everything: six axes, or a pose with Status and Turn [MOT-10]."""
+    """Whether it is complete: six axes, or a pose with Status and Turn [MOT-10]."""
     return set(_AXES) <= set(target) or set("XYZABCST") <= set(target)
-
-
-def placement_of(values: Snapshot, robroot: Pose) -> Placement:
-    """The frames in force; a $TOOL or $BASE without a value counts as zero."""
-    mode = values["$IPO_MODE"]
-    return Placement(
-        pose_of(values["$BASE"]) or IDENTITY,
-        pose_of(values["$TOOL"]) or IDENTITY,
-        robroot,
-        IpoMode(_word(mode)),
-    )
-
-
-def _word(value: Any) -> str:
-    return f"#{value.name.upper()}" if isinstance(value, EnumValue) else str(value)
 
 
 def _numbers(value: Any, default: float) -> tuple[float, ...]:
@@ -95,12 +79,10 @@ def _begins_completely(block: MoveSpline) -> bool:
 class MotionBuilder:
     """Builds motions; counts them, and gives each place a key of its own."""
 
-    def __init__(
-        self, variables: Variables, robroot: Callable[[], Pose], is_reduced: Callable[[], bool]
-    ) -> None:
-        self._variables = variables
-        self._robroot = robroot
-        self._is_reduced = is_reduced
+    def __init__(self, state: ControllerState, frames: FramesInForce) -> None:
+        self._state = state
+        self._variables = state.variables
+        self._frames = frames
         self._number = 0
         self._key = 0
 
@@ -113,7 +95,7 @@ class MotionBuilder:
         """The motion built last was not planned."""
         self._number -= 1
 
-    def build(self, request: Move, triggers: Sequence[SetTrigger]) -> Built:
+    def build(self, request: Move, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """A single motion with the triggers before it. Raises `Fault`."""
         kind, _, suffix = request.kind.partition("_")
         if kind not in _KINDS or kind == "SPL":
@@ -136,16 +118,18 @@ class MotionBuilder:
             None if request.reference is None else f"#{request.reference.lstrip('#')}",
             request.criteria,
         )
-        built = Built(motion, snapshot)
+        built = PlannedMotion(motion, snapshot)
         built.motion = replace(motion, places=self._places(built, triggers))
         return built
 
-    def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> Built:
+    def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """A spline block. Raises `Fault`."""
         if self._number == 0 and not _begins_completely(request):
             raise message_fault(1443)
         snapshot = self._variables.snapshot(request.values)
-        built = Built(Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot)
+        built = PlannedMotion(
+            Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot
+        )
         outside = self._places(built, triggers)
         parts: list[SplinePart] = []
         ranges: list[SplineRange] = []
@@ -174,12 +158,14 @@ class MotionBuilder:
         )
         return built
 
-    def back_to(self, at: At, axes: Sequence[float]) -> Built:
+    def back_to(self, at: At, axes: Sequence[float]) -> PlannedMotion:
         """The way back to where an interrupt routine has stopped the arm."""
         snapshot = self._variables.snapshot()
         names = [*_AXES, *(f"E{place}" for place in range(1, 7))]
         target = dict(zip(names, axes, strict=False))
-        return Built(Motion(self._next(), at, "PTP", self._settings(snapshot), target), snapshot)
+        return PlannedMotion(
+            Motion(self._next(), at, "PTP", self._settings(snapshot), target), snapshot
+        )
 
     def _next(self) -> int:
         self._number += 1
@@ -217,7 +203,7 @@ class MotionBuilder:
     def _settings(self, values: Snapshot) -> Settings:
         velocity, acceleration, apo = values["$VEL"], values["$ACC"], values["$APO"]
         return Settings(
-            placement_of(values, self._robroot()),
+            self._frames.of(values),
             float(velocity.get("CP") or 0.0),
             float(acceleration.get("CP") or 0.0),
             _pair(velocity, acceleration, "ORI1"),
@@ -231,14 +217,14 @@ class MotionBuilder:
                 float(apo.get("CVEL") or 0.0),
                 float(apo.get("CORI") or 0.0),
             ),
-            _word(values["$ORI_TYPE"]),
-            _word(values["$CIRC_TYPE"]),
-            self._is_reduced(),
-            _word(self._variables.read(("$CP_VEL_TYPE",))),
-            _word(self._variables.read(("$TARGET_STATUS",))),
+            word_of(values["$ORI_TYPE"]),
+            word_of(values["$CIRC_TYPE"]),
+            self._state.mode == "T1",
+            word_of(self._variables.read(("$CP_VEL_TYPE",))),
+            word_of(self._variables.read(("$TARGET_STATUS",))),
         )
 
-    def _places(self, built: Built, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:
+    def _places(self, built: PlannedMotion, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:
         places = []
         for one in triggers:
             place = self._place(one.place_kind, one.place, one.on_start, one.delay)

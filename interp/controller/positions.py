@@ -12,38 +12,30 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
-from grammar.semantics.predefined import System
-from grammar.semantics.types import Structure
-from interp.controller.variables import Computed, Variables
+from interp.controller.predefined_values import empty_structure
+from interp.controller.state import ControllerState
+from interp.controller.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
-from interp.robot.kinematics.frames import Pose
+from interp.robot.api.control_core import ControlCore
+from interp.robot.arm import Position
+from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
-from interp.robot.kinematics.placement import Placement
+from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.kinematics.targets import turn_of
+from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import fault
-from interp.values.values import StructureValue, empty, single
+from interp.values.values import EnumValue, StructureValue, single
 
-__all__ = ["Positions", "Where", "axes_value", "pose_of", "pose_value"]
-
-#: The axes in degrees, and the flange in front of the robot's foot.
-Where = tuple[tuple[float, ...], Pose]
+__all__ = ["FramesInForce", "Positions", "axes_value", "pose_of", "pose_value", "word_of"]
 
 #: Degrees or mm by which an axis may miss a home position beside its tolerance.
 _HOME: Final = 1e-3
 
 
-def _structure(name: str) -> StructureValue:
-    type_ = System.load().types[name]
-    assert isinstance(type_, Structure)
-    value = empty(type_)
-    assert isinstance(value, StructureValue)
-    return value
-
-
 def axes_value(axes: Sequence[float]) -> StructureValue:
     """An E6AXIS; external axes that are not there are 0."""
-    value = _structure("E6AXIS")
+    value = empty_structure("E6AXIS")
     for place in range(len(value.members)):
         value.members[place] = single(axes[place] if place < len(axes) else 0.0)
     return value
@@ -53,7 +45,7 @@ def pose_value(
     pose: Pose, status: int = 0, turn: int = 0, externals: Sequence[float] = ()
 ) -> StructureValue:
     """An E6POS."""
-    value = _structure("E6POS")
+    value = empty_structure("E6POS")
     for name, number in zip("XYZABC", pose.components, strict=True):
         value.set(name, single(number))
     value.set("S", status)
@@ -69,49 +61,107 @@ def pose_of(frame: Any) -> Pose | None:
     return None if None in numbers else Pose.of(*map(float, numbers))
 
 
+def word_of(value: Any) -> str:
+    """A value of an enumeration as KRL writes it, ``#BASE``; others as they are printed."""
+    return f"#{value.name.upper()}" if isinstance(value, EnumValue) else str(value)
+
+
+class FramesInForce:
+    """$BASE, $TOOL, $ROBROOT and $IPO_MODE in the advance run and in the main run."""
+
+    def __init__(self, variables: Variables, machine: Machine | None, core: ControlCore) -> None:
+        self._variables = variables
+        self._machine = machine
+        self._core = core
+
+    def of(self, values: Snapshot) -> Placement:
+        """The frames of a motion; a $TOOL or $BASE without a value counts as zero."""
+        return Placement(
+            pose_of(values["$BASE"]) or IDENTITY,
+            pose_of(values["$TOOL"]) or IDENTITY,
+            self._robroot(),
+            IpoMode(word_of(values["$IPO_MODE"])),
+        )
+
+    def advance_run(self) -> Placement:
+        """The frames as the program has set them last."""
+        return self.of(self._variables.snapshot())
+
+    def main_run(self) -> Placement:
+        """The frames of the motion that runs; after the last one those of the advance run."""
+        return self.of(self._variables.main) if self._core.pending() else self.advance_run()
+
+    def _robroot(self) -> Pose:
+        """$ROBROOT of a data list, else that of the machine data."""
+        found = pose_of(self._variables.read(("$ROBROOT",)))
+        if found is not None and found != IDENTITY:
+            return found
+        return IDENTITY if self._machine is None else self._machine.robroot
+
+
 class Positions:
-    """Answers for all of them; ``actual`` and ``measured`` give where the arm is now."""
+    """The position of the arm now, as it is measured, and where it was at certain events.
+
+    ``tracking`` measures, where there is a robot.
+    """
 
     def __init__(
         self,
-        variables: Variables,
-        machine: Machine | None,
-        actual: Callable[[], Where],
-        measured: Callable[[], Where],
-        placement: Callable[[], Placement],
+        state: ControllerState,
+        core: ControlCore,
+        frames: FramesInForce,
+        tracking: Tracking | None,
     ) -> None:
-        self._kinematics = None if machine is None else Kinematics(machine)
-        self._placement = placement
-        self._kept: dict[str, Where] = {}
-        looks: Mapping[str, tuple[str, str, Callable[[], Where]]] = {
-            "actual": ("$AXIS_ACT", "$POS_ACT", actual),
-            "measured": ("$AXIS_ACT_MEAS", "$POS_ACT_MES", measured),
+        self._clock = state.clock
+        self._arm = core.arm
+        self._frames = frames
+        self._tracking = tracking
+        self._kinematics = None if state.machine is None else Kinematics(state.machine)
+        self._kept: dict[str, Position] = {}
+        shown: Mapping[str, tuple[str, str, Callable[[], Position]]] = {
+            "actual": ("$AXIS_ACT", "$POS_ACT", self.actual),
+            "measured": ("$AXIS_ACT_MEAS", "$POS_ACT_MES", self._measured),
             **{
-                name: (f"$AXIS_{name}", f"$POS_{name}", self._looker(name))
+                name: (f"$AXIS_{name}", f"$POS_{name}", partial(self._recall, name))
                 for name in ("INT", "RET", "BACK", "FOR")
             },
         }
-        self._actual = actual
-        self._variables = variables
+        self._variables = variables = state.variables
         homes: dict[str, tuple[Path, Path]] = {"$IN_HOME": (("$H_POS",), ("$H_POS_TOL",))}
         for place in range(1, 6):
             homes[f"$IN_HOME{place}"] = ("$AXIS_HOME", place), ("$H_AXIS_TOL", place)
         for name, (home, tolerance) in homes.items():
             variables.connect([name], Computed(partial(self._is_home, home, tolerance)))
-        for axes, pose, where in looks.values():
-            variables.connect([axes], Computed(partial(_axes_at, where)))
-            variables.connect([pose], Computed(partial(self._shown_at, where)))
+        for axes, pose, position in shown.values():
+            variables.connect([axes], Computed(partial(_axes_at, position)))
+            variables.connect([pose], Computed(partial(self._point_at, position)))
 
-    def keep(self, name: str, where: Where | None = None) -> None:
-        """Keep where the arm is now as INT, RET, BACK or FOR, or another position."""
-        self._kept[name] = self._actual() if where is None else where
+    def actual(self) -> Position:
+        """The set-point at this time."""
+        return self._arm.position(self._clock.now)
 
-    def shown(self, where: Where) -> StructureValue:
+    def keep(self, name: str, position: Position | None = None) -> None:
+        """Keep a position, by default the set-point at this time, as INT, RET, BACK or FOR."""
+        self._kept[name] = self.actual() if position is None else position
+
+    def _recall(self, name: str) -> Position:
+        if name not in self._kept:
+            raise fault("uninitialised")
+        return self._kept[name]
+
+    def _measured(self) -> Position:
+        if self._tracking is None or self._kinematics is None:
+            return self.actual()
+        axes = self._tracking.measured(self._clock.now)
+        flange = Pose.from_matrix(self._kinematics.forward(axes[:ROBOT_AXES]).tolist())
+        return Position(axes, flange)
+
+    def _point_at(self, position: Callable[[], Position]) -> StructureValue:
         """A position as $POS_ACT shows it: the point of the tool in the base, Status and Turn."""
-        axes, flange = where
-        status, turn = self.status_turn(axes)
-        point = self._placement().point(flange)
-        return pose_value(point, status, turn, axes[ROBOT_AXES:])
+        at = position()
+        status, turn = self.status_turn(at.axes)
+        point = self._frames.main_run().point(at.flange)
+        return pose_value(point, status, turn, at.axes[ROBOT_AXES:])
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
         """Status and Turn of axes; a Status of 0 where there is no machine data."""
@@ -119,33 +169,17 @@ class Positions:
         status = 0 if self._kinematics is None else int(self._kinematics.status(robot))
         return status, turn_of(robot)
 
-    def flange(self, axes: Sequence[float]) -> Pose:
-        """The flange in front of the robot's foot for axes in degrees."""
-        assert self._kinematics is not None, "only where there is machine data"
-        return Pose.from_matrix(self._kinematics.forward(axes[:ROBOT_AXES]).tolist())
-
     def _is_home(self, home: Path, tolerance: Path) -> Value:
         """Whether all axes that a home position names are there."""
         wanted: Any = self._variables.read(home)
         allowed: Any = self._variables.read(tolerance)
         names = [member.name for member in wanted.type.members]
-        for name, axis in zip(names, self._actual()[0], strict=False):
+        for name, axis in zip(names, self.actual().axes, strict=False):
             value = wanted.get(name)
             if value is not None and abs(axis - value) > abs(allowed.get(name) or 0.0) + _HOME:
                 return False
         return True
 
-    def _shown_at(self, where: Callable[[], Where]) -> StructureValue:
-        return self.shown(where())
 
-    def _looker(self, name: str) -> Callable[[], Where]:
-        def look() -> Where:
-            if name not in self._kept:
-                raise fault("uninitialised")
-            return self._kept[name]
-
-        return look
-
-
-def _axes_at(where: Callable[[], Where]) -> StructureValue:
-    return axes_value(where()[0])
+def _axes_at(position: Callable[[], Position]) -> StructureValue:
+    return axes_value(position().axes)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from functools import partial
-from typing import Protocol
 
 from grammar.semantics.types import Array, Enumeration, Structure, Type
-from interp.controller.clock import Agenda, Clock
+from interp.controller.channels import Channels
 from interp.controller.input_script import (
     Answer,
     Asked,
@@ -26,44 +25,29 @@ from interp.controller.input_script import (
     Step,
     Word,
 )
-from interp.controller.variables import Variables
+from interp.controller.operator_panel import OperatorPanel
+from interp.controller.state import ControllerState
 from interp.port.requests import Path, Value
 from interp.values.faults import Fault, LinkError
 from interp.values.values import constant, single
 
-__all__ = ["Player", "Stage"]
+__all__ = ["ScriptPlayer"]
 
 
-class Stage(Protocol):
-    """What a script acts on."""
-
-    def assign(self, path: Path, value: Value) -> None:
-        """Something outside gives a variable a value; raises `Fault`."""
-
-    def press(self, button: str, number: int | None) -> None:
-        """The operator presses a button."""
-
-    def choose(self, button: int) -> None:
-        """The operator answers the oldest dialogue."""
-
-    def receive(self, channel: str, text: str) -> None:
-        """A peer sends a text."""
-
-
-class Player:
-    """Plays one script on a stage.
+class ScriptPlayer:
+    """Plays one script.
 
     Raises `ScriptError` for what names no variable, no such index or no such value; all steps are
     tried for that before anything is played.
     """
 
     def __init__(
-        self, script: Script, variables: Variables, clock: Clock, agenda: Agenda, stage: Stage
+        self, script: Script, state: ControllerState, panel: OperatorPanel, channels: Channels
     ) -> None:
-        self._variables = variables
-        self._clock = clock
-        self._agenda = agenda
-        self._stage = stage
+        self._state = state
+        self._variables = state.variables
+        self._panel = panel
+        self._channels = channels
         self._steps: dict[Cause, list[Step]] = defaultdict(list)
         self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
         self._held: dict[Becomes, bool] = {}
@@ -82,9 +66,9 @@ class Player:
 
     # ------------------------------------------------------------------------- what happens
 
-    def changed(self, name: str) -> None:
+    def changed(self, path: Path, _value: Value) -> None:
         """A variable, or an element of it, was given a value."""
-        for cause, wanted in self._watched.get(name, ()):
+        for cause, wanted in self._watched.get(str(path[0]), ()):
             holds = self._variables.read(cause.path) == wanted
             before, self._held[cause] = self._held[cause], holds
             if holds and not before:
@@ -94,27 +78,25 @@ class Player:
         """The program halts."""
         self._happened(Halted())
 
-    def shown(self, number: int) -> None:
-        """A message is shown."""
+    def shown(self, number: int, kind: str) -> None:
+        """A message or a dialogue is shown."""
         self._happened(Shown(number))
         self._happened(Shown(None))
-
-    def asked(self) -> None:
-        """A dialogue is shown."""
-        self._happened(Asked())
+        if kind == "dialogue":
+            self._happened(Asked())
 
     def received(self, channel: str, text: str) -> None:
-        """The peer of a channel is sent a text."""
+        """A program has sent a text to the peer of a channel."""
         self._happened(Received(channel, text))
         self._happened(Received(channel, None))
 
     def _happened(self, cause: Cause) -> None:
         for step in self._steps.get(cause, ()):
-            self._coming(self._clock.now + step.delay, step)
+            self._coming(self._state.clock.now + step.delay, step)
 
     def _coming(self, time: int, step: Step) -> None:
         self._ahead.append(step)
-        self._agenda.add(time, partial(self._do, step))
+        self._state.actions.add(time, partial(self._do, step))
 
     def awaits(self, button: str) -> bool:
         """Whether a step that presses a button is still to come, or may come.
@@ -141,15 +123,15 @@ class Player:
             match action:
                 case Assign(path, value):
                     try:
-                        self._stage.assign(path, self._typed(path, value))
+                        self._state.assign(path, self._typed(path, value))
                     except Fault as fault:
                         raise ScriptError(f"{step.at}: {fault}") from None
                 case Press(button, number):
-                    self._stage.press(button, number)
+                    self._panel.press(button, number)
                 case Answer(button):
-                    self._stage.choose(button)
+                    self._panel.answer(button)
                 case Send(channel, text):
-                    self._stage.receive(channel, text)
+                    self._channels.receive(channel, text)
 
     def _check(self, step: Step) -> None:
         pairs = [(one.path, one.value) for one in step.actions if isinstance(one, Assign)]

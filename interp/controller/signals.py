@@ -7,34 +7,36 @@ bits it has a sign. Analog values lie between -1 and 1 [IOT-06].
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Final
 
-from interp.controller.clock import Appointment, Clock
+from interp.controller.clock import Clock, TimedAction
 from interp.controller.profile import Profile
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import single
 
-__all__ = ["ALWAYS_FALSE", "ALWAYS_TRUE", "Signals"]
+__all__ = ["ALWAYS_FALSE", "ALWAYS_TRUE", "Change", "Signals"]
 
 ALWAYS_TRUE: Final = 1025
 ALWAYS_FALSE: Final = 1026
 _SHORTEST: Final = 0.1
 _LONGEST: Final = 3.0
 
-#: Told of a change: the array, the index, the new value.
-Changed = Callable[[str, int, Value], None]
-Later = Callable[[int, Callable[[], None]], Appointment]
+#: A change of a signal: the array, the index, the new value.
+Change = tuple[str, int, Value]
+Report = Callable[[str, int, Value], None]
+Later = Callable[[int, Callable[[], None]], TimedAction]
 
 
 class Signals:
     """All of them by the names of their arrays.
 
-    ``later`` does something at a time, in µs; ``changed`` is told of every change.
+    ``later`` does something at a time, in µs; ``report`` is called with every change.
     """
 
-    def __init__(self, profile: Profile, clock: Clock, later: Later, changed: Changed) -> None:
+    def __init__(self, profile: Profile, clock: Clock, later: Later, report: Report) -> None:
         sizes = profile.sizes
         self._digital = {
             "$IN": [False] * (sizes["inputs"] + 1),
@@ -48,8 +50,8 @@ class Signals:
             self._digital["$IN"][ALWAYS_TRUE] = True
         self._clock = clock
         self._later = later
-        self._changed = changed
-        self._pulses: dict[int, tuple[bool, Appointment]] = {}
+        self._report = report
+        self._pulses: dict[int, tuple[bool, TimedAction]] = {}
 
     def read(self, path: Path) -> Value:
         """The value of one signal or of a group; faults `index`."""
@@ -100,10 +102,20 @@ class Signals:
 
         self._pulses[number] = level, self._later(end, over)
 
+    @contextmanager
+    def deferred(self) -> Iterator[list[Change]]:
+        """Collect the changes within this context instead of reporting them."""
+        changes: list[Change] = []
+        before, self._report = self._report, lambda *change: changes.append(change)
+        try:
+            yield changes
+        finally:
+            self._report = before
+
     def _end_pulse(self, number: int) -> None:
         running = self._pulses.pop(number, None)
         if running is not None:
-            running[1].is_off = True
+            running[1].is_cancelled = True
 
     def _put_bit(self, name: str, place: int, value: bool) -> None:
         if name == "$IN" and place in (ALWAYS_TRUE, ALWAYS_FALSE):
@@ -112,7 +124,7 @@ class Signals:
             self._end_pulse(place)
         if self._digital[name][place] != value:
             self._digital[name][place] = value
-            self._changed(name, place, value)
+            self._report(name, place, value)
 
     def _put_analog(self, name: str, place: int, value: Value) -> None:
         if not isinstance(value, int | float) or isinstance(value, bool):
@@ -121,7 +133,7 @@ class Signals:
             raise fault("invalid")
         if self._analog[name][place] != value:
             self._analog[name][place] = single(value)
-            self._changed(name, place, single(value))
+            self._report(name, place, single(value))
 
     def _range(self, path: Path) -> tuple[str, int, int]:
         """The array, and the first and last index."""

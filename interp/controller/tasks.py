@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 from interp.controller.interrupts import Interrupt, Interrupts
-from interp.controller.trace import Task as TaskName
-from interp.controller.trace import TaskSink
-from interp.port.executor import Executor
-from interp.port.requests import At, Request, SetTrigger, SwitchSignal, Value
+from interp.controller.trace import TaskName, TaskSink
+from interp.port.executor import Executor, Reader
+from interp.port.requests import At, Code, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand
+from interp.values.faults import Fault
 
-__all__ = ["ALWAYS", "Blocked", "Level", "LevelKind", "Task"]
+__all__ = ["ALWAYS", "PROGRAM", "Answer", "Blocked", "Level", "LevelKind", "Task"]
 
 #: The priority of what nothing interrupts: plain actions of triggers, cyclic signals.
 ALWAYS: Final = 0
@@ -38,9 +38,13 @@ class Blocked:
 
     request: Request
     is_ready: Callable[[], bool]
-    finish: Callable[[], Any]
+    finish: Callable[[], Answer]
     wake: int | None = None
     is_open: bool = True
+
+
+#: What a request is answered: a reply, a `Fault` to be raised in the program, or a wait.
+Answer = Value | Fault | Blocked | None
 
 
 @dataclass(slots=True, eq=False)
@@ -49,7 +53,7 @@ class Level:
 
     ``depth`` is that of the program then, ``saved`` what it waited for. ``motions`` are the numbers
     of its own motions that have not ended. ``base`` is $BASE as it was, which the routine changes
-    for itself only [INT-13]. ``stand`` are the axes at which its BRAKE stopped the arm.
+    for itself only [INT-13]. ``braked_at`` are the axes at which its BRAKE stopped the arm.
     """
 
     kind: LevelKind
@@ -64,16 +68,16 @@ class Level:
     motions: set[int] = field(default_factory=set)
     has_moved: bool = False
     has_braked: bool = False
-    stand: tuple[float, ...] | None = None
+    braked_at: tuple[float, ...] | None = None
 
 
 @dataclass(slots=True, eq=False)
 class Task:
     """One program with its interrupts, which are its own [INT-17].
 
-    ``spared`` is the line whose requests do not stop the advance run, behind a CONTINUE. ``spent``
-    are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the next motion.
-    ``polling`` is where a WAIT FOR waits, ``last_at`` where the last request came from.
+    ``exempt_line`` is the line whose requests do not stop the advance run, behind a CONTINUE.
+    ``spent`` are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the
+    next motion. ``polling`` is where a WAIT FOR waits, ``last_at`` the place of the last request.
     """
 
     name: TaskName
@@ -82,8 +86,8 @@ class Task:
     interrupts: Interrupts
     levels: list[Level] = field(default_factory=list)
     blocked: Blocked | None = None
-    reply: Any = None
-    spared: tuple[str, int] | None = None
+    reply: Value | Fault | None = None
+    exempt_line: tuple[str, int] | None = None
     spent: int = 0
     slice_end: int = -1
     polling: At | None = None
@@ -107,3 +111,14 @@ class Task:
     def priority(self) -> int:
         """The priority of what runs: only a lower number interrupts it."""
         return self.levels[-1].priority if self.levels else PROGRAM
+
+    @property
+    def at(self) -> At:
+        """Where the program is."""
+        if self.blocked is not None:
+            return self.blocked.request.at
+        return self.level.at if self.level is not None else self.last_at
+
+    def holds(self, condition: Code, read: Reader) -> bool:
+        """Whether a condition is TRUE now; ``read`` reads system variables. Raises `Fault`."""
+        return self.executor.evaluate(condition, read) is True

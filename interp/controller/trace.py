@@ -7,7 +7,8 @@ executor, of wall-clock time or of memory, and a line of JSON is written in one 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
@@ -15,9 +16,9 @@ from interp.port.events import EVERY_KIND, Kind
 from interp.port.requests import At, Path, Value
 from interp.values.json_form import to_json
 
-__all__ = ["KINDS", "Task", "TaskSink", "Trace", "TraceEvent", "path_text"]
+__all__ = ["KINDS", "TaskName", "TaskSink", "Trace", "TraceEvent", "path_text"]
 
-Task = Literal["robot", "submit"]
+TaskName = Literal["robot", "submit"]
 
 #: The kinds of events; ``line`` and ``assign`` are of the full level only.
 KINDS: Final = tuple(
@@ -31,14 +32,14 @@ KINDS: Final = tuple(
 
 @dataclass(frozen=True, slots=True)
 class TraceEvent:
-    """One event: ``time`` in µs, whose it is, its kind, the line it comes from, and what it tells.
+    """One event: ``time`` in µs, whose it is, its kind, the line it comes from, and its fields.
 
     ``at`` is ``None`` for what comes from outside the program, such as an input. ``fields`` are
     ready for JSON.
     """
 
     time: int
-    task: Task
+    task: TaskName
     kind: str
     at: At | None
     fields: Mapping[str, Any] = field(default_factory=dict)
@@ -70,10 +71,11 @@ def path_text(path: Path) -> str:
 
 
 class Trace:
-    """Takes events with the time that the controller's clock has.
+    """Records events with the time that the controller's clock has.
 
     ``take`` receives each event as it happens; by default they are kept in ``events``. With
-    ``is_full`` every line and assignment is told too.
+    ``is_full`` every line and assignment is recorded too. ``origin`` is the task and the line that
+    cause what changes now; the line is ``None`` for what comes from outside.
     """
 
     def __init__(
@@ -82,26 +84,40 @@ class Trace:
         self.events: list[TraceEvent] = []
         self.now = 0
         self.is_full = is_full
+        self.origin: tuple[TaskName, At | None] = ("robot", None)
         self._take = take or self.events.append
 
-    def tell(self, task: Task, kind: str, at: At | None, **fields: Any) -> None:
-        """Something happened now."""
+    def record(self, task: TaskName, kind: str, at: At | None, **fields: Any) -> None:
+        """Record that something happened now."""
         self._take(TraceEvent(self.now, task, kind, at, fields))
 
-    def sink(self, task: Task = "robot") -> TaskSink:
-        """What an executor is given, so that what it tells gets into this trace."""
+    def record_change(self, kind: str, **fields: Any) -> None:
+        """Record a change that `origin` has caused."""
+        self.record(self.origin[0], kind, self.origin[1], **fields)
+
+    @contextmanager
+    def attributed(self, task: TaskName, at: At | None) -> Iterator[None]:
+        """Changes within this context are caused by a line of a task."""
+        before, self.origin = self.origin, (task, at)
+        try:
+            yield
+        finally:
+            self.origin = before
+
+    def sink(self, task: TaskName = "robot") -> TaskSink:
+        """The sink of an executor whose events belong into this trace."""
         return TaskSink(self, task)
 
 
 class TaskSink:
-    """Takes what one executor tells.
+    """Records the events of one executor.
 
-    The controller is told by ``left`` which depth a routine had that has ended: interrupts that it
-    declared end with it [INT-04].
+    ``left`` is called with the depth of each routine that has ended: interrupts that it declared
+    end with it [INT-04].
     """
 
-    def __init__(self, trace: Trace, task: Task) -> None:
-        self.task: Task = task
+    def __init__(self, trace: Trace, task: TaskName) -> None:
+        self.task: TaskName = task
         self.left: Callable[[int], None] | None = None
         self._trace = trace
         self._names: dict[int, str] = {}
@@ -117,23 +133,23 @@ class TaskSink:
 
     def line(self, at: At) -> None:
         """A statement begins."""
-        self._trace.tell(self.task, "line", at)
+        self._trace.record(self.task, "line", at)
 
     def assign(self, at: At, path: Path, value: Value | None) -> None:
         """A variable of the program was assigned."""
-        self._trace.tell(self.task, "assign", at, name=path_text(path), value=to_json(value))
+        self._trace.record(self.task, "assign", at, name=path_text(path), value=to_json(value))
 
     def call(self, at: At, name: str) -> None:
         """A routine is called."""
         self._names[at.depth + 1] = name
-        self._trace.tell(self.task, "call", at, name=name)
+        self._trace.record(self.task, "call", at, name=name)
 
     def leave(self, at: At, name: str) -> None:
         """A routine has ended."""
-        self._trace.tell(self.task, "return", at, name=name)
+        self._trace.record(self.task, "return", at, name=name)
         if self.left is not None:
             self.left(at.depth)
 
     def branch(self, at: At, way: int) -> None:
         """A way was taken."""
-        self._trace.tell(self.task, "branch", at, way=way)
+        self._trace.record(self.task, "branch", at, way=way)

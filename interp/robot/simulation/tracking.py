@@ -20,7 +20,7 @@ from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.robots import Robot, RobotFault
 
-__all__ = ["Following", "PathRecord"]
+__all__ = ["PathRecord", "Tracking"]
 
 Array = npt.NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class PathRecord:
         return columns
 
 
-class Following:
+class Tracking:
     """Sends the set-points of a path to a robot as time goes on.
 
     ``start`` is where the arm stands at time 0, as `Machine.standing` takes it; ``cycle`` the

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from grammar.syntax.source import Source
-from interp.controller import Controller, Outcome, Profile, Script, Trace, TraceEvent
+from interp.controller import Controller, Profile, RunOutcome, Script, Trace, TraceEvent
 from interp.executors import Prepared
 from interp.program.load import Limits, load
 from interp.robot.api.control_core import ControlCore
@@ -228,7 +228,7 @@ class SecondArm:
 class Ran:
     """A run: how it ended, and its trace."""
 
-    outcome: Outcome
+    outcome: RunOutcome
     events: list[TraceEvent]
     controller: Controller
     arm: SecondArm

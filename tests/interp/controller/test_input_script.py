@@ -159,14 +159,14 @@ def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bo
     cycles = [1.008 + 0.012 * place for place in range(len(changes))]
     assert cycles == pytest.approx(ran.times("in"))
     assert ("time" if "FLAG" in condition else "end") == ran.outcome.ending
-    assert len(changes) == ran.controller.fulfilling.count
+    assert len(changes) == ran.controller.automatic_inputs.count
 
 
 def test_scripted_inputs_are_not_fulfilled(go: Go) -> None:
     """What a script sets itself comes when the script says."""
     ran = go("DEF main()\nWAIT FOR $IN[3]\nEND\n", "fulfil waits\nt=2 IN[3]=TRUE")
     assert [2.0] == ran.times("in")
-    assert 0 == ran.controller.fulfilling.count
+    assert 0 == ran.controller.automatic_inputs.count
 
 
 def test_waits_begin_anew(go: Go) -> None:

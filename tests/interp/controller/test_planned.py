@@ -30,7 +30,7 @@ class Ran:
         self,
         text: str,
         script: str = "",
-        following: Any = None,
+        tracking: Any = None,
         until: int = 60_000_000,
     ) -> None:
         machine = default_machine()
@@ -46,7 +46,7 @@ class Ran:
             trace=trace,
             sink=sink,
             machine=machine,
-            following=following,
+            tracking=tracking,
         )
         self.outcome = self.controller.run(until)
         self.events = trace.events
@@ -238,7 +238,7 @@ class Colliding:
 def test_robot_that_cannot_go_on() -> None:
     """A fault of the robot stops the arm hard and ends the program at the running motion."""
     robot = Colliding()
-    ran = Ran(program("$VEL.CP=0.05\nLIN {Y -100}\n"), following=robot)
+    ran = Ran(program("$VEL.CP=0.05\nLIN {Y -100}\n"), tracking=robot)
     assert ("fault", "collision") == (ran.outcome.ending, ran.outcome.error.slug)  # type: ignore[union-attr]
     assert 9 == ran.outcome.at.line  # type: ignore[union-attr]
     assert 1_000_000 <= ran.times("fault")[0] <= 1_000_000 + robot.chunk

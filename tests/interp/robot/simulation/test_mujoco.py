@@ -18,7 +18,7 @@ from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine
 from interp.robot.simulation.mujoco_model import Box
 from interp.robot.simulation.robots import RobotFault, make_robot
-from interp.robot.simulation.tracking import Following
+from interp.robot.simulation.tracking import Tracking
 
 pytest.importorskip("mujoco")
 pytest.importorskip("ruckig")
@@ -152,17 +152,17 @@ def test_a_planned_line_at_a_metre_a_second() -> None:
     home = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)
-    following = Following(arm, MujocoRobot(machine), machine, 12_000, home)
+    tracking = Tracking(arm, MujocoRobot(machine), machine, 12_000, home)
     core.load(
         0,
         Transaction(motions.ptp(x=0, y=-280, z=0, a=0, b=0, c=180, s=2, t=2), motions.lin(y=280)),
     )
-    following.placed(0, tool)
+    tracking.placed(0, tool)
     while (time := core.next_time()) is not None:
         core.run_until(time)
-        following.advance(time)
-    following.settle(core.now)
-    record = following.record()
+        tracking.advance(time)
+    tracking.settle(core.now)
+    record = tracking.record()
     assert record.points_measured is not None
     steps = np.linalg.norm(np.diff(record.points[:, :3], axis=0), axis=1) / 12.0
     is_line = np.abs(record.points[:, 0]) + np.abs(record.points[:, 2]) < 1e-6
@@ -179,7 +179,7 @@ def test_any_path_up_to_a_metre_a_second() -> None:
     home = (0.0, -90.0, 90.0, 0.0, 90.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)
-    following = Following(arm, MujocoRobot(machine), machine, 12_000, home)
+    tracking = Tracking(arm, MujocoRobot(machine), machine, 12_000, home)
     work = [
         motions.ptp(a1=-90, a2=-60, a3=90, a4=90, a5=60, a6=200),
         motions.ptp(a1=-30, a2=-90, a3=90, a4=0, a5=90, a6=0),
@@ -190,9 +190,9 @@ def test_any_path_up_to_a_metre_a_second() -> None:
     core.load(0, Transaction(*work))
     while (time := core.next_time()) is not None:
         core.run_until(time)
-        following.advance(time)
-    following.settle(core.now)
-    record = following.record()
+        tracking.advance(time)
+    tracking.settle(core.now)
+    record = tracking.record()
     assert record.tips_measured is not None
     steps = np.linalg.norm(np.diff(record.tips, axis=0), axis=1) / 12.0
     off = np.linalg.norm(record.tips - record.tips_measured, axis=1)[1:]

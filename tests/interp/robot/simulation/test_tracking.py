@@ -15,7 +15,7 @@ from interp.robot.kinematics.solver import Arm
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.robots import KinematicRobot, NoRobot, RobotFault, make_robot
-from interp.robot.simulation.tracking import Following
+from interp.robot.simulation.tracking import Tracking
 
 START = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 
@@ -59,11 +59,11 @@ def arm() -> Any:
 
 def test_a_row_each_cycle(arm: Any) -> None:
     """The record has the start and each interpolation cycle, with the flange at axis angles."""
-    following = Following(arm, KinematicRobot(12_000), default_machine(), 12_000, START)
-    following.advance(40_000)
+    tracking = Tracking(arm, KinematicRobot(12_000), default_machine(), 12_000, START)
+    tracking.advance(40_000)
     assert [] == arm.asked
-    following.settle(40_000)
-    record = following.record()
+    tracking.settle(40_000)
+    record = tracking.record()
     assert [0, 12_000, 24_000, 36_000] == record.times.tolist()
     assert [0.0, 12.0, 24.0, 36.0] == record.axes[:, 0].tolist()
     flange = Pose.from_matrix(Arm(default_machine()).forward((36.0, *START[1:])).tolist())
@@ -75,10 +75,10 @@ def test_a_row_each_cycle(arm: Any) -> None:
 def test_external_axes_nobody_told_the_start_of(machine: Machine) -> None:
     """They stand at 0 at first, in the record and for the robot, and have columns of their own."""
     arm = PlannedArm(machine, START, is_selected=False)
-    following = Following(arm, KinematicRobot(12_000), machine, 12_000, START)
+    tracking = Tracking(arm, KinematicRobot(12_000), machine, 12_000, START)
     arm.plan(0, Motion(1, At("test.src", 1, 0), "PTP", Settings(), {"E1": 300.0}))
-    following.settle(2_000_000)
-    columns = following.record().columns()
+    tracking.settle(2_000_000)
+    columns = tracking.record().columns()
     assert 0.0 == columns["e1"][0]
     assert 300.0 == pytest.approx(columns["e1"][-1])
     assert "t q1 q2 q3 q4 q5 q6 e1 x y z a b c".split() == list(columns)
@@ -86,35 +86,35 @@ def test_external_axes_nobody_told_the_start_of(machine: Machine) -> None:
 
 def test_set_points_go_in_chunks(arm: Any) -> None:
     """They are asked for a second's worth at once, however often time goes on."""
-    following = Following(arm, KinematicRobot(10_000), default_machine(), 10_000, START)
+    tracking = Tracking(arm, KinematicRobot(10_000), default_machine(), 10_000, START)
     for now in range(0, 2_500_000, 3_000):
-        following.advance(now)
+        tracking.advance(now)
     assert [100, 100] == arm.asked
-    following.settle(2_500_000)
+    tracking.settle(2_500_000)
     assert [100, 100, 50] == arm.asked
 
 
 def test_points_in_the_frames_in_force(arm: Any) -> None:
     """From the time on that other frames are in force, points count in them."""
-    following = Following(arm, KinematicRobot(12_000), default_machine(), 12_000, START)
+    tracking = Tracking(arm, KinematicRobot(12_000), default_machine(), 12_000, START)
     placement = Placement(base=Pose.of(100, 200, 300, 20, 10, 5), tool=Pose.of(z=50, b=30))
-    following.placed(18_000, Placement(base=Pose.of(1.0)))
-    following.placed(18_000, placement)
-    following.settle(36_000)
-    points = following.record().points
-    flanges = Arm(default_machine()).forward(following.record().axes)
+    tracking.placed(18_000, Placement(base=Pose.of(1.0)))
+    tracking.placed(18_000, placement)
+    tracking.settle(36_000)
+    points = tracking.record().points
+    flanges = Arm(default_machine()).forward(tracking.record().axes)
     assert Pose.from_matrix(flanges[1]).components == pytest.approx(points[1], abs=1e-9)
     expected = placement.point(Pose.from_matrix(flanges[2])).components
     assert expected == pytest.approx(points[2], abs=1e-9)
     tip = (Pose.from_matrix(flanges[2]) @ placement.tool).position
-    assert tip == pytest.approx(following.record().tips[2], abs=1e-9)
+    assert tip == pytest.approx(tracking.record().tips[2], abs=1e-9)
 
 
 def test_measured_positions(arm: Any) -> None:
     """What a robot measures stands beside the set-points, and is known at any time."""
-    following = Following(arm, Lagging(12_000), default_machine(), 12_000, START)
-    assert 60.5 - 0.5 - 0.5 == following.measured(60_500)[0]
-    record = following.record()
+    tracking = Tracking(arm, Lagging(12_000), default_machine(), 12_000, START)
+    assert 60.5 - 0.5 - 0.5 == tracking.measured(60_500)[0]
+    record = tracking.record()
     assert record.axes_measured is not None
     assert [0.0, 11.5, 23.5, 35.5, 47.5, 59.5] == record.axes_measured[:, 0].tolist()
     assert "q1_meas" in record.columns()
@@ -123,26 +123,26 @@ def test_measured_positions(arm: Any) -> None:
 
 def test_a_fault_of_the_robot(arm: Any) -> None:
     """It is told when its chunk is sent, and the record ends before it."""
-    following = Following(arm, Lagging(12_000), default_machine(), 12_000, START)
+    tracking = Tracking(arm, Lagging(12_000), default_machine(), 12_000, START)
     with pytest.raises(RobotFault, match="a touches b"):
-        following.advance(150_000)
-    times = following.record().times
+        tracking.advance(150_000)
+    times = tracking.record().times
     assert 96_000 == times[-1]
-    assert len(times) == len(following.record().columns()["q1_meas"])
+    assert len(times) == len(tracking.record().columns()["q1_meas"])
 
 
 def test_no_robot(arm: Any) -> None:
     """Without a robot no set-point is ever taken; the plan stands for what is measured."""
-    following = Following(arm, NoRobot(), default_machine(), 12_000, START)
-    following.settle(5_000_000)
-    assert ([], 7.0) == (arm.asked, following.measured(7_000)[0])
-    assert [0] == following.record().times.tolist()
+    tracking = Tracking(arm, NoRobot(), default_machine(), 12_000, START)
+    tracking.settle(5_000_000)
+    assert ([], 7.0) == (arm.asked, tracking.measured(7_000)[0])
+    assert [0] == tracking.record().times.tolist()
 
 
 def test_a_cycle_the_robot_cannot_keep(arm: Any) -> None:
     """The interpolation cycle is a multiple of the robot's step."""
     with pytest.raises(ValueError, match="no multiple"):
-        Following(arm, Lagging(12_000), default_machine(), 12_500, START)
+        Tracking(arm, Lagging(12_000), default_machine(), 12_500, START)
 
 
 def test_robots_by_name() -> None:

@@ -1,0 +1,83 @@
+"""The override, braking and going on of the arm, whoever wants it: operator, BRAKE, ROB_STOP."""
+
+from __future__ import annotations
+
+from interp.controller.clock import Clock
+from interp.controller.variables import Variables
+from interp.port.requests import Path, Value
+from interp.robot.api.control_core import ControlCore
+
+__all__ = ["ArmControl"]
+
+
+class ArmControl:
+    """Stops and starts the arm through its control core."""
+
+    def __init__(self, core: ControlCore, clock: Clock, variables: Variables) -> None:
+        self.core = core
+        #: Whether the arm has come to rest since it was braked last.
+        self.has_stopped = False
+        self._clock = clock
+        self._variables = variables
+        self._is_held = False
+        self._is_halted = False
+        self._apply_override()
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether the arm moves, or will before anything else happens: it is not braked."""
+        return self.core.arm.next_event() is not None
+
+    @property
+    def is_standing(self) -> bool:
+        """Whether the arm is at rest after a brake."""
+        return self.has_stopped or self.core.next_time() is None
+
+    def brake(self, *, is_hard: bool) -> None:
+        """Stop on the path; `has_stopped` becomes true when the arm is at rest."""
+        self.has_stopped = False
+        self.core.brake(self._clock.now, is_hard=is_hard)
+
+    def proceed(self) -> None:
+        """Go on after a brake."""
+        self.core.proceed(self._clock.now)
+
+    def discard(self) -> None:
+        """Forget all motions; the arm comes to rest on its path."""
+        self.has_stopped = False
+        self.core.discard(self._clock.now)
+
+    # ------------------------------------------------------------------ operator and faults
+
+    def halt(self, *, is_hard: bool = False) -> None:
+        """Brake, if the arm moves and was not halted before."""
+        self.has_stopped = False
+        if self.is_moving and not self._is_halted:
+            self._is_halted = True
+            self.brake(is_hard=is_hard)
+
+    def end_halt(self) -> None:
+        """Go on after `halt`."""
+        if self._is_halted:
+            self._is_halted = False
+            self.proceed()
+
+    # ------------------------------------------------------------------------- the override
+
+    def hold(self) -> None:
+        """ROB_STOP: brake on the path; the override has no effect until `release` [FCT-11]."""
+        self._is_held = True
+        self.core.override(self._clock.now, 0.0)
+
+    def release(self) -> None:
+        """ROB_STOP_RELEASE: go on with $OV_PRO."""
+        self._is_held = False
+        self._apply_override()
+
+    def changed(self, path: Path, value: Value) -> None:
+        """A system variable was given a value: $OV_PRO takes effect at once."""
+        if path[0] == "$OV_PRO" and isinstance(value, int | float) and not self._is_held:
+            self.core.override(self._clock.now, float(value))
+
+    def _apply_override(self) -> None:
+        self.changed(("$OV_PRO",), self._variables.read(("$OV_PRO",)))

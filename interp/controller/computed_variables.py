@@ -1,0 +1,85 @@
+"""The system variables that are computed whenever they are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from interp.controller.channels import COMMANDS
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.predefined_values import empty_structure, word
+from interp.controller.signals import Signals
+from interp.controller.state import ControllerState
+from interp.controller.timers import date_members
+from interp.controller.trace import TaskName
+from interp.controller.variables import Computed
+from interp.port.requests import Path, Value
+from interp.robot.api.control_core import ControlCore
+from interp.values.values import single
+
+__all__ = ["connect_computed"]
+
+
+def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQueue) -> None:
+    """Connect them all; those of positions are connected by `interp.controller.positions`."""
+    arm, clock, profile, states = core.arm, state.clock, state.profile, state.program_states
+    computed: Mapping[str, Callable[[], Value]] = {
+        "$DATE": partial(_date, state),
+        "$ROB_TIMER": lambda: clock.tick // 1000,
+        "$PRO_STATE": partial(_program_state, state, "robot"),
+        "$PRO_STATE1": partial(_program_state, state, "robot"),
+        "$PRO_STATE0": partial(_program_state, state, "submit"),
+        "$PRO_ACT": lambda: states["robot"] == "P_ACTIVE",
+        "$PRO_MOVE": lambda: states["robot"] == "P_ACTIVE" and core.pending() > 0,
+        "$ROB_STOPPED": lambda: arm.speed(clock.now) == 0.0,
+        "$MOVE_BCO": lambda: queue.is_coincidence_run,
+        "$ON_PATH": lambda: True,
+        "$ACT_ADVANCE": lambda: max(0, core.pending() - 1),
+        "$VEL_ACT": lambda: single(arm.speed(clock.now)),
+        "$DISTANCE": lambda: single(arm.distances(clock.now)[0]),
+        "$DIST_NEXT": lambda: single(arm.distances(clock.now)[1]),
+        "$STOPMESS": lambda: bool(state.messages.unacknowledged),
+        "$I_O_ACTCONF": lambda: state.mode == "EX",
+        "$NUM_IN": lambda: profile.sizes["inputs"],
+        "$NUM_OUT": lambda: profile.sizes["outputs"],
+        "$NULLFRAME": _null_frame,
+        "$T1": lambda: state.mode == "T1",
+        "$T2": lambda: state.mode == "T2",
+        "$AUT": lambda: state.mode == "AUT",
+        "$EXT": lambda: state.mode == "EX",
+    }
+    for name, compute in computed.items():
+        state.variables.connect([name], Computed(compute))
+    state.variables.connect(["$OUT_C"], _MainRunOutputs(state.signals))
+    for name, handle in COMMANDS.items():
+        state.variables.put((name,), handle)
+
+
+@dataclass(frozen=True, slots=True)
+class _MainRunOutputs:
+    """$OUT_C is read as $OUT; the motion queue decides when a write takes effect [ADV-11]."""
+
+    signals: Signals
+
+    def read(self, path: Path) -> Value:
+        """The value of the output."""
+        return self.signals.read(("$OUT", *path[1:]))
+
+    def write(self, path: Path, value: Value) -> None:
+        """Write the output itself."""
+        self.signals.write(("$OUT", *path[1:]), value)
+
+
+def _program_state(state: ControllerState, task: TaskName) -> Value:
+    return word("PRO_STATE", state.program_states[task])
+
+
+def _date(state: ControllerState) -> Value:
+    return date_members(state.profile.start, state.clock.now, empty_structure("DATE"))
+
+
+def _null_frame() -> Value:
+    frame = empty_structure("FRAME")
+    frame.members = [0.0] * len(frame.members)
+    return frame

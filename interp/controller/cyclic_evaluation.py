@@ -1,0 +1,86 @@
+"""What is evaluated in every interpolation cycle: cyclic flags and cyclic signals."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.levels import Levels
+from interp.controller.messages import message_fault, own_fault
+from interp.controller.state import ControllerState
+from interp.controller.tasks import ALWAYS, Answer, Task
+from interp.port.requests import Code, Path, SetCyclicFlag, SwitchSignal
+from interp.values.faults import Fault
+
+__all__ = ["CyclicEvaluation"]
+
+#: Which entry of a profile limits the number of cyclic signals, and the message where it does.
+_SIGNAL_LIMITS: Final = {
+    "ANIN": ("analog_inputs", 1543),
+    "ANOUT": ("analog_outputs", None),
+    "DIGIN": ("digital_inputs", None),
+}
+
+
+class CyclicEvaluation:
+    """The conditions of cyclic flags, and the signals that are ON."""
+
+    def __init__(self, state: ControllerState, advance: AdvanceRun, levels: Levels) -> None:
+        self._state = state
+        self._advance = advance
+        self._levels = levels
+        self._flags: dict[int, tuple[Task, Code]] = {}
+
+    def set_flag(self, task: Task, request: SetCyclicFlag) -> None:
+        """$CYCFLAG[n] gets a condition, evaluated now and in every cycle [IOT-12].
+
+        Raises `Fault`.
+        """
+        variables, number = self._state.variables, request.number
+        variables.read(("$CYCFLAG", number))  # whether there is such a flag
+        is_new = number not in self._flags
+        if is_new and len(self._flags) >= self._state.profile.most["cyclic_flags"]:
+            raise message_fault(2940)
+        value = task.holds(request.condition, variables.read)
+        self._flags[number] = task, request.condition
+        variables.put(("$CYCFLAG", number), value)
+
+    def refresh_flags(self) -> None:
+        """A tick: evaluate cyclic flags in the order of their numbers.
+
+        A condition that cannot be evaluated any more (its routine has ended) leaves its flag as it
+        is (unconfirmed; the checker refuses such conditions [IOT-11]).
+        """
+        variables = self._state.variables
+        for number, (task, condition) in sorted(self._flags.items()):
+            try:
+                value = task.holds(condition, variables.read)
+            except Fault:
+                continue
+            path: Path = ("$CYCFLAG", number)
+            variables.put(path, value)
+            self._state.changed(path, value)
+
+    @property
+    def has_flags(self) -> bool:
+        """Whether there are flags to evaluate in every cycle."""
+        return bool(self._flags)
+
+    def switch_signal(self, task: Task, request: SwitchSignal) -> Answer:
+        """ANIN, ANOUT, DIGIN ON or OFF. Raises `Fault`."""
+        return self._advance.when_reached(task, request, lambda: self._switch(task, request))
+
+    def _switch(self, task: Task, request: SwitchSignal) -> None:
+        if not request.is_on:
+            task.signals.pop(request.name, None)
+            return
+        size, number = _SIGNAL_LIMITS[request.keyword]
+        others = [one for one in task.signals.values() if one.keyword == request.keyword]
+        if request.name not in task.signals and len(others) >= self._state.profile.most[size]:
+            raise own_fault("cyclic_signal") if number is None else message_fault(number)
+        task.signals[request.name] = request
+
+    def enter_signal(self, task: Task, request: SwitchSignal) -> None:
+        """Compute a cyclic signal once."""
+        assert request.cycle is not None, "it is ON"
+        self._levels.enter(task, "cycle", ALWAYS, request.at, request.cycle, signal=request)

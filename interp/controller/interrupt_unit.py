@@ -1,0 +1,159 @@
+"""Interrupts and calls of triggers: when they are entered, and what they may do [INT-01 ff.]."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.arm_control import ArmControl
+from interp.controller.levels import Levels
+from interp.controller.messages import message_fault, own_fault
+from interp.controller.motion_queue import MotionQueue, TriggerCall
+from interp.controller.positions import Positions
+from interp.controller.state import ControllerState
+from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, Task
+from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
+from interp.robot.api.commands import CallCommand
+
+__all__ = ["InterruptUnit"]
+
+#: Priorities that the system assigns, for PRIO=-1 [TRG-06].
+_SYSTEM: Final = range(40, 81)
+
+
+class InterruptUnit:
+    """Watches the conditions of interrupts, and enters their routines and those of triggers."""
+
+    def __init__(
+        self,
+        state: ControllerState,
+        arm: ArmControl,
+        positions: Positions,
+        queue: MotionQueue,
+        advance: AdvanceRun,
+        levels: Levels,
+    ) -> None:
+        self._state = state
+        self._arm = arm
+        self._positions = positions
+        self._queue = queue
+        self._advance = advance
+        self._levels = levels
+
+    # --------------------------------------------------------------- declaration and events
+
+    def declare(self, task: Task, request: DeclareInterrupt) -> None:
+        """INTERRUPT DECL. Raises `Fault`."""
+        task.interrupts.declare(request)
+
+    def switch(self, task: Task, request: SwitchInterrupt) -> None:
+        """INTERRUPT ON, OFF, ENABLE, DISABLE. Raises `Fault`."""
+        read = self._state.variables.read
+        task.interrupts.switch(request.action, request.number, lambda code: task.holds(code, read))
+
+    def watch(self, task: Task) -> None:
+        """A tick: look at all conditions. Raises `Fault`."""
+        if not task.interrupts.is_watched:
+            return
+        read = self._state.variables.read
+        running = sum(level.interrupt is not None for level in task.levels)
+        come = task.interrupts.watch(lambda code: task.holds(code, read), running)
+        if come and task.name == "robot":
+            self._positions.keep("INT")
+
+    def dispatch(self, task: Task) -> None:
+        """Enter what has come and has a higher priority than what runs [INT-05]."""
+        interrupt = task.interrupts.next()
+        call = min(self._queue.fired, key=_priority, default=None) if task.name == "robot" else None
+        if call is not None:
+            priority = _priority(call)
+            if interrupt is None or priority <= interrupt.number:
+                if priority < task.priority:
+                    self._enter_call(task, call, priority)
+                return
+        if interrupt is not None and interrupt.number < task.priority:
+            interrupt.has_come = False
+            self._levels.enter(
+                task,
+                "interrupt",
+                interrupt.number,
+                interrupt.at,
+                interrupt.action,
+                interrupt=interrupt,
+            )
+
+    def _enter_call(self, task: Task, command: CallCommand, priority: int) -> None:
+        self._queue.fired.remove(command)
+        call = _call(command)
+        if call.trigger.priority == -1:
+            taken = {level.priority for level in task.levels}
+            free = [one for one in _SYSTEM if one not in taken and one < task.priority]
+            if not free:
+                raise message_fault(1615)
+            priority = free[-1] if task.levels else free[0]
+        self._levels.enter(task, "trigger", priority, call.trigger.at, call.action, call=command)
+
+    # ---------------------------------------------------------------------- BRAKE and RESUME
+
+    def brake(self, task: Task, request: BrakeArm) -> Answer:
+        """BRAKE: the routine goes on when the arm stands [INT-09]. Raises `Fault`."""
+        level = task.level
+        if level is None or level.kind != "interrupt" or task.name == "submit":
+            raise own_fault("brake_place")
+        self._state.trace.record(task.name, "brake", request.at, mode=request.mode)
+        if self._arm.is_moving:
+            level.has_braked = True
+            self._arm.brake(is_hard=request.mode is not None)
+            return Blocked(request, lambda: self._arm.is_standing, lambda: self._braked(level))
+        self._positions.keep("RET")
+        return None
+
+    def _braked(self, level: Level) -> None:
+        self._positions.keep("RET")
+        level.braked_at = self._positions.actual().axes
+
+    def resume(self, task: Task, request: Resume) -> Answer:
+        """RESUME: back to the declaring level, behind its call [INT-10, INT-11]. Raises `Fault`.
+
+        Motions of the routine itself are travelled first (unconfirmed).
+        """
+        level = task.level
+        if level is None or level.interrupt is None:
+            raise own_fault("resume_place")
+        if level.interrupt.is_global:
+            raise message_fault(72)
+        target = level.interrupt.depth
+        if level.depth <= target:
+            raise own_fault("resume_level")
+        self._queue.release()
+        if not level.motions:
+            return self._resume(task, request, target)
+        self._advance.stop(task, request)
+        return Blocked(
+            request, lambda: not level.motions, lambda: self._resume(task, request, target)
+        )
+
+    def _resume(self, task: Task, request: Request, target: int) -> Answer:
+        self._state.trace.record(task.name, "resume", request.at, depth=target)
+        while task.levels and task.levels[-1].depth >= target:
+            self._levels.pop(task)
+        task.interrupts.forget(target + 1)
+        task.executor.unwind(target)
+        task.triggers.clear()
+        if task.name == "submit":
+            return None
+        is_moving = self._arm.is_moving
+        self._arm.discard()
+        self._queue.fired.clear()
+        return Blocked(request, lambda: not is_moving or self._arm.is_standing, lambda: None)
+
+
+def _call(command: CallCommand) -> TriggerCall:
+    assert isinstance(command.what, TriggerCall), "made by the motion queue"
+    return command.what
+
+
+def _priority(command: CallCommand) -> int:
+    """The priority of a trigger's call; that of PRIO=-1 is chosen when it is entered."""
+    priority = _call(command).trigger.priority
+    return ALWAYS if priority is None else _SYSTEM[0] if priority == -1 else priority

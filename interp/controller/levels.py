@@ -1,0 +1,107 @@
+"""What runs on top of a program: interrupt routines, actions of triggers, cyclic signals.
+
+Everything is entered at a request of the executor that is not answered yet, and only the top level
+runs. When it ends the request below is made again, and what it waited for goes on.
+"""
+
+from __future__ import annotations
+
+from interp.controller.arm_control import ArmControl
+from interp.controller.interrupts import Interrupt
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.positions import Positions
+from interp.controller.state import ControllerState
+from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
+from interp.port.requests import At, Code, End, SwitchSignal
+from interp.robot.api.commands import CallCommand
+from interp.values.faults import Fault
+
+__all__ = ["Levels"]
+
+
+class Levels:
+    """Pushes and pops the levels of programs."""
+
+    def __init__(
+        self, state: ControllerState, arm: ArmControl, positions: Positions, queue: MotionQueue
+    ) -> None:
+        self._state = state
+        self._arm = arm
+        self._positions = positions
+        self._queue = queue
+
+    def enter(
+        self,
+        task: Task,
+        kind: LevelKind,
+        priority: int,
+        at: At,
+        code: Code,
+        *,
+        interrupt: Interrupt | None = None,
+        call: CallCommand | None = None,
+        signal: SwitchSignal | None = None,
+    ) -> None:
+        """Push a level; its code runs when the task runs next."""
+        base = self._state.variables.read(("$BASE",)) if kind == "interrupt" else None
+        level = Level(
+            kind, priority, at, task.executor.depth, task.blocked, base, interrupt, call, signal
+        )
+        if kind != "cycle" and priority != ALWAYS:
+            self._state.trace.record(task.name, "interrupt_enter", at, priority=priority)
+        task.executor.enter(code)
+        task.levels.append(level)
+        task.blocked, task.reply = None, None
+
+    def leave(self, task: Task) -> Answer:
+        """The code of the top level has ended: what is to be waited for, then the level below."""
+        level = task.levels[-1]
+        if not level.has_braked or not level.has_moved:
+            return self._left(task)
+        end = End(level.at)
+        return Blocked(
+            end, lambda: not level.motions, lambda: self._return(task, end), is_open=False
+        )
+
+    def _return(self, task: Task, end: End) -> Answer:
+        """Return to the path where it was left: the routine has moved the arm after its BRAKE."""
+        level = task.levels[-1]
+        here = self._positions.actual().axes
+        if level.braked_at is not None and not _is_near(level.braked_at, here):
+            try:
+                self._queue.plan_return(task, level.at, level.braked_at)
+            except Fault as error:
+                return error
+        return Blocked(end, lambda: not level.motions, lambda: self._left(task), is_open=False)
+
+    def _left(self, task: Task) -> Answer:
+        level = task.levels[-1]
+        self.pop(task)
+        if level.has_braked:
+            self._arm.proceed()
+        saved = level.saved
+        if saved is None or not saved.is_open:
+            return saved
+        again = task.executor.advance(None)
+        if again != saved.request:
+            raise AssertionError(f"the request after a level is {again}, not {saved.request}")
+        return saved
+
+    def pop(self, task: Task) -> None:
+        """Remove the top level, with what it has changed for itself only."""
+        level = task.levels.pop()
+        if task.levels and level.has_moved:  # where that one has braked, it has to return
+            task.levels[-1].has_moved = True
+            task.levels[-1].motions |= level.motions
+        if level.base is not None:  # [INT-13]
+            self._state.variables.put(("$BASE",), level.base)
+        if level.kind != "cycle" and level.priority != ALWAYS:
+            self._state.trace.record(
+                task.name, "interrupt_leave", level.at, priority=level.priority
+            )
+        if level.call is not None:
+            self._arm.core.complete(self._state.clock.now, level.call)
+
+
+def _is_near(left: tuple[float, ...], right: tuple[float, ...]) -> bool:
+    return all(abs(one - other) < 1e-6 for one, other in zip(left, right, strict=True))

@@ -1,0 +1,55 @@
+"""Requests for motions: how far the program may run ahead of them [ADV-01 ff.]."""
+
+from __future__ import annotations
+
+from interp.controller.messages import own_fault
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.state import ControllerState
+from interp.controller.tasks import Answer, Blocked, Task
+from interp.port.requests import Move, MoveEmily, MoveSpline
+
+__all__ = ["MotionRequests"]
+
+
+class MotionRequests:
+    """Answers them; triggers are answered by the motion queue itself."""
+
+    def __init__(self, state: ControllerState, queue: MotionQueue) -> None:
+        self._state = state
+        self._queue = queue
+
+    def move(self, task: Task, request: Move | MoveSpline) -> Answer:
+        """A motion is planned; the program goes on once it is at most $ADVANCE motions ahead.
+
+        Of a motion that runs and three that are planned, $ADVANCE=3 makes the program wait behind
+        the third. With $ADVANCE=0 it waits for each motion's end [ADV-01, ADV-02, INT-12].
+        """
+        if task.name == "submit":
+            raise own_fault("submit_motion")
+        is_first = self._queue.is_unused
+        self._queue.plan(task, request)
+        if is_first and self._state.profile.runs_coincidence:
+            return self._coincide(task, request)
+        advance = self._state.variables.read(("$ADVANCE",))
+        assert isinstance(advance, int)
+        if not advance:
+            self._queue.stop_advance()
+            self._queue.release()
+        return Blocked(request, lambda: self._queue.own_pending(task) <= advance, lambda: None)
+
+    def _coincide(self, task: Task, request: Move | MoveSpline) -> Blocked:
+        """The block coincidence run: the program waits until it has ended [ADV-14]."""
+        self._queue.is_coincidence_run = True
+        messages = self._state.messages
+        messages.post_number(request.at, 309, "state")
+        self._queue.release()
+
+        def reached() -> None:
+            self._queue.is_coincidence_run = False
+            messages.post_number(request.at, 1350)
+
+        return Blocked(request, lambda: not self._queue.own_pending(task), reached)
+
+    def move_emily(self, _task: Task, _request: MoveEmily) -> Answer:
+        """Paths of an option package are not simulated. Raises `Fault`."""
+        raise own_fault("motion_kind")

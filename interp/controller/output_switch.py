@@ -1,0 +1,40 @@
+"""Outputs that the control core switches at their exact time, and when their changes are reported.
+
+The core runs ahead of the controller by as much as one call of `ControlCore.run_until`. So what an
+output command changes is kept until the controller comes to the event of that command.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from interp.controller.clock import Clock
+from interp.controller.signals import Change, Signals
+from interp.controller.variables import Variables
+from interp.port.requests import Path, Value
+
+__all__ = ["OutputSwitch"]
+
+
+class OutputSwitch:
+    """Switches outputs for a control core."""
+
+    def __init__(self, clock: Clock, variables: Variables, signals: Signals) -> None:
+        self._clock = clock
+        self._variables = variables
+        self._signals = signals
+        self._changes: deque[list[Change]] = deque()
+
+    def switch(self, path: Path, value: Value, time: int) -> None:
+        """Write a system variable at a time in µs. Raises `Fault`."""
+        now, self._clock.now = self._clock.now, time
+        try:
+            with self._signals.deferred() as changes:
+                self._variables.write(path, value)
+        finally:
+            self._clock.now = now
+        self._changes.append(changes)
+
+    def next_changes(self) -> list[Change]:
+        """The changes of the earliest output command that were not taken yet."""
+        return self._changes.popleft()

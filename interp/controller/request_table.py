@@ -1,0 +1,32 @@
+"""Which part of the controller answers which request."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from interp.controller.tasks import Answer, Task
+from interp.port.requests import Request
+from interp.values.faults import Fault
+
+__all__ = ["RequestTable"]
+
+_Request = TypeVar("_Request", bound=Request)
+
+
+class RequestTable:
+    """Handlers by the type of the request."""
+
+    def __init__(self) -> None:
+        self._handlers: dict[type[object], Callable[[Task, Any], Answer]] = {}
+
+    def add(self, kind: type[_Request], handler: Callable[[Task, _Request], Answer]) -> None:
+        """Have requests of a type answered by a handler, which may raise `Fault`."""
+        self._handlers[kind] = handler
+
+    def answer(self, task: Task, request: Request) -> Answer:
+        """What the handler answers; a `Fault` that it raises is the answer."""
+        try:
+            return self._handlers[type(request)](task, request)
+        except Fault as error:
+            return error

@@ -1,0 +1,275 @@
+"""The order in which things happen on the virtual clock, and how a run ends.
+
+At each moment: what the arm has reached, what the script and pulses do, on a tick of the
+interpolation cycle cyclic flags, cyclic signals and the conditions of interrupts [INT-18], and then
+the programs, the robot's first, each until it has to wait. Then time goes on to the next moment at
+which anything can happen. Nothing depends on wall-clock time, so a program has one trace.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.arm_control import ArmControl
+from interp.controller.cyclic_evaluation import CyclicEvaluation
+from interp.controller.interrupt_unit import InterruptUnit
+from interp.controller.levels import Levels
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.operator_panel import OperatorPanel
+from interp.controller.request_table import RequestTable
+from interp.controller.script_player import ScriptPlayer
+from interp.controller.spline_stops import SplineStops
+from interp.controller.state import ControllerState
+from interp.controller.tasks import Answer, Blocked, Task
+from interp.controller.waits import Waits
+from interp.port.requests import At, Crash, End, Fail, Request
+from interp.robot.simulation.robots import RobotFault
+from interp.robot.simulation.tracking import Tracking
+from interp.values.faults import BudgetExhausted, RuntimeFailure
+
+__all__ = ["HOUR", "Ending", "RunOutcome", "Scheduler"]
+
+#: How a run ended: at the end of the program; at a HALT that nobody ends; by a fault; because the
+#: program used up its statements; because the time is over; by a defect of ours.
+Ending = Literal["end", "halt", "fault", "budget", "time", "crash"]
+
+#: A run lasts an hour of virtual time at most, by default.
+HOUR: Final = 3_600_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class RunOutcome:
+    """How a run ended, when in µs, and where and why if a program did it."""
+
+    ending: Ending
+    time: int
+    at: At | None = None
+    error: Exception | None = None
+
+    def __str__(self) -> str:
+        place = "" if self.at is None else f" at {self.at.file}:{self.at.line}"
+        why = "" if self.error is None else f": {self.error}"
+        number = getattr(self.error, "number", None)
+        why += "" if number is None else f" (message {number})"
+        return f"{self.ending} after {self.time / 1e6:g} s{place}{why}"
+
+
+@dataclass(slots=True)
+class Scheduler:
+    """Runs the programs of a controller; the first of ``tasks`` is that of the robot.
+
+    ``stop`` is the time in µs at which the script ends a run, if it does.
+    """
+
+    state: ControllerState
+    tasks: Sequence[Task]
+    arm: ArmControl
+    queue: MotionQueue
+    levels: Levels
+    interrupts: InterruptUnit
+    cyclic: CyclicEvaluation
+    spline_stops: SplineStops
+    advance: AdvanceRun
+    waits: Waits
+    requests: RequestTable
+    panel: OperatorPanel
+    player: ScriptPlayer
+    tracking: Tracking | None
+    stop: int | None
+    _outcome: RunOutcome | None = None
+    _failed: RunOutcome | None = None
+    _ticked: int = -1
+    _answered: int = 0
+
+    def run(self, until: int) -> RunOutcome:
+        """Run until the program ends, or halts and nobody starts it, or until a time in µs.
+
+        After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
+        cannot have.
+        """
+        outcome = self._run_until(min(until, self.stop or HOUR))
+        if self.tracking is not None:
+            try:
+                self.tracking.settle(self.state.clock.now)
+            except RobotFault as error:
+                return RunOutcome("fault", self.state.clock.now, self.queue.running, error)
+        return outcome
+
+    @property
+    def _robot(self) -> Task:
+        return self.tasks[0]
+
+    def _run_until(self, limit: int) -> RunOutcome:
+        clock, states = self.state.clock, self.state.program_states
+        if self._outcome is not None and self._outcome.ending == "halt":
+            self.panel.press("START")
+        self._outcome = None
+        if states["robot"] == "P_RESET":
+            states["robot"] = "P_ACTIVE"
+        if len(self.tasks) > 1 and states["submit"] == "P_FREE":
+            states["submit"] = "P_ACTIVE"
+        while True:
+            self._settle()
+            if self._outcome is not None:
+                return self._outcome
+            then = self._next_time()
+            if then is None or then > limit:
+                self._go_to(max(limit, clock.now))
+                self._outcome = RunOutcome("time", clock.now, self._robot.at)
+                return self._outcome
+            self._go_to(then)
+
+    # ----------------------------------------------------------------------------------- time
+
+    def _settle(self) -> None:
+        """Do all that happens at this time."""
+        clock = self.state.clock
+        self._collect()
+        if clock.is_tick and self._ticked != clock.now:
+            self._ticked = clock.now
+            self._tick()
+        before = -1
+        while before != (now := self._answered + self.queue.count) and self._outcome is None:
+            before = now
+            for task in self.tasks:
+                self._run(task)
+            self._collect()
+        if self._outcome is None and self._failed is not None and self.arm.is_standing:
+            self._outcome = replace(self._failed, time=clock.now)
+        if self._outcome is None and self._robot.is_halted and not self.player.awaits("START"):
+            self._outcome = RunOutcome("halt", clock.now, self._robot.at)
+
+    def _tick(self) -> None:
+        """Evaluate what is evaluated in every interpolation cycle."""
+        self.cyclic.refresh_flags()
+        for task in self.tasks:
+            if task.is_over or task.is_halted or self.panel.is_holding(task):
+                continue
+            if task.blocked is not None:
+                for signal in list(task.signals.values()):
+                    self.cyclic.enter_signal(task, signal)
+                    self._run(task)
+            try:
+                self.interrupts.watch(task)
+            except RuntimeFailure as error:
+                self._fail(task, Fail(task.at, error))
+
+    def _go_to(self, time: int) -> None:
+        self.state.clock.now = self.state.trace.now = time
+        if self.tracking is not None:
+            try:
+                self.tracking.advance(time)
+            except RobotFault as error:
+                self._fail(self._robot, Fail(self.queue.running or self._robot.at, error))
+
+    def _collect(self) -> None:
+        """Handle what the arm has done up to now, and do what else is due."""
+        self.queue.collect()
+        self.spline_stops.watch()
+        self.state.actions.run_until(self.state.clock.now)
+
+    def _next_time(self) -> int | None:
+        clock = self.state.clock
+        ahead = self.queue.next_time()
+        times = [ahead, self.state.actions.next_time()]
+        if ahead is not None and self.tracking is not None and self.tracking.chunk is not None:
+            times.append(clock.now + self.tracking.chunk)
+        needs_ticks = self.cyclic.has_flags or self.spline_stops.is_waiting
+        for task in self.tasks:
+            if task.is_over:
+                continue
+            needs_ticks = needs_ticks or bool(task.signals) or task.interrupts.is_watched
+            if task.blocked is not None and not self.panel.is_holding(task):
+                times.append(task.blocked.wake)
+        if needs_ticks:
+            times.append(clock.next_tick)
+        return min((time for time in times if time is not None), default=None)
+
+    # ------------------------------------------------------------------------- the programs
+
+    def _run(self, task: Task) -> None:
+        """Run a program until it has to wait."""
+        while not task.is_over and self._outcome is None and not self.panel.is_holding(task):
+            try:
+                if task.blocked is not None and not task.is_halted:
+                    self.interrupts.dispatch(task)
+                blocked = task.blocked
+                if blocked is None:
+                    answer = self._answer(task, task.executor.advance(task.reply))
+                elif blocked.is_ready():
+                    task.blocked = None
+                    self.state.trace.origin = task.name, blocked.request.at
+                    answer = blocked.finish()
+                else:
+                    return
+            except RuntimeFailure as error:  # of an interrupt, a trigger, a condition
+                self._fail(task, Fail(task.at, error))
+                return
+            self._answered += 1
+            task.blocked = answer if isinstance(answer, Blocked) else None
+            task.reply = None if isinstance(answer, Blocked) else answer
+
+    def _answer(self, task: Task, request: Request) -> Answer:
+        """The answer to a request; one too many in a slice waits for the next slice."""
+        match request:
+            case End():
+                return self.levels.leave(task) if task.levels else self._end(task, request)
+            case Fail():
+                self._fail(task, request)
+                return None
+            case Crash(at, reason):
+                task.is_over = True
+                self._outcome = RunOutcome(
+                    "crash", self.state.clock.now, at, RuntimeFailure(reason)
+                )
+                return None
+        if task.level is None or task.level.signal is None:
+            profile = self.state.profile
+            most = profile.requests if task is self._robot else profile.submit_requests
+            last = self.waits.next_slice(task)
+            if task.slice_end != last:
+                task.slice_end, task.spent = last, 0
+            task.spent += 1
+            if task.spent > most:
+                return self.waits.until(request, last, lambda: self._answer(task, request))
+        exempt = task.exempt_line
+        if exempt is not None and (request.at.file, request.at.line) != exempt:
+            task.exempt_line = None
+        task.last_at = request.at
+        self.state.trace.origin = task.name, request.at
+        return self.requests.answer(task, request)
+
+    def _end(self, task: Task, request: End) -> Answer:
+        """The program has ended once the arm has come to where it left it [ADV-07]."""
+        task.exempt_line = None
+
+        def finish() -> None:
+            task.is_over = True
+            self.state.trace.record(task.name, "end", request.at)
+            self.state.program_states[task.name] = "P_END"
+            if task is self._robot:
+                self._outcome = RunOutcome("end", self.state.clock.now, request.at)
+
+        return self.advance.when_reached(task, request, finish)
+
+    def _fail(self, task: Task, request: Fail) -> None:
+        """A fault that the program did not catch: its message, and the arm stops on its path."""
+        task.is_over = True
+        error, state = request.fault, self.state
+        slug = getattr(error, "slug", "budget" if isinstance(error, BudgetExhausted) else "link")
+        number = getattr(error, "number", None)
+        if number is not None:
+            kind = "state" if task is self._robot else "notification"
+            state.messages.post(task.name, request.at, number, str(error), kind)
+        state.trace.record(
+            task.name, "fault", request.at, slug=slug, number=number, text=str(error)
+        )
+        state.program_states[task.name] = "P_STOP"
+        if task is not self._robot:
+            return
+        ending: Ending = "budget" if isinstance(error, BudgetExhausted) else "fault"
+        self._failed = RunOutcome(ending, state.clock.now, request.at, error)
+        self.arm.halt(is_hard=isinstance(error, RobotFault))

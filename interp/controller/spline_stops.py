@@ -1,0 +1,45 @@
+"""STOP WHEN PATH: a spline block stops while a condition holds [SPL-06]."""
+
+from __future__ import annotations
+
+from interp.controller.arm_control import ArmControl
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.operator_panel import OperatorPanel
+from interp.controller.state import ControllerState
+from interp.controller.tasks import Task
+from interp.port.requests import SplineStop
+
+__all__ = ["SplineStops"]
+
+
+class SplineStops:
+    """Stops the arm where it passes such a place; it comes to rest behind it."""
+
+    def __init__(
+        self, state: ControllerState, arm: ArmControl, queue: MotionQueue, panel: OperatorPanel
+    ) -> None:
+        self._state = state
+        self._arm = arm
+        self._queue = queue
+        self._panel = panel
+        self._stopped_at: tuple[Task, SplineStop] | None = None
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether the arm waits for a condition to become FALSE."""
+        return self._stopped_at is not None
+
+    def watch(self) -> None:
+        """Look at the condition of the next place passed, or of that where the arm has stopped."""
+        read = self._state.variables.read
+        if self._stopped_at is None and self._queue.passed_stops:
+            task, stop = self._queue.passed_stops.pop(0)
+            if task.holds(stop.condition, read):
+                self._stopped_at = task, stop
+                self._state.messages.post_number(task.at, 3230)
+                self._arm.halt()
+        elif self._stopped_at is not None and self._state.clock.is_tick:
+            task, stop = self._stopped_at
+            if not task.holds(stop.condition, read):
+                self._stopped_at = None
+                self._panel.free_arm()

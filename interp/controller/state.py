@@ -1,0 +1,106 @@
+"""What the parts of a controller share: clock, trace, system variables, signals, messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from interp.controller.clock import ActionQueue, Clock, TimedAction
+from interp.controller.messages import Messages
+from interp.controller.profile import Profile
+from interp.controller.signals import Signals
+from interp.controller.timers import Timers
+from interp.controller.trace import TaskName, Trace
+from interp.controller.variables import Variables
+from interp.port.requests import At, Path, Value
+from interp.robot.kinematics.machine_data import Machine
+from interp.values.json_form import to_json
+from interp.values.values import EnumValue
+
+__all__ = ["ControllerState"]
+
+#: The kinds of trace events that the arrays of signals have.
+_SIGNAL_KINDS: Final = {"$IN": "in", "$ANIN": "in", "$OUT": "out", "$ANOUT": "anout"}
+
+
+class ControllerState:
+    """The state of a controller apart from programs and motions.
+
+    ``values`` are those that data lists give system variables at first. ``observers`` are called
+    with each variable that a program or something outside has changed, and its value as given.
+    ``program_states`` are the words of $PRO_STATE by task.
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        trace: Trace,
+        machine: Machine | None,
+        values: Mapping[str, Value],
+    ) -> None:
+        self.profile = profile
+        self.trace = trace
+        self.machine = machine
+        self.clock = Clock(profile.cycle)
+        self.actions = ActionQueue()
+        self.messages = Messages(trace)
+        self.variables = Variables(profile, values)
+        self.signals = Signals(profile, self.clock, self.later, self.signal_changed)
+        self.variables.connect(["$IN", "$OUT", "$ANIN", "$ANOUT"], self.signals)
+        self.timers = Timers(self.clock, profile.sizes["timers"])
+        self.variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
+        self.observers: list[Callable[[Path, Value], None]] = []
+        self.program_states: dict[TaskName, str] = {"robot": "P_RESET", "submit": "P_FREE"}
+
+    @property
+    def mode(self) -> str:
+        """$MODE_OP as a word."""
+        value = self.variables.read(("$MODE_OP",))
+        return value.name.upper() if isinstance(value, EnumValue) else "AUT"
+
+    # ------------------------------------------------------------------------------ changes
+
+    def put(self, path: Path, value: Value) -> None:
+        """A program writes a system variable; raises `Fault`."""
+        self.variables.write(path, value)
+        self.changed(path, value)
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Something outside gives a variable a value; raises `Fault`."""
+        with self.trace.attributed("robot", None):
+            if path[0] in _SIGNAL_KINDS:
+                self.signals.put(path, value)
+            else:
+                self.variables.put(path, value)
+                self.changed(path, value)
+
+    def put_at(self, task: TaskName, at: At | None, path: Path, value: Value) -> None:
+        """Write a system variable on behalf of a line that has requested it earlier."""
+        with self.trace.attributed(task, at):
+            self.put(path, value)
+
+    def changed(self, path: Path, value: Value) -> None:
+        """Notify the observers of a variable that is no signal."""
+        if path[0] not in _SIGNAL_KINDS:
+            self._notify(path, value)
+
+    def signal_changed(self, name: str, place: int, value: Value) -> None:
+        """Record the change of a signal in the trace, and notify the observers."""
+        self.trace.record_change(
+            _SIGNAL_KINDS[name], signal=name, number=place, value=to_json(value)
+        )
+        self._notify((name, place), value)
+
+    def _notify(self, path: Path, value: Value) -> None:
+        for observer in self.observers:
+            observer(path, value)
+
+    def later(self, time: int, action: Callable[[], None]) -> TimedAction:
+        """Do something at a time, on behalf of the line that is executed now."""
+        origin = self.trace.origin
+
+        def act() -> None:
+            with self.trace.attributed(*origin):
+                action()
+
+        return self.actions.add(time, act)

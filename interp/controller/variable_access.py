@@ -1,0 +1,102 @@
+"""Requests to read and to write system variables, some of which stop the advance run."""
+
+from __future__ import annotations
+
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.automatic_inputs import AutomaticInputs
+from interp.controller.clock import microseconds
+from interp.controller.interrupts import module_name
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.predefined_values import word
+from interp.controller.state import ControllerState
+from interp.controller.tasks import Answer, Task
+from interp.port.requests import Read, SwitchSignal, Write
+from interp.values.faults import fault
+from interp.values.values import ArrayValue, StructureValue, set_text
+
+__all__ = ["VariableAccess"]
+
+
+class VariableAccess:
+    """Answers requests to read and to write."""
+
+    def __init__(
+        self,
+        state: ControllerState,
+        queue: MotionQueue,
+        advance: AdvanceRun,
+        automatic: AutomaticInputs,
+    ) -> None:
+        self._state = state
+        self._queue = queue
+        self._advance = advance
+        self._automatic = automatic
+
+    def read(self, task: Task, request: Read) -> Answer:
+        """The value of a variable. Raises `Fault`."""
+        path, variables = request.path, self._state.variables
+        if self._automatic.is_on and task.name == "robot":
+            self._automatic.was_read(path)
+        if variables.stops(str(path[0]), is_write=False):
+            return self._advance.when_reached(task, request, lambda: variables.read(path))
+        return variables.read(path)
+
+    def write(self, task: Task, request: Write) -> Answer:
+        """Give a variable a value. Raises `Fault`."""
+        path, name = request.path, str(request.path[0])
+        if name == "$OUT_C":
+            self._queue.output_in_main_run(task, request.at, path, request.value)
+            return None
+        if name == "$ERR":
+            self._note_error(task, request)
+            return None
+        if name == "$ADVANCE" and task.levels:  # [INT-13]
+            raise fault("read_only")
+        if name == "$ANOUT" and task.level is not None and task.level.signal is not None:
+            self._put_cyclic(request, task.level.signal)
+            return None
+        if self._state.variables.stops(name, is_write=True):
+            return self._advance.when_reached(
+                task, request, lambda: self._state.put(path, request.value)
+            )
+        self._state.put(path, request.value)
+        return None
+
+    def _put_cyclic(self, request: Write, signal: SwitchSignal) -> None:
+        """ANOUT ON: the value within its limits, after its delay in seconds [IOT-09]."""
+        state, value = self._state, request.value
+        if signal.minimum is not None:
+            value = max(value, signal.minimum)
+        if signal.maximum is not None:
+            value = min(value, signal.maximum)
+        delay = microseconds(signal.delay or 0.0)
+        if delay <= 0:  # an earlier switch would need the future (unconfirmed)
+            state.put(request.path, value)
+            return
+        state.later(state.clock.now + delay, lambda: state.put(request.path, value))
+
+    def _note_error(self, task: Task, request: Write) -> None:
+        """ON_ERROR_PROCEED notes the error it has caught: number and place [TYP-13, FCT-07]."""
+        variables = self._state.variables
+        variables.put(request.path, request.value)
+        if request.path != ("$ERR", "NUMBER"):
+            return
+        error = variables.read(("$ERR",))
+        if not isinstance(error, StructureValue):
+            return
+        level = task.level
+        error.set("INT_PRIO", level.priority if level else 0)
+        error.set("LINE_NR", request.at.line)
+        for name, text in (("MODULE", module_name(request.at.file)), ("UP_NAME", task.routine)):
+            part = error.get(name)
+            assert isinstance(part, ArrayValue)
+            set_text(part, text.upper())
+        variables.put(("$ERR",), error)
+        words = {
+            "INTERPRETER": ("PROG_INT_E", "R_INT" if task.name == "robot" else "S_INT"),
+            "INT_TYPE": ("INT_TYP_E", "I_INTERRUPT" if level else "I_NORMAL"),
+        }
+        if level is not None and level.call is not None:  # [TRG-12]; none is ever replayed
+            words["TRIGGER_TYPE"] = ("TRIGGER_UP_TYPE", "TRG_REGULAR")
+        for member, (type_name, name) in words.items():
+            variables.put(("$ERR", member), word(type_name, name))

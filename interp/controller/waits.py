@@ -1,0 +1,117 @@
+"""Requests that wait for time or for the operator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from interp.controller.advance_run import AdvanceRun
+from interp.controller.automatic_inputs import AutomaticInputs
+from interp.controller.clock import microseconds
+from interp.controller.motion_queue import MotionQueue
+from interp.controller.operator_panel import OperatorPanel
+from interp.controller.script_player import ScriptPlayer
+from interp.controller.state import ControllerState
+from interp.controller.tasks import Answer, Blocked, Task
+from interp.port.requests import Confirm, Halt, Poll, Request, Slice, Wait
+from interp.values.json_form import to_json
+
+__all__ = ["Waits"]
+
+
+class Waits:
+    """Answers them; ``player`` is notified of HALT, ``automatic`` of WAIT FOR."""
+
+    def __init__(
+        self,
+        state: ControllerState,
+        queue: MotionQueue,
+        advance: AdvanceRun,
+        panel: OperatorPanel,
+        player: ScriptPlayer,
+        automatic: AutomaticInputs,
+    ) -> None:
+        self._state = state
+        self._queue = queue
+        self._advance = advance
+        self._panel = panel
+        self._player = player
+        self._automatic = automatic
+
+    # ------------------------------------------------------------------------------- time
+
+    def until(self, request: Request, time: int, then: Callable[[], Answer]) -> Blocked:
+        """Wait for a time."""
+        return Blocked(request, lambda: self._state.clock.now >= time, then, time)
+
+    def next_slice(self, task: Task) -> int:
+        """When a task may compute again that has used up its slice [SUB-03]."""
+        clock = self._state.clock
+        if task.name == "robot":
+            return clock.next_tick
+        period = clock.cycle * self._state.profile.submit_every
+        return clock.now - clock.now % period + period
+
+    def wait(self, task: Task, request: Wait) -> Answer:
+        """WAIT SEC; less than nothing is no wait [CTL-12]."""
+
+        def begin() -> Answer:
+            if request.seconds <= 0:
+                return None
+            self._state.trace.record(
+                task.name, "wait", request.at, seconds=to_json(request.seconds)
+            )
+            end = self._state.clock.tick_after(microseconds(request.seconds))
+            return self.until(request, end, lambda: None)
+
+        return self._advance.when_reached(task, request, begin)
+
+    def poll(self, task: Task, request: Poll) -> Answer:
+        """WAIT FOR: the condition is evaluated again in the next slice."""
+        is_robot = task.name == "robot"
+        if request.is_first:
+            task.polling = None
+            if is_robot:
+                self._automatic.begin()
+            return self._advance.when_reached(task, request, lambda: None)
+        if task.polling != request.at:
+            task.polling = request.at
+            self._state.trace.record(task.name, "wait", request.at)
+        if is_robot:
+            self._automatic.was_false(request.at, self._state.clock.now)
+        return self.until(request, self.next_slice(task), lambda: None)
+
+    def slice(self, task: Task, request: Slice) -> Answer:
+        """The program has used up its statements: it goes on in the next slice."""
+        return self.until(request, self.next_slice(task), lambda: None)
+
+    # ----------------------------------------------------------------------- the operator
+
+    def halt(self, task: Task, request: Halt) -> Answer:
+        """HALT waits for all motions that are planned, in an interrupt routine too [CTL-08]."""
+
+        def halted() -> Blocked:
+            self._state.trace.record(task.name, "halt", request.at)
+            task.is_halted = True
+            self._state.program_states[task.name] = "P_STOP"
+            if task.name == "robot":
+                self._player.halted()
+            return Blocked(request, lambda: not task.is_halted, lambda: None)
+
+        if task.name == "submit":
+            return halted()
+        self._queue.release()
+        self._queue.stop_advance()
+        has_braked = any(level.has_braked for level in task.levels)
+
+        def is_reached() -> bool:
+            return not (self._queue.own_pending(task) if has_braked else self._queue.pending)
+
+        if is_reached():
+            return halted()
+        self._state.trace.record(task.name, "advance_stop", request.at)
+        return Blocked(request, is_reached, halted)
+
+    def confirm(self, _task: Task, request: Confirm) -> Answer:
+        """CONFIRM acknowledges a message; 0 all of them (unconfirmed)."""
+        self._panel.press("CONFIRM", request.number or None)
+        return None
