@@ -207,15 +207,22 @@ def of_project(found: Iterable[Reference]) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
-    what is a slip of a name that is seen there; one note for each name that remains.
+    what is a slip of a name that is seen there, or that is used again and again and comes from
+    elsewhere itself; one note for each name that remains.
     """
     uses: dict[tuple[Space, str], list[Reference]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
-    series = Counter(near for some in uses.values() for near in {n for r in some for n in r.near})
-    for some in uses.values():
-        near = tuple(n for n in some[0].near if series[n] < _SERIES)
-        count = sum(reference.count for reference in some)
+    counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
+    usual = {
+        space: Typos(name for (at, name), n in counts.items() if at is space and n > _MOST_SLIPS)
+        for space in _SLUGS
+    }
+    meant = {key: some[0].near or usual[key[0]].meant(key[1]) for key, some in uses.items()}
+    series = Counter(name for names in meant.values() for name in names)
+    for key, some in uses.items():
+        near = tuple(name for name in meant[key] if series[name] < _SERIES)
+        count = counts[key]
         is_slip = bool(near) and count <= _MOST_SLIPS
         if is_slip or (all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES):
             for reference in some:

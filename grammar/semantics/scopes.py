@@ -218,10 +218,10 @@ class SystemScope(Scope):
         self.system = system
 
     def names(self, space: Space) -> Iterable[str]:
-        """All names that the controller knows."""
+        """All names that the controller knows, those of its values included."""
         match space:
             case Space.VALUE:
-                return self.system.variables
+                return ("TRUE", "FALSE", *self.system.variables)
             case Space.ROUTINE:
                 return self.system.functions
             case Space.TYPE:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from krl.cli import main
-from recovery.bench import check_speed
+from grammar.bench import check_speed
 
 
 def test_figures_are_printed_and_written(

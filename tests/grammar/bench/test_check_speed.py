@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from recovery.bench import check_speed
-from recovery.bench.check_speed import PHASES, measure_check, steps
+from grammar.bench import check_speed
+from grammar.bench.check_speed import PHASES, measure_check, steps
 from support.files.discovery import IngestError
 
 

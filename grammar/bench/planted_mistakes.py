@@ -1,0 +1,304 @@
+"""How many mistakes the check finds: lines of real programs damaged by chance, one at a time.
+
+Nobody picks what is damaged or how: a seed draws the kind of mistake, the file, the line and the
+token, each file alike however long. A mistake is found when its project has an error or a warning
+that it did not have before, and found in its place when one of these is on the damaged line. Files
+that cannot be read as they are get no mistakes, but stay in their projects. To leave an argument
+out is no mistake [SCO-13].
+"""
+
+from __future__ import annotations
+
+import random
+import statistics
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from grammar.check.framework import Findings, check_module, check_project
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.parser.lexer import Lexer
+from grammar.semantics.link import File, Project, link, words_of
+from grammar.semantics.symbol_table import table_of
+from grammar.syntax import ast
+from grammar.syntax.build import builder
+from grammar.syntax.source import Source
+from support.files.decode import decode
+from support.files.discovery import Found, IngestError, discover, read
+
+__all__ = ["KINDS", "damaged", "measure_planted"]
+
+#: What a slip can be.
+KINDS = (
+    "name misspelt",
+    "keyword misspelt",
+    "token dropped",
+    "token doubled",
+    "argument added",
+    "literal of another type",
+)
+# A line is drawn again so often until a kind of mistake can be made in it.
+_TRIES = 200
+_LETTERS = "abcdefghijklmnopqrstuvwxyz"
+_LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A token of a line: its kind in the grammar, its place in the text, and the text itself."""
+
+    kind: str
+    start: int
+    text: str
+    is_keyword: bool
+
+    @property
+    def end(self) -> int:
+        """Where it ends in the text of the file."""
+        return self.start + len(self.text)
+
+
+def damaged(
+    kind: str, tokens: Sequence[Token], chance: random.Random
+) -> tuple[int, int, str] | None:
+    """What to exchange for a mistake of a kind in a line: start, end, new text; or ``None``."""
+    match kind:
+        case "name misspelt":
+            return _misspelt([t for t in tokens if t.kind == "NAME" and len(t.text) > 3], chance)
+        case "keyword misspelt":
+            return _misspelt([t for t in tokens if t.is_keyword and len(t.text) > 1], chance)
+        case "token dropped" | "token doubled":
+            token = chance.choice(tokens)
+            return token.start, token.end, "" if kind == "token dropped" else f"{token.text} " * 2
+        case "argument added":
+            return _more_arguments(tokens, chance)
+        case _:
+            literals = [t for t in tokens if _type_of(t)]
+            if not literals:
+                return None
+            token = chance.choice(literals)
+            return token.start, token.end, chance.choice(_LITERALS[_type_of(token)])
+
+
+def _type_of(token: Token) -> str:
+    """The type of a plain literal; ``""`` for all else."""
+    if token.text.upper() in ("TRUE", "FALSE"):
+        return "BOOL"
+    if token.text.isdecimal():
+        return "INT"
+    return "REAL" if token.text.replace(".", "", 1).isdecimal() else ""
+
+
+def _misspelt(words: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
+    """One slip of the finger in one of some words."""
+    if not words:
+        return None
+    token = chance.choice(words)
+    text, at = token.text, chance.randrange(len(token.text))
+    slips = [text[:at] + text[at + 1 :], text[:at] + text[at] + text[at:]]
+    slips.append(text[:at] + chance.choice(_LETTERS) + text[at + 1 :])
+    if at + 1 < len(text):
+        slips.append(text[:at] + text[at + 1] + text[at] + text[at + 2 :])
+    wrong = chance.choice([slip for slip in slips if slip.upper() != text.upper()] or [text + "x"])
+    return token.start, token.end, wrong
+
+
+def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
+    """One more argument at the end of a call."""
+    ends = []
+    for index, token in enumerate(tokens[:-1]):
+        if token.kind == "NAME" and tokens[index + 1].text == "(":
+            depth = 0
+            for other in tokens[index + 1 :]:
+                depth += (other.text == "(") - (other.text == ")")
+                if depth == 0:
+                    ends.append((other.start, tokens[index + 1].end == other.start))
+                    break
+    if not ends:
+        return None
+    at, is_empty = chance.choice(ends)
+    return at, at, "0" if is_empty else ", 0"
+
+
+# ------------------------------------------------------------------------------ projects
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """A file as the check reads it."""
+
+    file: File
+    source: Source
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def _reading(source: Source, origin: str) -> _Reading:
+    tree = builder().read(source.text, source.path)
+    if isinstance(tree, ast.Module):
+        return _Reading(File(source.path, tree, origin, table_of(tree)), source, ())
+    found = tuple(syntax_findings(tree, source))
+    unread = File(source.path, None, origin, words=words_of(source.text))
+    return _Reading(unread, source, found)
+
+
+class _Checked:
+    """A project with the findings of each of its files."""
+
+    def __init__(self, readings: Mapping[str, _Reading]) -> None:
+        self.readings = dict(readings)
+        self.findings: dict[str, Findings] = {}
+        self._check(readings)
+        self.found = frozenset(check_project(self.findings.values()))
+
+    def _check(self, paths: Iterator[str] | Mapping[str, _Reading]) -> None:
+        wanted = set(paths)
+        for project in link(reading.file for reading in self.readings.values()).projects:
+            for module in project.modules:
+                if module.path in wanted:
+                    self.findings[module.path] = self._findings(project, module.path)
+
+    def _findings(self, project: Project, path: str) -> Findings:
+        reading = self.readings[path]
+        if reading.file.syntax is None:
+            return Findings(reading.diagnostics, ())
+        module = next(module for module in project.modules if module.path == path)
+        return check_module(project, module, reading.source).findings
+
+    def with_text(self, path: str, text: str) -> list[Diagnostic]:
+        """The findings that are new once a file has another text."""
+        before, findings = self.readings[path], dict(self.findings)
+        self.readings[path] = _reading(Source(text, path), before.file.origin)
+        try:
+            self._check(iter(self._concerned(path)))
+            found = check_project(self.findings.values())
+        finally:
+            self.readings[path], self.findings = before, findings
+        old = {_without_place(one) for one in self.found}
+        return [one for one in found if one not in self.found and _is_told(one, old, path)]
+
+    def _concerned(self, path: str) -> list[str]:
+        """The file and, of a data list, its program."""
+        stem = path.rpartition(".")[0].casefold()
+        return [one for one in self.readings if one.rpartition(".")[0].casefold() == stem]
+
+
+def _without_place(one: Diagnostic) -> tuple[str, str, str]:
+    return one.path, one.code, one.message
+
+
+def _is_told(one: Diagnostic, old: set[tuple[str, str, str]], path: str) -> bool:
+    return one.severity != "note" and (one.path == path or _without_place(one) not in old)
+
+
+# ------------------------------------------------------------------------------ the measure
+
+
+def measure_planted(
+    roots: Sequence[Path],
+    count: int,
+    seed: int,
+    *,
+    on_step: Callable[[], object] = lambda: None,
+) -> dict[str, Any]:
+    """Plant ``count`` mistakes in programs below ``roots``, each by itself.
+
+    ``on_step`` is called once a mistake. The record has for all of them and by kind: ``planted``,
+    the shares ``found`` and ``in_place``, and the ``median`` and 95th percentile ``p95`` of the
+    number of findings of a mistake that is found; ``survivors`` are the first that were not found.
+
+    Raises `support.files.discovery.IngestError` where no line can be damaged.
+    """
+    chance = random.Random(seed)
+    projects = [_Checked(readings) for readings in _projects(roots)]
+    places = [
+        (project, path, lines)
+        for project in projects
+        for path, reading in project.readings.items()
+        if reading.file.syntax is not None and (lines := list(_lines(reading.source)))
+    ]
+    if not places:
+        raise IngestError("no line of these files can be damaged")
+    trials = []
+    for number in range(count):
+        trials.append(_trial(KINDS[number % len(KINDS)], places, chance))
+        on_step()
+    done = [trial for trial in trials if trial is not None]
+    return {
+        "seed": seed,
+        "files": len(places),
+        **_figures(done),
+        "kinds": [
+            {"kind": kind, **_figures([one for one in done if one["kind"] == kind])}
+            for kind in KINDS
+        ],
+        "survivors": [one for one in done if not one["findings"]][:100],
+    }
+
+
+def _trial(
+    kind: str, places: Sequence[tuple[_Checked, str, list[list[Token]]]], chance: random.Random
+) -> dict[str, Any] | None:
+    for _ in range(_TRIES):
+        project, path, lines = chance.choice(places)
+        exchange = damaged(kind, chance.choice(lines), chance)
+        if exchange is None:
+            continue
+        start, end, new = exchange
+        source = project.readings[path].source
+        text = source.text[:start] + new + source.text[end:]
+        found = project.with_text(path, text)
+        line = source.text.count("\n", 0, start) + 1
+        return {
+            "kind": kind,
+            "path": path,
+            "line": line,
+            "was": source.text[start:end],
+            "is": new,
+            "findings": len(found),
+            "in_place": any(one.path == path and one.region.line == line for one in found),
+        }
+    return None
+
+
+def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    counts = sorted(one["findings"] for one in trials if one["findings"])
+    found = len(counts)
+    return {
+        "planted": len(trials),
+        "found": round(found / len(trials), 4) if trials else None,
+        "in_place": round(sum(one["in_place"] for one in trials) / found, 4) if found else None,
+        "median": statistics.median(counts) if counts else None,
+        "p95": counts[min(found - 1, int(0.95 * found))] if counts else None,
+    }
+
+
+def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Reading]]:
+    readings: dict[str, _Reading] = {}
+    for found in discover(roots):
+        data = read(found) if isinstance(found, Found) else b""
+        decoded = decode(data) if isinstance(data, bytes) else ""
+        if not isinstance(decoded, str) and isinstance(found, Found):
+            readings[found.path] = _reading(Source(decoded.text, found.path), found.origin)
+    bare = [replace(reading.file, syntax=None) for reading in readings.values()]
+    for project in link(bare).projects:
+        yield {module.path: readings[module.path] for module in project.modules}
+
+
+def _lines(source: Source) -> Iterator[list[Token]]:
+    """The tokens of each line that has some."""
+    lexer: Lexer = builder().failures.recognizer.lexer
+    line: list[Token] = []
+    for lexeme, start in zip(lexer.lexemes(source.text), lexer.offsets(source.text), strict=True):
+        kind = lexer.kinds[lexeme]
+        if kind < 0:
+            continue
+        if "\n" in lexeme or "\r" in lexeme:
+            if line:
+                yield line
+            line = []
+        else:
+            line.append(Token(lexer.names[kind], start, lexeme, lexer.is_keyword(kind)))
+    if line:
+        yield line

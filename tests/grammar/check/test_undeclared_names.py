@@ -1,0 +1,87 @@
+"""A name is unknown when what could declare it has been read, however much else is missing."""
+
+from collections.abc import Callable
+
+import pytest
+
+from grammar.check.framework import check
+from grammar.semantics.link import File, link, words_of
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+
+Agrees = Callable[..., None]
+
+CONFIG = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nENDDAT\n"
+DATA = "DEFDAT CELL\nDECL INT GRIPPED=0\nENDDAT\n"
+
+
+def test_a_backup_with_its_config_knows_its_variables(agrees: Agrees) -> None:
+    """With $CONFIG read an undeclared variable is an error, though a package is missing."""
+    cell = """DEF CELL()
+  PACKAGE_CALL(1) ;> KRL701-
+  GRIPPED = 1
+  GRIPED = 1 ;> KRL101
+  PARTS = WHOLLY_UNKNOWN ;> KRL101
+END"""
+    files = {"R1/System/$config.dat": CONFIG, "R1/cell.dat": DATA, "R1/cell.src": cell}
+    agrees(files, is_complete=None)
+
+
+def test_without_config_only_a_slip_is_told(agrees: Agrees) -> None:
+    """Where $CONFIG is missing a slip is a warning, and any other name is a note."""
+    cell = """DEF CELL()
+  GRIPPED = 1
+  GRIPED = 1 ;> KRL101?
+  GRIPPED = WHOLLY_UNKNOWN ;> KRL701-
+  $OV_PROO = 1 ;> KRL113?
+END"""
+    agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
+
+
+def test_a_slip_of_a_routine_is_a_warning(agrees: Agrees) -> None:
+    """A routine that is not there is probably the one that is called nearly so."""
+    cell = """DEF CELL()
+  OPEN_GRIPPER()
+  OPEN_GRIPER() ;> KRL102?
+END
+DEF OPEN_GRIPPER()
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+def test_what_is_used_again_and_again_is_no_slip(agrees: Agrees) -> None:
+    """A name that is written more than twice is called so; one that is near it is the slip."""
+    cell = """DEF CELL()
+  SPEEDS = 1 ;> KRL701-
+  SPEEDS = 2
+  SPEEDS = 3
+  SPEDS = 4 ;> KRL101?
+END"""
+    agrees({"cell.src": cell, "cell.dat": DATA}, is_complete=None)
+
+
+def test_names_in_series_are_no_slips(agrees: Agrees) -> None:
+    """Several names near one and the same are a series of which some are elsewhere."""
+    cell = """DEF CELL()
+  FINEST()
+  FINERT() ;> KRL701-
+  FINEAT() ;> KRL701-
+  FINEXT() ;> KRL701-
+END
+DEF FINEST()
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+@pytest.mark.parametrize(("name", "severity"), [("HIDDEN", "note"), ("ABSENT", "error")])
+def test_a_damaged_list_declares_none_but_its_words(name: str, severity: str) -> None:
+    """Of a data list that cannot be read only the words in it may be declared."""
+    damaged = "DEFDAT OTHER PUBLIC\nDECL GLOBAL INT HIDDEN=\nENDDAT\n"
+    cell = f"DEF CELL()\n  {name} = 1\nEND\n"
+    files = [File("R1/other.dat", None, words=words_of(damaged))]
+    for path, text in (("R1/System/$config.dat", CONFIG), ("R1/cell.src", cell)):
+        module = read_module(text, path)
+        assert not isinstance(module, list)
+        files.append(File(path, module))
+    found = check(link(files), lambda module: Source(cell, module.path))
+    assert [severity] == [one.severity for one in found if name in one.message]
