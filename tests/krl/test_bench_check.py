@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from krl.cli import main
 from grammar.bench import check_speed
+from krl.cli import main
 
 
 def test_figures_are_printed_and_written(

@@ -1,8 +1,9 @@
-"""`krl bench check`: what checking a corpus costs."""
+"""`krl bench check`: what checking a corpus costs, and how many planted mistakes it finds."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
+import typer
 from rich.console import Console
 
 from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
@@ -14,14 +15,24 @@ from krl.text_table import figures
 
 __all__ = ["check"]
 
+_PLANTED_FIGURES = ("planted", "found", "in_place", "median", "p95")
+
 
 def check(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
     sizes: SizesOption = "1,10",
+    planted: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Mistakes to plant, one at a time.")
+    ] = 120,
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws the mistakes.")] = 1,
 ) -> int:
-    """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more."""
-    from recovery.bench.check_speed import measure_check, steps
+    """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more.
+
+    Then plant mistakes in the programs, drawn by chance, and see how many are found.
+    """
+    from grammar.bench.check_speed import measure_check, steps
+    from grammar.bench.planted_mistakes import measure_planted
     from support.files.discovery import IngestError
 
     check_files(json_file)
@@ -30,6 +41,9 @@ def check(
     try:
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure_check(roots, sizes=wanted, on_step=advance)
+        if planted:
+            with progress_bar("planting mistakes", planted) as advance:
+                record["planted"] = measure_planted(roots, planted, seed, on_step=advance)
     except IngestError as error:
         raise InputError(str(error)) from error
     record = {"bench": "check", **record}
@@ -59,6 +73,14 @@ def _print(record: Mapping[str, Any]) -> None:
         )
     )
     console.print(phases_table(record))
+    if "planted" in record:
+        kinds = [*record["planted"]["kinds"], {"kind": "all", **record["planted"]}]
+        console.print(
+            figures(
+                ("planted mistakes", "planted", "found", "in place", "findings, median", "p95"),
+                [(row["kind"], *(_plain(row[name]) for name in _PLANTED_FIGURES)) for row in kinds],
+            )
+        )
     if record["scaling"]:
         rows = [
             (
@@ -74,3 +96,7 @@ def _print(record: Mapping[str, Any]) -> None:
             figures(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows)
         )
         print_growth(console, record, "cost of a MB")
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else f"{value:g}"

@@ -1,0 +1,68 @@
+"""Mistakes are planted by chance, and what finds them is the check alone."""
+
+import random
+from pathlib import Path
+
+import pytest
+
+from grammar.bench.planted_mistakes import KINDS, Token, damaged, measure_planted
+
+CELL = """DEF CELL()
+  DECL INT COUNTER
+  COUNTER = 1
+  IF COUNTER > 3 THEN
+    WORKING(COUNTER, 2)
+  ENDIF
+END
+DEF WORKING(A:IN, B:IN)
+  DECL INT A, B
+  A = B + 2
+END
+"""
+LINE = [
+    Token("IF", 0, "IF", True),
+    Token("NAME", 3, "COUNTER", False),
+    Token("GREATER", 11, ">", False),
+    Token("NAME", 13, "CALL", False),
+    Token("LPAREN", 17, "(", False),
+    Token("RPAREN", 18, ")", False),
+    Token("INTEGER", 20, "3", False),
+]
+TEXT = "IF COUNTER > CALL() 3"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_mistake_changes_the_line(kind: str) -> None:
+    """Every kind of mistake changes a line that has a place for it, and within the line."""
+    for seed in range(30):
+        exchange = damaged(kind, LINE, random.Random(seed))
+        assert exchange is not None
+        start, end, new = exchange
+        assert 0 <= start <= end <= len(TEXT)
+        assert TEXT[start:end].upper() != new.upper()
+
+
+def test_lines_without_a_place_get_no_mistake() -> None:
+    """A line without names, calls or literals cannot get a mistake in one."""
+    for kind in ("name misspelt", "argument added", "literal of another type"):
+        assert damaged(kind, [Token("ENDIF", 0, "ENDIF", True)], random.Random(1)) is None
+
+
+def test_the_same_seed_gives_the_same_figures(tmp_path: Path) -> None:
+    """What was planted and found follows from the seed; another seed plants other mistakes."""
+    (tmp_path / "cell.src").write_text(CELL, encoding="utf-8")
+    first = measure_planted([tmp_path], 24, 1)
+    assert first == measure_planted([tmp_path], 24, 1)
+    assert first != {**measure_planted([tmp_path], 24, 2), "seed": 1}
+    assert 24 == first["planted"]
+    assert first["found"] > 0.6
+
+
+def test_a_mistake_that_nothing_finds_is_a_survivor(tmp_path: Path) -> None:
+    """Nothing is found where every name may come from elsewhere, and the record says which."""
+    text = "DEF CELL()\n  AXX = BXX + CXX\nEND\n"
+    (tmp_path / "cell.src").write_text(text, encoding="utf-8")
+    record = measure_planted([tmp_path], 60, 3)
+    survivors = {one["kind"] for one in record["survivors"]}
+    assert "literal of another type" not in survivors
+    assert record["found"] < 1
