@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 
 from conformance.differential.divergence import Files
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
-from grammar.syntax.walk import children, walk
+from grammar.syntax.walk import BODIES, bodies, children, walk
 
 __all__ = ["Reduced", "reduce_program", "statements_of"]
 
@@ -67,7 +67,7 @@ def _below(routine: ast.Routine) -> Iterator[ast.Node]:
     while todo:
         node = todo.pop()
         yield node
-        todo += _inner(node)
+        todo += chain.from_iterable(bodies(node))
 
 
 class _Search:
@@ -155,27 +155,10 @@ def _in_body(source: Source, body: Sequence[ast.Node]) -> Iterator[frozenset[int
         block = todo.pop()
         yield from _groups(source, block)
         for node in block:
-            inner = _inner(node)
-            if isinstance(node, _BLOCKS):
+            inner = list(chain.from_iterable(bodies(node)))
+            if type(node) in BODIES:
                 yield from _frames(source, node, inner)
                 todo.append(inner)
-
-
-_BLOCKS = ast.If | ast.For | ast.While | ast.Repeat | ast.Loop | ast.Switch | ast.SplineBlock
-
-
-def _inner(node: ast.Node) -> Sequence[ast.Node]:
-    """The statements within a block, of all its branches."""
-    match node:
-        case ast.If():
-            return [*node.body, *(node.otherwise or ())]
-        case ast.Switch():
-            return [*(one for way in node.branches for one in way.body), *(node.default or ())]
-        case ast.For() | ast.While() | ast.Repeat() | ast.Loop():
-            return node.body
-        case ast.SplineBlock():
-            return node.items
-    return []
 
 
 def _lines(source: Source, node: ast.Node) -> frozenset[int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -20,6 +20,7 @@ from grammar.semantics.types import Enumeration, Type, Verdict
 from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.source import Source
+from grammar.syntax.walk import BODIES, bodies
 
 __all__ = ["Context", "Placed", "RoutineBody", "placed"]
 
@@ -158,16 +159,6 @@ class Context:
         )
 
 
-_INSIDE: Mapping[type[Any], tuple[str, ...]] = {
-    ast.If: ("body", "otherwise"),
-    ast.For: ("body",),
-    ast.While: ("body",),
-    ast.Repeat: ("body",),
-    ast.Loop: ("body",),
-    ast.SplineBlock: ("items",),
-}
-
-
 def placed(body: tuple[ast.Statement, ...]) -> tuple[Placed, ...]:
     """All statements of a body with those they stand in, in the order of the text."""
     found: list[Placed] = []
@@ -177,16 +168,10 @@ def placed(body: tuple[ast.Statement, ...]) -> tuple[Placed, ...]:
         for statement in statements:
             here = Placed(statement, inside)
             found.append(here)
-            kind = type(statement)
-            if kind is ast.Switch:
-                parts = [branch.body for branch in statement.branches]
-                parts.append(statement.default or ())
-            elif kind in _INSIDE:
-                parts = [getattr(statement, name) or () for name in _INSIDE[kind]]
-            else:
-                continue
-            todo.extend((iter(part), here) for part in reversed(parts))
-            break
+            if type(statement) in BODIES:
+                inner = tuple(bodies(statement))
+                todo.extend((iter(body), here) for body in reversed(inner))
+                break
         else:
             todo.pop()
     return tuple(found)

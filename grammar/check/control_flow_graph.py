@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from grammar.syntax import ast
-from grammar.syntax.walk import without_parentheses
+from grammar.syntax.walk import bodies, without_parentheses
 
 __all__ = ["Step", "Ways", "ways_through"]
 
@@ -156,15 +156,12 @@ class _Builder:
     ) -> list[tuple[ast.Statement, ...]]:
         """What is chosen from; where nothing may be chosen, a way leads past it."""
         if isinstance(statement, ast.If):
-            branches, otherwise = [statement.body], statement.otherwise
-            is_open = otherwise is None
+            is_open = statement.otherwise is None
         else:
-            branches = [branch.body for branch in statement.branches]
-            otherwise = statement.default
-            is_open = otherwise is None and not self._is_exhaustive(statement)
+            is_open = statement.default is None and not self._is_exhaustive(statement)
         if is_open:
             step.after.append(behind)
-        return branches if otherwise is None else [*branches, otherwise]
+        return list(bodies(statement))
 
 
 def _is_endless(loop: ast.Statement) -> bool:

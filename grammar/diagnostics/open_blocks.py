@@ -8,27 +8,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+from grammar.blocks import BLOCKS, CLOSERS
 from grammar.syntax.source import Source
 
-__all__ = ["CLOSERS", "Opened", "innermost", "lead", "open_blocks"]
+__all__ = ["Opened", "innermost", "lead", "open_blocks"]
 
-#: What closes a block, and the words that open one that it closes.
-CLOSERS: Mapping[str, tuple[str, ...]] = {
-    "ENDIF": ("IF",),
-    "ENDFOR": ("FOR",),
-    "ENDWHILE": ("WHILE",),
-    "UNTIL": ("REPEAT",),
-    "ENDLOOP": ("LOOP",),
-    "ENDSWITCH": ("SWITCH",),
-    "ENDSPLINE": ("SPLINE", "PTP_SPLINE"),
-    "END": ("DEF",),
-    "ENDFCT": ("DEFFCT",),
-    "ENDDAT": ("DEFDAT",),
-}
-_CLOSED_BY = {opener: closer for closer, openers in CLOSERS.items() for opener in openers}
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 
 
@@ -43,7 +30,7 @@ class Opened:
     @property
     def closer(self) -> str:
         """What would close it."""
-        return _CLOSED_BY[self.word]
+        return BLOCKS[self.word].closer
 
 
 def lead(line: str) -> str:
@@ -63,7 +50,7 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, Opened | None
         if number in wanted:
             found[number] = block
         word = lead(text)
-        if word in _CLOSED_BY:
+        if word in BLOCKS:
             block = Opened(word, number, block)
             opened[word] += 1
         elif any(opened[opener] for opener in CLOSERS.get(word, ())):

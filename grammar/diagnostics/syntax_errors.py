@@ -12,10 +12,11 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.error_site import Site
 from grammar.diagnostics.expected_tokens import NAMES, STATEMENTS, in_words
-from grammar.diagnostics.open_blocks import CLOSERS, Opened, innermost, lead, open_blocks
+from grammar.diagnostics.open_blocks import Opened, innermost, lead, open_blocks
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
@@ -119,8 +120,8 @@ def _blocks(site: Site) -> _Mistake | None:
         return two
     if word in ("DEF", "DEFFCT", "DEFDAT") and site.block is not None:
         return _not_closed(site, site.block)
-    openers = CLOSERS.get(word) or _PARTS.get(word)
-    if openers is None or site.block is None:
+    openers = CLOSERS.get(word, (BRANCHES[word],) if word in BRANCHES else ())
+    if not openers or site.block is None:
         return None
     if site.block.word in openers:
         return _Mistake(f"a second {word}") if word in ("ELSE", "DEFAULT") else None
@@ -139,7 +140,6 @@ def _blocks(site: Site) -> _Mistake | None:
 
 
 #: The parts of a block that are no ends of it.
-_PARTS = {"ELSE": ("IF",), "CASE": ("SWITCH",), "DEFAULT": ("SWITCH",)}
 
 
 def _outermost(block: Opened) -> Opened:

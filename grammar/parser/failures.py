@@ -17,35 +17,20 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, islice
 
+from grammar.blocks import BLOCKS, PREFIXES, Block
 from grammar.parser.lazy_automaton import Core, Tail
 from grammar.parser.lexer import SKIPPED, Lexer
 from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
 
-__all__ = ["BLOCKS", "Context", "Failure", "FailureFinder", "Form"]
+__all__ = ["Context", "Failure", "FailureFinder", "Form"]
 
-#: What opens a block of KRL, and the lines that only make sense inside it or end it. Knowledge of
-#: the language, needed where the grammar has no rule for the block yet.
-BLOCKS: Mapping[str, frozenset[str]] = {
-    "DEF": frozenset({"END"}),
-    "DEFFCT": frozenset({"ENDFCT"}),
-    "DEFDAT": frozenset({"ENDDAT"}),
-    "IF": frozenset({"ELSE", "ENDIF"}),
-    "FOR": frozenset({"ENDFOR"}),
-    "WHILE": frozenset({"ENDWHILE"}),
-    "REPEAT": frozenset({"UNTIL"}),
-    "LOOP": frozenset({"ENDLOOP"}),
-    "SWITCH": frozenset({"CASE", "DEFAULT", "ENDSWITCH"}),
-    "SPLINE": frozenset({"ENDSPLINE", "SPL", "SLIN", "SCIRC"}),
-    "PTP_SPLINE": frozenset({"ENDSPLINE", "SPTP"}),
-}
-_PREFIXES = frozenset({"GLOBAL"})
 # A failing line is tried again without 1, 2, 3 … tokens; on enormous lines only so far.
 _LONGEST_GAP = 64
 # How many lines that say something decide where reading goes on.
@@ -182,7 +167,7 @@ class FailureFinder:
         ends = kinds.count(self.recognizer.line_kind)
         place = _Places(text, self.recognizer.lexer, starts, ends)
         spot = reader.spot(self.recognizer.start)
-        opened: list[frozenset[str]] = []  # what closes the blocks that were dropped
+        opened: list[Block] = []  # the blocks whose first lines were dropped
         lost = False  # whether some dropped line may have changed the place we are at
         for number, line in enumerate(lines):
             after = reader.after(spot, line)
@@ -193,7 +178,7 @@ class FailureFinder:
             written = tuple(lexemes[starts[number] : starts[number + 1]])
             lead = _lead(written)
             anchor = self._anchor(line) if lost or opened else None
-            closes = next((b for b in reversed(opened) if lead in b), None)
+            closes = next((b for b in reversed(opened) if lead in b.words), None)
             is_end = number == len(lines) - 1
             yield Failure(
                 *place(number, broken.form.index),
@@ -202,7 +187,7 @@ class FailureFinder:
                 state=broken.state,
                 follows=closes is not None or anchor is not None or (is_end and lost),
             )
-            if closes is not None and (lead.startswith("END") or lead == "UNTIL"):
+            if closes is not None and lead == closes.closer:
                 opened.remove(closes)
             elif closes is None and lead in BLOCKS and broken.mended is None:
                 opened.append(BLOCKS[lead])
@@ -293,7 +278,7 @@ class FailureFinder:
 def _lead(lexemes: Sequence[str]) -> str:
     """The word that says what a line is, in upper case."""
     words = [w.upper() for w in lexemes[:2]]
-    if len(words) > 1 and words[0] in _PREFIXES:
+    if len(words) > 1 and words[0] in PREFIXES:
         return words[1]
     return words[0] if words else ""
 

@@ -26,6 +26,7 @@ from grammar.semantics.symbols import (
 )
 from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
+from grammar.syntax.walk import BODIES, bodies
 
 __all__ = ["table_of"]
 
@@ -100,8 +101,8 @@ def _declared_in(
         for statement in todo[-1]:
             if isinstance(statement, _DECLARING):
                 yield statement
-            elif isinstance(statement, _BLOCKS):
-                todo.append(iter(_inside(statement)))
+            elif type(statement) in BODIES:
+                todo.append(chain.from_iterable(bodies(statement)))
                 break
         else:
             todo.pop()
@@ -117,18 +118,6 @@ _DECLARING = (
     ast.ChannelDefinition,
     ast.Importation,
 )
-_BLOCKS = (ast.If, ast.For, ast.While, ast.Repeat, ast.Loop, ast.Switch)
-
-
-def _inside(
-    block: ast.If | ast.For | ast.While | ast.Repeat | ast.Loop | ast.Switch,
-) -> tuple[ast.Statement, ...]:
-    if isinstance(block, ast.If):
-        return block.body + (block.otherwise or ())
-    if isinstance(block, ast.Switch):
-        bodies = [branch.body for branch in block.branches]
-        return tuple(chain(*bodies, block.default or ()))
-    return block.body
 
 
 def _parameters(

@@ -5,6 +5,9 @@ Nodes are frozen and compare by identity, so that side tables (types, symbols) c
 character and of the one behind its last in the text it was read from. Comments and folds are no
 nodes: they are the text between the tokens, and `grammar.syntax.source` has them by line.
 
+A node says beside its fields how it is written (`template`): printing, and what lies within a
+block, follow from that.
+
 Sequences are tuples. What a program may leave out is ``None``. Blocks nest without a limit, so
 walks over statements must not recurse; within a line nodes lie at most
 `grammar.syntax.node_plans.MAX_DEPTH` deep.
@@ -12,7 +15,9 @@ walks over statements must not recurse; within a line nodes lie at most
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 Span = tuple[int, int]
 
@@ -24,6 +29,29 @@ class Node:
     span: Span
 
 
+_Class = TypeVar("_Class", bound=type[Node])
+
+#: The lines of each node, see `template`.
+TEMPLATES: dict[type[Node], tuple[str, ...]] = {}
+
+
+def template(*lines: str) -> Callable[[_Class], _Class]:
+    """How a node is written, keywords as they are and fields in angles.
+
+    ``<field>`` is the text of a field: a list is separated by commas, ``indices`` stand in
+    brackets, a ``path`` has slashes. ``<field|text>`` is ``text`` where the field has a value,
+    which is written for a ``*``. ``<<field>>`` are the nodes of a field, each on lines of its own:
+    a node that has such a field is a block.
+    """
+
+    def add(node: _Class) -> _Class:
+        TEMPLATES[node] = lines
+        return node
+
+    return add
+
+
+@template("<text>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Name(Node):
     """A name as written. Letter case does not tell names apart: compare ``key``.
@@ -39,6 +67,7 @@ class Name(Node):
         return self.text.upper()
 
 
+@template("<name><indices>")
 @dataclass(frozen=True, slots=True, eq=False)
 class TypeName(Node):
     """A type by its name; ``indices`` where it is an array: CHAR[128] [TYP-17]."""
@@ -50,6 +79,7 @@ class TypeName(Node):
 # ------------------------------------------------------------------------------------ expressions
 
 
+@template("<value>")
 @dataclass(frozen=True, slots=True, eq=False)
 class IntegerLiteral(Node):
     """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
@@ -60,6 +90,7 @@ class IntegerLiteral(Node):
     value: int
 
 
+@template("<text>")
 @dataclass(frozen=True, slots=True, eq=False)
 class RealLiteral(Node):
     """A number with a decimal point or an exponent; ``text`` as written [TYP-02]."""
@@ -72,6 +103,7 @@ class RealLiteral(Node):
         return float(self.text)
 
 
+@template("<value>")
 @dataclass(frozen=True, slots=True, eq=False)
 class BoolLiteral(Node):
     """TRUE or FALSE."""
@@ -79,6 +111,7 @@ class BoolLiteral(Node):
     value: bool
 
 
+@template("<text>")
 @dataclass(frozen=True, slots=True, eq=False)
 class BitLiteral(Node):
     """A binary or hexadecimal integer, ``'B101'`` or ``'HFF'``; ``text`` as written [TYP-04]."""
@@ -87,6 +120,7 @@ class BitLiteral(Node):
     value: int
 
 
+@template('"<text>"')
 @dataclass(frozen=True, slots=True, eq=False)
 class StringLiteral(Node):
     """A text without its quotation marks; of one letter it is a CHAR as well [TYP-03, TYP-11]."""
@@ -94,6 +128,7 @@ class StringLiteral(Node):
     text: str
 
 
+@template("#<name>")
 @dataclass(frozen=True, slots=True, eq=False)
 class EnumConstant(Node):
     """``#NAME``; its enumeration follows from where it is used [TYP-16]."""
@@ -104,6 +139,7 @@ class EnumConstant(Node):
 Literal = IntegerLiteral | RealLiteral | BoolLiteral | BitLiteral | StringLiteral | EnumConstant
 
 
+@template("<name>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Variable(Node):
     """A variable by its name; system variables begin with a dollar sign."""
@@ -111,6 +147,7 @@ class Variable(Node):
     name: Name
 
 
+@template("<base><indices>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Subscript(Node):
     """``base[indices]``; an index left out means all of that dimension [TYP-08, TYP-11]."""
@@ -119,6 +156,7 @@ class Subscript(Node):
     indices: tuple[Expression | None, ...]
 
 
+@template("<base>.<name>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Member(Node):
     """``base.name``, a member of a structure."""
@@ -127,6 +165,7 @@ class Member(Node):
     name: Name
 
 
+@template(":<name>")
 @dataclass(frozen=True, slots=True, eq=False)
 class ChannelName(Node):
     """``:NAME``, a channel as an argument."""
@@ -134,6 +173,7 @@ class ChannelName(Node):
     name: Name
 
 
+@template("<name>(<arguments>)")
 @dataclass(frozen=True, slots=True, eq=False)
 class Call(Node):
     """A routine called; an argument left out is ``None`` [SCO-13]. ``F()`` has no arguments."""
@@ -163,6 +203,7 @@ class Binary(Node):
     right: Expression
 
 
+@template("(<inner>)")
 @dataclass(frozen=True, slots=True, eq=False)
 class Parenthesised(Node):
     """An expression in parentheses, kept so that it is printed as its author wrote it."""
@@ -170,6 +211,7 @@ class Parenthesised(Node):
     inner: Expression
 
 
+@template("<name><indices> <value>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Component(Node):
     """A component in an aggregate: its name, an index for arrays, and its value."""
@@ -179,6 +221,7 @@ class Component(Node):
     value: Expression
 
 
+@template("{<type|*: ><components>}")
 @dataclass(frozen=True, slots=True, eq=False)
 class Aggregate(Node):
     """``{X 1, Y 2}``; components left out get no value [TYP-19]. ``type`` is the prefix."""
@@ -204,6 +247,7 @@ Expression = (
 # ----------------------------------------------------------------------------------- declarations
 
 
+@template("<name><indices><value|=*>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Declarator(Node):
     """A name that a declaration introduces; initial values stand in data lists only [TYP-10]."""
@@ -213,6 +257,7 @@ class Declarator(Node):
     value: Expression | None
 
 
+@template("<has_decl|DECL ><is_global|GLOBAL ><is_constant|CONST ><type> <declarators>")
 @dataclass(frozen=True, slots=True, eq=False)
 class VariableDeclaration(Node):
     """Variables of one type. ``has_decl``: whether DECL was written [TYP-06]."""
@@ -224,6 +269,7 @@ class VariableDeclaration(Node):
     declarators: tuple[Declarator, ...]
 
 
+@template("<is_global|GLOBAL >ENUM <name> <constants>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Enumeration(Node):
     """ENUM: a type and its constants, in order [TYP-16]."""
@@ -233,6 +279,7 @@ class Enumeration(Node):
     constants: tuple[Name, ...]
 
 
+@template("<type> <declarators>")
 @dataclass(frozen=True, slots=True, eq=False)
 class MemberGroup(Node):
     """Members of a structure that share their type."""
@@ -241,6 +288,7 @@ class MemberGroup(Node):
     declarators: tuple[Declarator, ...]
 
 
+@template("<is_global|GLOBAL >STRUC <name> <groups>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure(Node):
     """STRUC: a type and its members, in order [TYP-14]."""
@@ -250,6 +298,7 @@ class Structure(Node):
     groups: tuple[MemberGroup, ...]
 
 
+@template("<has_decl|DECL ><is_global|GLOBAL >SIGNAL <name> <first><last| TO *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Signal(Node):
     """A name for an input or output, or for those from ``first`` to ``last`` [IOT-03].
@@ -264,6 +313,7 @@ class Signal(Node):
     last: Expression | None
 
 
+@template("<type><name| *><indices><mode|:*>")
 @dataclass(frozen=True, slots=True, eq=False)
 class ExternalParameter(Node):
     """A parameter of an external routine; ``mode`` is IN, OUT or ``None``."""
@@ -274,6 +324,7 @@ class ExternalParameter(Node):
     mode: str | None
 
 
+@template("<keyword><result| *> <name>(<parameters>)")
 @dataclass(frozen=True, slots=True, eq=False)
 class External(Node):
     """A routine of another module; ``keyword`` is EXT, EXTP, EXTFCT or EXTFCTP [SCO-10]."""
@@ -284,6 +335,7 @@ class External(Node):
     parameters: tuple[ExternalParameter, ...]
 
 
+@template("CHANNEL :<name> :<interface> <description>")
 @dataclass(frozen=True, slots=True, eq=False)
 class ChannelDefinition(Node):
     """CHANNEL: its name, the interface it uses, and the structure that describes it."""
@@ -293,6 +345,7 @@ class ChannelDefinition(Node):
     description: Expression
 
 
+@template("<has_decl|DECL >IMPORT <type> <declarator> IS <path>..<source>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Importation(Node):
     """IMPORT: a variable of another data list under a name of its own [ADV-05]."""
@@ -318,6 +371,7 @@ Definition = (
 # ------------------------------------------------------------------------------------- statements
 
 
+@template("<target> = <value>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Assignment(Node):
     """``target = value``; in a data list, the initial value of an element or a text [TYP-10]."""
@@ -326,6 +380,7 @@ class Assignment(Node):
     value: Expression
 
 
+@template("<call>")
 @dataclass(frozen=True, slots=True, eq=False)
 class CallStatement(Node):
     """A routine called for what it does."""
@@ -333,6 +388,7 @@ class CallStatement(Node):
     call: Call
 
 
+@template("IF <condition> THEN", "  <<body>>", "<otherwise|ELSE>", "  <<otherwise>>", "ENDIF")
 @dataclass(frozen=True, slots=True, eq=False)
 class If(Node):
     """IF; ``otherwise`` is ``None`` without ELSE."""
@@ -342,6 +398,7 @@ class If(Node):
     otherwise: tuple[Statement, ...] | None
 
 
+@template("FOR <counter> = <first> TO <last><step| STEP *>", "  <<body>>", "ENDFOR")
 @dataclass(frozen=True, slots=True, eq=False)
 class For(Node):
     """FOR from ``first`` to ``last``, both included [CTL-05]."""
@@ -353,6 +410,7 @@ class For(Node):
     body: tuple[Statement, ...]
 
 
+@template("WHILE <condition>", "  <<body>>", "ENDWHILE")
 @dataclass(frozen=True, slots=True, eq=False)
 class While(Node):
     """WHILE: tested before each pass [CTL-01]."""
@@ -361,6 +419,7 @@ class While(Node):
     body: tuple[Statement, ...]
 
 
+@template("REPEAT", "  <<body>>", "UNTIL <condition>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Repeat(Node):
     """REPEAT … UNTIL: tested after each pass, ends when TRUE [CTL-01]."""
@@ -369,6 +428,7 @@ class Repeat(Node):
     condition: Expression
 
 
+@template("LOOP", "  <<body>>", "ENDLOOP")
 @dataclass(frozen=True, slots=True, eq=False)
 class Loop(Node):
     """LOOP: endless, left by EXIT [CTL-01]."""
@@ -376,6 +436,7 @@ class Loop(Node):
     body: tuple[Statement, ...]
 
 
+@template("CASE <values>", "  <<body>>")
 @dataclass(frozen=True, slots=True, eq=False)
 class CaseBranch(Node):
     """CASE: constants or names of constants, and what is done [CTL-04]."""
@@ -384,6 +445,9 @@ class CaseBranch(Node):
     body: tuple[Statement, ...]
 
 
+@template(
+    "SWITCH <selector>", "  <<branches>>", "  <default|DEFAULT>", "    <<default>>", "ENDSWITCH"
+)
 @dataclass(frozen=True, slots=True, eq=False)
 class Switch(Node):
     """SWITCH; ``default`` is ``None`` without DEFAULT [CTL-03, CTL-04]."""
@@ -393,11 +457,13 @@ class Switch(Node):
     default: tuple[Statement, ...] | None
 
 
+@template("EXIT")
 @dataclass(frozen=True, slots=True, eq=False)
 class Exit(Node):
     """EXIT: leaves the innermost loop [CTL-02]."""
 
 
+@template("GOTO <label>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Goto(Node):
     """GOTO a label of the same routine [CTL-07]."""
@@ -405,6 +471,7 @@ class Goto(Node):
     label: Name
 
 
+@template("<name>:")
 @dataclass(frozen=True, slots=True, eq=False)
 class Label(Node):
     """``NAME:``, where a GOTO goes."""
@@ -412,6 +479,7 @@ class Label(Node):
     name: Name
 
 
+@template("RETURN<value| *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Return(Node):
     """RETURN, with a value in functions [CTL-09]."""
@@ -419,21 +487,25 @@ class Return(Node):
     value: Expression | None
 
 
+@template("HALT")
 @dataclass(frozen=True, slots=True, eq=False)
 class Halt(Node):
     """HALT [CTL-08]."""
 
 
+@template("CONTINUE")
 @dataclass(frozen=True, slots=True, eq=False)
 class Continue(Node):
     """CONTINUE: the next line does not stop the advance run [ADV-08]."""
 
 
+@template("ON_ERROR_PROCEED")
 @dataclass(frozen=True, slots=True, eq=False)
 class OnErrorProceed(Node):
     """ON_ERROR_PROCEED: an error of the next statement is noted in $ERR [TYP-13]."""
 
 
+@template("CONFIRM <number>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Confirm(Node):
     """CONFIRM: acknowledges a message by its number."""
@@ -441,6 +513,7 @@ class Confirm(Node):
     number: Expression
 
 
+@template("WAIT FOR <condition>")
 @dataclass(frozen=True, slots=True, eq=False)
 class WaitFor(Node):
     """WAIT FOR a condition [CTL-12]."""
@@ -448,6 +521,7 @@ class WaitFor(Node):
     condition: Expression
 
 
+@template("WAIT SEC <duration>")
 @dataclass(frozen=True, slots=True, eq=False)
 class WaitSeconds(Node):
     """WAIT SEC, a time in seconds [TIM-06]."""
@@ -455,6 +529,7 @@ class WaitSeconds(Node):
     duration: Expression
 
 
+@template("<keyword> ON <assignment><delay| DELAY=*><minimum| MINIMUM=*><maximum| MAXIMUM=*>")
 @dataclass(frozen=True, slots=True, eq=False)
 class SignalOn(Node):
     """ANIN ON, ANOUT ON or DIGIN ON; ``keyword`` is the first word [IOT-05, IOT-09]."""
@@ -466,6 +541,7 @@ class SignalOn(Node):
     maximum: Expression | None
 
 
+@template("<keyword> OFF <variable>")
 @dataclass(frozen=True, slots=True, eq=False)
 class SignalOff(Node):
     """ANIN OFF, ANOUT OFF or DIGIN OFF."""
@@ -477,6 +553,7 @@ class SignalOff(Node):
 # --------------------------------------------------------------------------------------- motions
 
 
+@template("<kind> <auxiliary|*, ><target><angle|, CA *><values| WITH *><criteria| *><reference| *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion(Node):
     """A motion of any kind but those of option packages.
@@ -496,6 +573,7 @@ class Motion(Node):
     reference: EnumConstant | None
 
 
+@template("MOVE_EMI <device> <action><number| FLT *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class EmilyMotion(Node):
     """MOVE_EMI: a path that an option package holds."""
@@ -505,6 +583,7 @@ class EmilyMotion(Node):
     number: Expression | None
 
 
+@template("CONST_VEL <edge>=<place><on_start| ONSTART>")
 @dataclass(frozen=True, slots=True, eq=False)
 class ConstantVelocity(Node):
     """CONST_VEL: ``edge`` is START or END of the range, ``place`` in mm [SPL-05, SPL-07]."""
@@ -514,6 +593,7 @@ class ConstantVelocity(Node):
     on_start: bool
 
 
+@template("TIME_BLOCK <edge><value|=*>")
 @dataclass(frozen=True, slots=True, eq=False)
 class TimeBlock(Node):
     """TIME_BLOCK: ``edge`` is START, PART or END; START has no value [SPL-10]."""
@@ -522,6 +602,7 @@ class TimeBlock(Node):
     value: Expression | None
 
 
+@template("STOP WHEN PATH=<place><on_start| ONSTART> IF <condition>")
 @dataclass(frozen=True, slots=True, eq=False)
 class StopWhen(Node):
     """STOP WHEN PATH, a conditional stop at a place in mm [SPL-06, SPL-07]."""
@@ -531,6 +612,7 @@ class StopWhen(Node):
     condition: Expression
 
 
+@template("<keyword><values| WITH *>", "  <<items>>", "ENDSPLINE<is_approximated| C_SPL>")
 @dataclass(frozen=True, slots=True, eq=False)
 class SplineBlock(Node):
     """SPLINE or PTP_SPLINE: motions planned and executed as one [SPL-01]."""
@@ -544,6 +626,7 @@ class SplineBlock(Node):
 # ------------------------------------------------------------------------ interrupts and triggers
 
 
+@template("BRAKE<mode| *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Brake(Node):
     """BRAKE; ``mode`` is F, FF or ``None`` [INT-09]."""
@@ -551,11 +634,13 @@ class Brake(Node):
     mode: str | None
 
 
+@template("RESUME")
 @dataclass(frozen=True, slots=True, eq=False)
 class Resume(Node):
     """RESUME [INT-10]."""
 
 
+@template("<is_global|GLOBAL >INTERRUPT DECL <number> WHEN <condition> DO <action>")
 @dataclass(frozen=True, slots=True, eq=False)
 class InterruptDeclaration(Node):
     """INTERRUPT DECL; its number is its priority [INT-01, INT-02]."""
@@ -566,6 +651,7 @@ class InterruptDeclaration(Node):
     action: CallStatement | Brake
 
 
+@template("INTERRUPT <action><number| *>")
 @dataclass(frozen=True, slots=True, eq=False)
 class InterruptSwitch(Node):
     """INTERRUPT ON, OFF, ENABLE or DISABLE; without a number, all of them [INT-07]."""
@@ -574,6 +660,10 @@ class InterruptSwitch(Node):
     number: Expression | None
 
 
+@template(
+    "TRIGGER WHEN <place_kind>=<place><on_start| ONSTART>"
+    " DELAY=<delay> DO <action><priority| PRIO=*>"
+)
 @dataclass(frozen=True, slots=True, eq=False)
 class Trigger(Node):
     """TRIGGER. ``place_kind`` is DISTANCE or PATH (mm), ``delay`` in ms [TRG-01 to TRG-06]."""
@@ -624,6 +714,7 @@ Item = Definition | Assignment
 # ---------------------------------------------------------------------------------------- modules
 
 
+@template("<name><indices><mode|:*>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Parameter(Node):
     """A formal parameter; ``mode`` is IN, OUT, or ``None``, which means OUT [SCO-06, SCO-07]."""
@@ -633,6 +724,9 @@ class Parameter(Node):
     mode: str | None
 
 
+@template(
+    "<is_global|GLOBAL >DEF<result|FCT *> <name>(<parameters>)", "<<body>>", "END<result|FCT>"
+)
 @dataclass(frozen=True, slots=True, eq=False)
 class Routine(Node):
     """DEF, or DEFFCT where there is a ``result``. Declarations stand in the body, as written."""
@@ -644,6 +738,7 @@ class Routine(Node):
     body: tuple[Statement, ...]
 
 
+@template("<<routines>>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Program(Node):
     """A SRC or SUB file; the first routine carries the name of the file [SCO-01]."""
@@ -651,6 +746,7 @@ class Program(Node):
     routines: tuple[Routine, ...]
 
 
+@template("DEFDAT <name><is_public| PUBLIC>", "<<items>>", "ENDDAT")
 @dataclass(frozen=True, slots=True, eq=False)
 class DataList(Node):
     """A DAT file."""
@@ -660,6 +756,7 @@ class DataList(Node):
     items: tuple[Item, ...]
 
 
+@template("<text>")
 @dataclass(frozen=True, slots=True, eq=False)
 class Header(Node):
     """A line of the controller's file system: &ACCESS, &REL …"""

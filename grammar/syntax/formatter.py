@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from functools import cache
 from operator import add
 
+from grammar.blocks import BLOCKS, BRANCHES
 from grammar.parser.lexer import EOF
 from grammar.parser.tree import Outline, Tree
 from grammar.syntax.build import BLOCK_RULES, Builder, SyntaxFailure, builder
@@ -37,20 +38,7 @@ _ROUTINES = frozenset({"procedure", "function"})
 _AS_WRITTEN = _ROUTINES | {"dataList", "declaration", "initialisation"}
 _INSIDE = frozenset({"statement", "caseBranch", "defaultBranch", "splineItem"})
 #: What ends a block or a branch, and how much deeper the lines before it may lie.
-_ENDS = {
-    "ELSE": 1,
-    "ENDIF": 1,
-    "ENDFOR": 1,
-    "ENDWHILE": 1,
-    "UNTIL": 1,
-    "ENDLOOP": 1,
-    "CASE": 1,
-    "DEFAULT": 1,
-    "ENDSWITCH": 2,
-    "ENDSPLINE": 1,
-    "END": 1,
-    "ENDFCT": 1,
-}
+_ENDS = dict.fromkeys(BRANCHES, 1) | {block.closer: block.depth for block in BLOCKS.values()}
 _PLAIN = Setting(Gap.FREE, Gap.FREE, False)
 _BLANKS = " \t"
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
 
-__all__ = ["children", "root_variable", "same", "walk", "without_parentheses"]
+__all__ = ["BODIES", "bodies", "children", "root_variable", "same", "walk", "without_parentheses"]
 
 
 _NAMES: dict[type, tuple[str, ...]] = {}
@@ -30,6 +30,25 @@ def children(node: Node) -> Iterator[Node]:
             yield value
         elif isinstance(value, tuple):
             yield from (item for item in value if isinstance(item, Node))
+
+
+#: The fields of each kind of block that hold nodes on lines of their own, in the order of the text.
+BODIES: Mapping[type[Node], tuple[str, ...]] = {
+    kind: names
+    for kind, lines in ast.TEMPLATES.items()
+    if (names := tuple(line.strip(" <>") for line in lines if line.lstrip().startswith("<<")))
+}
+
+
+def bodies(node: Node) -> Iterator[tuple[ast.Statement, ...]]:
+    """The lists of statements directly in a block, in the order of the text; none of others."""
+    for name in BODIES.get(type(node), ()):
+        body = getattr(node, name)
+        if body and type(body[0]) is ast.CaseBranch:
+            for branch in body:
+                yield branch.body
+        elif body is not None:
+            yield body
 
 
 def walk(node: Node) -> Iterator[Node]:

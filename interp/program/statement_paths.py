@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from grammar.syntax import ast
+from grammar.syntax.walk import bodies
 from interp.program.load import CheckedProgram, Routine
 
 __all__ = ["routine_at", "statement_lines", "way_to"]
@@ -53,12 +54,5 @@ def _ways(
 
 
 def _bodies(statement: ast.Statement) -> Iterator[tuple[ast.Statement, ...]]:
-    match statement:
-        case ast.If():
-            yield statement.body
-            yield statement.otherwise or ()
-        case ast.Switch():
-            yield from (branch.body for branch in statement.branches)
-            yield statement.default or ()
-        case ast.For() | ast.While() | ast.Repeat() | ast.Loop():
-            yield statement.body
+    """The lists of statements in a block; a spline block holds parts of its own motion."""
+    return iter(()) if isinstance(statement, ast.SplineBlock) else bodies(statement)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from itertools import count, repeat
 from pathlib import Path
 
-from grammar.parser.failures import BLOCKS
+from grammar.blocks import BLOCKS
 from grammar.parser.lexer import EOF, Lexer
 from grammar.parser.recognizer import Recognizer, State
 
@@ -33,7 +33,7 @@ _PIECE = re.compile(
 _DIGIT = 0xE000  # to 0xE009
 _SUFFIX = 0xE00A
 _TO_PLACES = {ord("0") + digit: _DIGIT + digit for digit in range(10)}
-_BLOCK_WORDS = frozenset(BLOCKS).union(*BLOCKS.values())
+_BLOCK_WORDS = frozenset(BLOCKS).union(*(block.words for block in BLOCKS.values()))
 _FILES_A_FOLDER = 500
 
 

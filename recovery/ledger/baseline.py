@@ -10,10 +10,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from grammar.blocks import BLOCKS, CLOSERS
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.generate import generate
-from recovery.negatives.language_facts import BLOCKS
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, lines
 from recovery.survey.survey import Survey, survey
@@ -26,7 +26,7 @@ _KEYWORDS = (
     RESERVED
     | RESERVED_FIRST
     | BLOCKS.keys()
-    | frozenset(BLOCKS.values())
+    | CLOSERS.keys()
     | frozenset("WAIT INTERRUPT TRIGGER PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
     | frozenset("SPL SPTP SLIN SCIRC SPL_REL SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split())
 )

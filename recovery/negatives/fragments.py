@@ -10,7 +10,8 @@ import random
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from recovery.negatives.language_facts import BLOCKS, violation
+from grammar.blocks import BLOCKS, CLOSERS
+from recovery.negatives.language_facts import violation
 from recovery.negatives.tokens import Line, lines
 
 __all__ = ["Piece", "Stock", "stock_of"]
@@ -192,7 +193,7 @@ def _pieces(text: str) -> Iterator[tuple[str, list[Line]]]:
     for index, line in enumerate(program):
         if line.lead in BLOCKS:
             open_blocks.append(index)
-        elif line.lead in BLOCKS.values():
+        elif line.lead in CLOSERS:
             block = program[open_blocks.pop() : index + 1]
             if open_blocks and len(block) <= _LONGEST_BLOCK and _is_narrow(block):
                 yield "statements", block

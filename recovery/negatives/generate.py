@@ -13,8 +13,9 @@ import random
 from collections.abc import Callable, Container, Iterator, Sequence
 from itertools import cycle
 
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from recovery.negatives.fragments import stock_of
-from recovery.negatives.language_facts import BLOCKS, CLOSER_OF, adjacent, violation
+from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, Token, line
 
@@ -123,7 +124,7 @@ def _replaced(program: list[str], number: int, *texts: str) -> list[str]:
 
 # --------------------------------------------------------------------------- lines and blocks
 
-_CLOSERS = tuple(dict.fromkeys(BLOCKS.values()))
+_CLOSERS = tuple(CLOSERS)
 _OPENERS = (
     "IF $IN[4] THEN",
     "FOR I = 1 TO 3",
@@ -137,7 +138,7 @@ _OPENERS = (
     "DEFDAT NEXT",
 )
 _STRAYS = (*_OPENERS, *_CLOSERS[:-1], "UNTIL $IN[6]", "ELSE", "CASE 9", "DEFAULT")
-_STRUCTURE = frozenset({*BLOCKS, *_CLOSERS, "ELSE", "CASE", "DEFAULT"})
+_STRUCTURE = frozenset({*BLOCKS, *CLOSERS, *BRANCHES})
 
 
 def _structural(program: list[str], chance: random.Random) -> int:

@@ -17,9 +17,10 @@ from functools import cache, lru_cache
 from importlib import resources
 from itertools import pairwise
 
+from grammar.blocks import BLOCKS, CLOSERS
 from recovery.negatives.tokens import RESERVED, Line, lines
 
-__all__ = ["BLOCKS", "CLOSER_OF", "Violation", "adjacent", "violation"]
+__all__ = ["CLOSER_OF", "Violation", "adjacent", "violation"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,22 +275,7 @@ def _behind_variable(kinds: Sequence[str]) -> int:
 
 # -------------------------------------------------------------------------------------- blocks
 
-#: What closes the block that a line opens.
-BLOCKS: Mapping[str, str] = {
-    "DEF": "END",
-    "DEFFCT": "ENDFCT",
-    "DEFDAT": "ENDDAT",
-    "IF": "ENDIF",
-    "FOR": "ENDFOR",
-    "WHILE": "ENDWHILE",
-    "REPEAT": "UNTIL",
-    "LOOP": "ENDLOOP",
-    "SWITCH": "ENDSWITCH",
-    "SPLINE": "ENDSPLINE",
-    "PTP_SPLINE": "ENDSPLINE",
-}
 _MODULES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
-_CLOSERS = frozenset(BLOCKS.values())
 
 
 @dataclass(slots=True)
@@ -308,7 +294,7 @@ def _blocks(program: Sequence[Line]) -> Violation | None:
         if fact:
             return Violation(number, fact)
     if open_blocks:
-        return Violation(len(program), f"{BLOCKS[open_blocks[-1].opener]} closes its block")
+        return Violation(len(program), f"{BLOCKS[open_blocks[-1].opener].closer} closes its block")
     return None
 
 
@@ -327,10 +313,10 @@ def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
         return "SWITCH is followed by its first CASE"
     if lead in BLOCKS:
         return _open(lead, block, open_blocks)
-    if lead in _CLOSERS:
+    if lead in CLOSERS:
         del open_blocks[-1]
-        if BLOCKS[block.opener] != lead:
-            return f"{BLOCKS[block.opener]} closes its block before any other closer"
+        if BLOCKS[block.opener].closer != lead:
+            return f"{BLOCKS[block.opener].closer} closes its block before any other closer"
     elif lead == "ELSE":
         if block.opener != "IF" or block.branched:
             return "ELSE stands once, in an IF"
@@ -344,7 +330,7 @@ def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
 
 def _open(lead: str, block: _Block, open_blocks: list[_Block]) -> str | None:
     if block.opener and lead in _MODULES:
-        return f"{BLOCKS[block.opener]} closes its block before the next {lead}"
+        return f"{BLOCKS[block.opener].closer} closes its block before the next {lead}"
     if block.opener == "DEFDAT":
         return "a data list has no statements"
     open_blocks.append(_Block(lead))

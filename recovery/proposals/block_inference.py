@@ -13,7 +13,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from grammar.parser.failures import BLOCKS
+from grammar.blocks import BLOCKS
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.alignment import common_phrases
@@ -100,7 +100,7 @@ class BlockFinder:
 
     def _closer(self, opener: str, files: Sequence[Sequence[_Line]]) -> str | None:
         """The word that closes what ``opener`` opens, in balance with it in every file."""
-        known = BLOCKS.get(opener, frozenset())
+        known = BLOCKS[opener].words if opener in BLOCKS else frozenset()
         leads = {lead for lines in files for lead, _ in lines} - {opener, ""}
         free = [
             w
@@ -124,7 +124,7 @@ class BlockFinder:
             for (lead, _), depth in zip(lines, _depths(opener, closer, lines), strict=True)
             if not depth
         }
-        known = BLOCKS.get(opener, frozenset())
+        known = BLOCKS[opener].words if opener in BLOCKS else frozenset()
         blocks: list[Counter[str]] = []
         for lines in files:
             open_: list[Counter[str]] = []
@@ -179,7 +179,7 @@ class BlockFinder:
         return list(common_phrases(self.phraser, list(dict.fromkeys(lines))))
 
 
-_BLOCK_WORDS = frozenset(BLOCKS).union(*BLOCKS.values())
+_BLOCK_WORDS = frozenset(BLOCKS).union(*(block.words for block in BLOCKS.values()))
 
 
 def _is_end(word: str) -> bool:

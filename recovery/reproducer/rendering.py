@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
-from grammar.parser.failures import BLOCKS
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES
 from grammar.parser.lexer import EOF, ERROR, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
@@ -27,9 +27,6 @@ _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _FORMS = ("{letter}", "{number}", "{number}.0", '"{letter}"', "#{letter}")
 _UNKNOWN = "?!@^~`|\\"
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-# Words that part a block in two, and words before the one that says what a line is.
-_PARTING = frozenset({"ELSE", "CASE", "DEFAULT"})
-_PREFIXES = frozenset({"GLOBAL"})
 # Words of lines with parameters, whose direction is written as in ``DEF A(B :IN)``.
 _DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
@@ -194,15 +191,15 @@ class _Blocks:
         self._closers: list[frozenset[str]] = []
 
     def indent(self, words: Sequence[str]) -> str:
-        lead = next((word for word in words if word not in _PREFIXES), "")
+        lead = next((word for word in words if word not in PREFIXES), "")
         level = next(
             (i for i in range(len(self._closers) - 1, -1, -1) if lead in self._closers[i]), None
         )
-        if level is not None and lead in _PARTING:
+        if level is not None and lead in BRANCHES:
             return _INDENT * level
-        if level is not None and (lead.startswith("END") or lead == "UNTIL"):
+        if level is not None and lead in CLOSERS:
             del self._closers[level:]
         depth = len(self._closers)
         if lead in BLOCKS:
-            self._closers.append(BLOCKS[lead])
+            self._closers.append(BLOCKS[lead].words)
         return _INDENT * depth

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import grammar.parser.failures
+from grammar.blocks import BLOCKS
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
-from grammar.parser.failures import BLOCKS, Failure, FailureFinder
+from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 
@@ -296,7 +297,9 @@ def test_an_unknown_block_is_one_failure(lines: list[str], around: list[str]) ->
     first = 2 + len(around) // 2
     after = 2 + len(around) + len(lines)
     assert [first, after, after + 2] == direct(text)
-    markers = [n for n, line in enumerate(lines) if line.split()[0] in BLOCKS[lines[0].split()[0]]]
+    markers = [
+        n for n, line in enumerate(lines) if line.split()[0] in BLOCKS[lines[0].split()[0]].words
+    ]
     assert [first + n for n in markers] == following(text)
 
 
