@@ -30,7 +30,7 @@ from conformance.differential.fault_patterns import (
 )
 from conformance.differential.instruction_faults import OF_ITS_OWN
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.instruction_set import Shape, instructions
+from interp.bytecode.instruction_set.table import Shape, instructions
 from interp.bytecode.vm.context import Here, Rule
 from interp.bytecode.vm.state import Operation, State
 
@@ -104,7 +104,7 @@ def _by_shape(row: Shape) -> Iterator[tuple[str, Change]]:
     """What can be wrong with any instruction of this kind."""
     op = Op[row.name]
     family, _, kind = row.name.rpartition("_")
-    is_binary = len(row.effect_text.partition("--")[0].split()) == 2 and family in _PARTNERS
+    is_binary = len(row.effect.partition("--")[0].split()) == 2 and family in _PARTNERS
     if is_binary:
         if family not in _SYMMETRIC:
             yield "the operands are exchanged", before(exchange, op)

@@ -31,7 +31,7 @@ from grammar.semantics.types import (
     is_axes,
     is_cartesian,
 )
-from interp.bytecode.instruction_set import MAX_CELLS
+from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.port.requests import Path
 from interp.values.faults import LinkError
 from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, converted

@@ -11,7 +11,7 @@
 #define KRL_DISPATCH_H
 
 #include "machine.h"
-#include "steps.h"
+#include "register_code.h"
 
 #if defined(__GNUC__) && !defined(KRL_SWITCH)
 #define KRL_THREADED 1

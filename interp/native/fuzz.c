@@ -8,7 +8,7 @@
  * With KRL_LIBFUZZER this is a target of libFuzzer, else a program: krl_fuzz SECONDS SEED IMAGE...
  */
 #include "machine.h"
-#include "steps.h"
+#include "register_code.h"
 
 #include <stdio.h>
 #include <stdlib.h>

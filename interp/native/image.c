@@ -1,7 +1,7 @@
 /* From the bytes of an image to a program; the format is that of interp/bytecode/image/layout.py.
  *
- * Here are its header and the order of its sections. What is in them is read in tables.c and
- * codes.c, by a reader that trusts nothing of it (reader.h).
+ * Here are its header and the order of its sections. What is in them is read in table_reader.c and
+ * code_object_reader.c, by a reader that trusts nothing of it (reader.h).
  */
 #include "reader.h"
 

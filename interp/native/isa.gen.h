@@ -140,12 +140,12 @@ enum krl_opcode {
     KRL_JUMP = 2, /* -- */
     KRL_JUMP_IF = 3, /* BOOL -- */
     KRL_JUMP_UNLESS = 4, /* BOOL -- */
-    KRL_CASE = 5, /* t -- t */
-    KRL_CALL = 6, /* arguments -- result */
+    KRL_CASE = 5, /* like(constant) -- t */
+    KRL_CALL = 6, /* arguments(code) -- result(code) */
     KRL_RETURN = 7, /* -- */
-    KRL_RETURN_VALUE = 8, /* t -- */
-    KRL_ASK = 9, /* inputs -- result */
-    KRL_BUILTIN = 10, /* inputs -- result */
+    KRL_RETURN_VALUE = 8, /* own_result() -- */
+    KRL_ASK = 9, /* request(entry) -- reply(entry) */
+    KRL_BUILTIN = 10, /* inputs(entry) -- output(entry) */
     KRL_PROCEED = 11, /* -- */
     KRL_FAIL = 12, /* -- */
     KRL_UNLINKED = 13, /* -- */
@@ -153,37 +153,37 @@ enum krl_opcode {
     KRL_PUSH_REAL = 15, /* -- REAL */
     KRL_PUSH_BOOL = 16, /* -- BOOL */
     KRL_PUSH_CHAR = 17, /* -- CHAR */
-    KRL_PUSH_ENUM = 18, /* -- ENUM */
+    KRL_PUSH_ENUM = 18, /* -- type */
     KRL_PUSH_NOTHING = 19, /* -- nothing */
-    KRL_PUSH_NO_VIEW = 20, /* -- [E] */
+    KRL_PUSH_NO_VIEW = 20, /* -- [element,rank]? */
     KRL_DROP = 21, /* t -- */
-    KRL_LOAD_LOCAL = 22, /* -- t */
-    KRL_LOAD_DATA = 23, /* -- t */
-    KRL_STORE_LOCAL = 24, /* t -- */
-    KRL_STORE_DATA = 25, /* t -- */
-    KRL_REF_LOCAL = 26, /* -- @T */
-    KRL_REF_DATA = 27, /* -- @T */
-    KRL_LOAD_REF = 28, /* -- @T */
+    KRL_LOAD_LOCAL = 22, /* -- cell */
+    KRL_LOAD_DATA = 23, /* -- cell */
+    KRL_STORE_LOCAL = 24, /* cell -- */
+    KRL_STORE_DATA = 25, /* cell -- */
+    KRL_REF_LOCAL = 26, /* -- @type */
+    KRL_REF_DATA = 27, /* -- @type */
+    KRL_LOAD_REF = 28, /* -- @parameter */
     KRL_LOAD = 29, /* @t -- t */
     KRL_STORE = 30, /* @t t -- */
-    KRL_MEMBER = 31, /* @S -- @T */
-    KRL_INDEX = 32, /* @A INT… -- @E */
-    KRL_INDEX_LOCAL = 33, /* INT… -- @E */
-    KRL_INDEX_DATA = 34, /* INT… -- @E */
-    KRL_INDEX_VIEW = 35, /* INT… -- @E */
-    KRL_ELEMENT_LOCAL = 36, /* INT… -- t */
-    KRL_ELEMENT_DATA = 37, /* INT… -- t */
-    KRL_VIEW = 38, /* @A -- [E] */
-    KRL_LOAD_VIEW = 39, /* -- [E] */
-    KRL_PASS_VIEW = 40, /* -- [E] */
-    KRL_ROW = 41, /* @A INT… -- [E] */
-    KRL_ROW_VIEW = 42, /* INT… -- [E] */
-    KRL_COPY = 43, /* @T @T -- */
-    KRL_CLEAR = 44, /* @T -- */
-    KRL_FILL_POSE = 45, /* @T @S -- */
-    KRL_FILL_ARRAY = 46, /* [E] [E] -- */
-    KRL_COPY_VIEW = 47, /* [E] -- [E] */
-    KRL_SET_TEXT = 48, /* [CHAR] -- */
+    KRL_MEMBER = 31, /* whole(offset,type) -- @type */
+    KRL_INDEX = 32, /* @array INT*array -- @array[] */
+    KRL_INDEX_LOCAL = 33, /* INT*array -- @array[] */
+    KRL_INDEX_DATA = 34, /* INT*array -- @array[] */
+    KRL_INDEX_VIEW = 35, /* INT*view -- @view[] */
+    KRL_ELEMENT_LOCAL = 36, /* INT*array -- array[] */
+    KRL_ELEMENT_DATA = 37, /* INT*array -- array[] */
+    KRL_VIEW = 38, /* @array -- [array] */
+    KRL_LOAD_VIEW = 39, /* -- [view] */
+    KRL_PASS_VIEW = 40, /* -- [view]? */
+    KRL_ROW = 41, /* @array INT*count -- [array/count] */
+    KRL_ROW_VIEW = 42, /* INT*count -- [view/count] */
+    KRL_COPY = 43, /* @type @type -- */
+    KRL_CLEAR = 44, /* @type -- */
+    KRL_FILL_POSE = 45, /* @to @of -- */
+    KRL_FILL_ARRAY = 46, /* [element,rank] [element,rank] -- */
+    KRL_COPY_VIEW = 47, /* [array] -- [array] */
+    KRL_SET_TEXT = 48, /* letters -- */
     KRL_ADD_INT = 49, /* INT INT -- INT */
     KRL_SUB_INT = 50, /* INT INT -- INT */
     KRL_MUL_INT = 51, /* INT INT -- INT */
@@ -218,7 +218,7 @@ enum krl_opcode {
     KRL_AND_BITS = 80, /* INT INT -- INT */
     KRL_OR_BITS = 81, /* INT INT -- INT */
     KRL_EXOR_BITS = 82, /* INT INT -- INT */
-    KRL_COMPOSE = 83, /* @R @L @R -- */
+    KRL_COMPOSE = 83, /* @right @left @right -- */
     KRL_INT_TO_REAL = 84, /* INT -- REAL */
     KRL_REAL_TO_INT = 85, /* REAL -- INT */
     KRL_CHAR_TO_INT = 86, /* CHAR -- INT */
@@ -243,6 +243,18 @@ enum krl_opcode {
     KRL_TELL_BRANCH = 105, /* -- */
     KRL_OPCODE_COUNT = 106
 };
+
+/* Whether an instruction of this kind never goes on to the next one. */
+static inline int krl_ends(uint32_t op)
+{
+    return op == KRL_JUMP || op == KRL_RETURN || op == KRL_RETURN_VALUE || op == KRL_FAIL || op == KRL_UNLINKED;
+}
+
+/* Whether no condition may have an instruction of this kind. */
+static inline int krl_changes(uint32_t op)
+{
+    return op == KRL_LINE || op == KRL_AT || op == KRL_PROCEED || op == KRL_STORE_DATA || op == KRL_STORE;
+}
 
 /* The catalogue of faults. */
 enum krl_fault {

@@ -158,7 +158,7 @@ void krl_thread(struct krl_step *steps, int32_t count);
 /* Translates all code objects. */
 int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
 
-/* ---------------------------------------------------------------------------- functions.c */
+/* ---------------------------------------------------------------------------- numeric_functions.c */
 
 /* Functions give a fault's code or KRL_FINE. */
 enum { KRL_FINE = -1 };
@@ -173,7 +173,7 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
 int krl_compose(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
 int krl_invert(krl_cell *target, const krl_cell *pose, int32_t size);
 
-/* ---------------------------------------------------------------------------- texts.c */
+/* ---------------------------------------------------------------------------- text_functions.c */
 
 enum krl_text_function {
     KRL_STRLEN, KRL_STRDECLLEN, KRL_STRCLEAR, KRL_STRADD, KRL_STRCOPY, KRL_STRCOMP, KRL_STRFIND,

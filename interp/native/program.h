@@ -95,13 +95,6 @@ struct krl_instruction {
     int32_t operands[4]; /* targets are places of instructions, not of words */
 };
 
-/* Whether an instruction of this kind never goes on to the next one. */
-static inline int krl_is_end(uint32_t op)
-{
-    return op == KRL_JUMP || op == KRL_RETURN || op == KRL_RETURN_VALUE || op == KRL_FAIL ||
-           op == KRL_UNLINKED;
-}
-
 struct krl_code {
     enum krl_code_kind kind;
     int32_t owner;

@@ -64,7 +64,7 @@ struct krl_letters krl_read_letters(struct reader *reader);
 int32_t krl_read_type_number(struct reader *reader);
 struct krl_handed krl_read_handed(struct reader *reader);
 
-/* ---------------------------------------------------------------------------- tables.c */
+/* ---------------------------------------------------------------------------- table_reader.c */
 
 void krl_read_types(struct reader *reader);
 void krl_read_texts(struct reader *reader);
@@ -76,7 +76,7 @@ struct krl_entry *krl_read_entries(struct reader *reader, int32_t *count);
 void krl_read_data(struct reader *reader);
 void krl_read_initial(struct reader *reader);
 
-/* ---------------------------------------------------------------------------- codes.c */
+/* ---------------------------------------------------------------------------- code_object_reader.c */
 
 void krl_read_codes(struct reader *reader);
 

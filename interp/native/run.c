@@ -1,10 +1,10 @@
 /* The interpreter: what each step does.
  *
  * It is one long function: only within one can steps go straight to one another and keep what they
- * all use in registers. steps.h tells what their operands are. What they are written with stands in
- * dispatch.h, what they do with arrays in blocks.h.
+ * all use in registers. register_code.h tells what their operands are. What they are written with stands in
+ * dispatch.h, what they do with arrays in array_operations.h.
  */
-#include "blocks.h"
+#include "array_operations.h"
 #include "dispatch.h"
 
 /* Puts arguments, of which structures are references, into a frame, and takes the rest's values away. */

@@ -9,8 +9,8 @@
  *
  * A LINE becomes no step: it is noted in the step that comes next.
  *
- * Here is the walk. What lies on the stack is described in held.c; the instructions that need more
- * than a line stand in control.c, elements.c and computing.c.
+ * Here is the walk. What lies on the stack is described in virtual_stack.c; the instructions that need more
+ * than a line stand in translate_control_flow.c, translate_data_movement.c and translate_arithmetic.c.
  */
 #include "translate.h"
 
@@ -70,17 +70,17 @@ static void instruction(struct translator *at, int32_t place)
         at->height--;
         break;
     case KRL_LOAD_LOCAL: case KRL_LOAD_REF:
-        krl_push(at, (struct held){VARIABLE, operands[0], 0, 0, 0, 0});
+        krl_push(at, (struct virtual_value){VARIABLE, operands[0], 0, 0, 0, 0});
         break;
     case KRL_LOAD_VIEW:
         for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
-            krl_push(at, (struct held){VARIABLE, operands[0] + i, 0, 0, 0, 0});
+            krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
     case KRL_PASS_VIEW: /* what was left out has sizes */
         krl_emit(at, KRL_STEP_PASS)->b = operands[0];
         krl_push_result(at);
         for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
-            krl_push(at, (struct held){VARIABLE, operands[0] + i, 0, 0, 0, 0});
+            krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
     case KRL_LOAD_DATA:
         krl_emit(at, KRL_STEP_GET_DATA)->b = operands[0];
@@ -88,7 +88,7 @@ static void instruction(struct translator *at, int32_t place)
         break;
     case KRL_STORE_LOCAL: krl_store_local(at, operands[0]); break;
     case KRL_STORE_DATA: krl_store_data(at, operands[0]); break;
-    case KRL_REF_LOCAL: krl_push(at, (struct held){ADDRESS, operands[0], 0, 0, 0, 0}); break;
+    case KRL_REF_LOCAL: krl_push(at, (struct virtual_value){ADDRESS, operands[0], 0, 0, 0, 0}); break;
     case KRL_REF_DATA: krl_push_constant(at, KRL_TAG_INT, operands[0]); break;
     case KRL_LOAD: krl_load(at); break;
     case KRL_STORE: krl_store(at); break;
@@ -224,7 +224,7 @@ static void code(struct translator *at)
             routine->steps[place] = at->count;
         }
         instruction(at, place);
-        is_reached = !krl_is_end(code->body[place].op);
+        is_reached = !krl_ends(code->body[place].op);
     }
 }
 

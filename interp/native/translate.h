@@ -3,9 +3,9 @@
 #define KRL_TRANSLATE_H
 
 #include "machine.h"
-#include "steps.h"
+#include "register_code.h"
 
-enum held_kind {
+enum virtual_kind {
     IN_PLACE,
     VARIABLE, /* of the frame: `a` is its register; it may have no value */
     CONSTANT, /* `a` bits, `tag` */
@@ -13,8 +13,8 @@ enum held_kind {
     ELEMENT   /* the address of an element: indices in the registers `a` and `b`, array `array` */
 };
 
-struct held {
-    enum held_kind kind;
+struct virtual_value {
+    enum virtual_kind kind;
     int32_t a, b;
     int32_t array;
     uint16_t tag;
@@ -33,14 +33,14 @@ struct translator {
     struct krl_array *arrays;
     int32_t array_count;
     int32_t array_capacity;
-    struct held *stack;
+    struct virtual_value *stack;
     int32_t height;
     int32_t line;      /* the place of a LINE that no step has noted yet, -1 for none */
     int32_t result;    /* the step that put what is on top there, if the one behind has not begun */
     int is_wrong;
 };
 
-/* ---------------------------------------------------------------------------- held.c */
+/* ---------------------------------------------------------------------------- virtual_stack.c */
 
 /* Adds a step, with the statement that begins here. There is one to write into even without memory. */
 struct krl_step *krl_emit(struct translator *at, enum krl_step_op op);
@@ -58,7 +58,7 @@ struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t
 enum access { INDEX, GET, PUT };
 
 /* The step that reaches an element; `a` is the register that gets or has the value or address. */
-struct krl_step *krl_reach(struct translator *at, enum access access, const struct held *element,
+struct krl_step *krl_reach(struct translator *at, enum access access, const struct virtual_value *element,
                            int32_t a);
 
 /* Puts what lies there into its place; all below a height; all of the stack. */
@@ -74,8 +74,8 @@ int krl_is_constant(const struct translator *at, int32_t number);
 /* The register that has what lies there. */
 int32_t krl_operand(struct translator *at, int32_t number);
 
-/* Put on the stack: something held elsewhere, a constant, what is in its place already. */
-void krl_push(struct translator *at, struct held held);
+/* Put on the stack: something that lies elsewhere, a constant, what is in its place already. */
+void krl_push(struct translator *at, struct virtual_value item);
 void krl_push_constant(struct translator *at, enum krl_tag tag, int32_t bits);
 void krl_push_places(struct translator *at, int32_t count);
 
@@ -85,7 +85,7 @@ void krl_push_result(struct translator *at);
 /* Whether the last step has put there what lies there. */
 int krl_is_fresh(const struct translator *at, int32_t number);
 
-/* ---------------------------------------------------------------------------- elements.c */
+/* ---------------------------------------------------------------------------- translate_data_movement.c */
 
 /* The cell that the reference on top leads to. */
 void krl_load(struct translator *at);
@@ -109,7 +109,7 @@ void krl_view(struct translator *at, const struct krl_type *type);
 /* A step that takes so many places of the stack, all settled; `a` is the first of them. */
 struct krl_step *krl_consume(struct translator *at, enum krl_step_op op, int32_t count);
 
-/* ---------------------------------------------------------------------------- computing.c */
+/* ---------------------------------------------------------------------------- translate_arithmetic.c */
 
 void krl_unary(struct translator *at, enum krl_step_op op);
 
@@ -126,7 +126,7 @@ void krl_subtraction(struct translator *at);
 struct krl_step *krl_relate(struct translator *at, enum krl_step_op first, int relation);
 void krl_relation(struct translator *at, enum krl_step_op first, int relation);
 
-/* ---------------------------------------------------------------------------- control.c */
+/* ---------------------------------------------------------------------------- translate_control_flow.c */
 
 /* A step for Python: all that lies on the stack is in its place before. */
 struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, int32_t place);

@@ -8,7 +8,7 @@
  * Here is what holds for whole code objects, and the walk along their ways; what each instruction
  * does to the stack stands in stack_effects.c.
  */
-#include "flow.h"
+#include "verifier.h"
 
 /* All stacks of a code object where ways meet have at most so many entries together. */
 enum { MOST_REMEMBERED = 1 << 23 };
@@ -24,20 +24,9 @@ static const uint32_t kinds[] = {
 
 static int is_operand(const struct flow *flow, uint32_t kind, int32_t operand)
 {
-    const struct krl_program *program = flow->program;
     switch (kind) {
     case KRL_OPERAND_REAL: return krl_is_finite(krl_real_of_bits((uint32_t)operand));
-    case KRL_OPERAND_BOOL: return operand == 0 || operand == 1;
-    case KRL_OPERAND_CHAR: return operand >= 0 && operand <= 255;
-    case KRL_OPERAND_COUNT: return operand >= 0;
-    case KRL_OPERAND_LOCAL: return operand >= 0 && operand < flow->code->frame;
-    case KRL_OPERAND_DATA: return operand >= 0 && operand < program->data_cells;
-    case KRL_OPERAND_TYPE: return operand >= 0 && operand < program->type_count;
-    case KRL_OPERAND_TEXT: return operand >= 0 && operand < program->text_count;
-    case KRL_OPERAND_CODE: return operand >= 0 && operand < program->code_count;
-    case KRL_OPERAND_ASK: return operand >= 0 && operand < program->ask_count;
-    case KRL_OPERAND_BUILTIN: return operand >= 0 && operand < program->builtin_count;
-    case KRL_OPERAND_FAULT: return operand >= 0 && operand < KRL_FAULT_COUNT;
+#include "operand_ranges.gen.h"
     default: return 1; /* INT; LINE, which only Python uses; TARGET, which the reader has checked */
     }
 }
@@ -114,7 +103,7 @@ static void walk(struct flow *flow, int32_t place)
         int32_t target = target_of(instruction);
         if (target >= 0) /* where a statement is left, its operands are forgotten */
             meet(flow, target, instruction->op == KRL_AT ? 0 : flow->count - (instruction->op == KRL_CASE));
-        if (krl_is_end(instruction->op))
+        if (krl_ends(instruction->op))
             return;
         if (++place == code->length) {
             krl_refuse_code(flow, "a code object ends without RETURN");
@@ -136,7 +125,7 @@ static int after(const struct krl_code *code, int32_t place, int32_t *found)
     int count = 0;
     if (target_of(instruction) >= 0)
         found[count++] = target_of(instruction);
-    if (!krl_is_end(instruction->op))
+    if (!krl_ends(instruction->op))
         found[count++] = place + 1;
     return count;
 }
@@ -216,8 +205,7 @@ static void check_condition(struct flow *flow)
     for (int32_t place = 0; place < code->length; place++) {
         uint32_t op = code->body[place].op;
         int32_t target = target_of(&code->body[place]);
-        if (op == KRL_LINE || op == KRL_AT || op == KRL_PROCEED || op == KRL_STORE || op == KRL_STORE_DATA ||
-            (target >= 0 && target <= place))
+        if (krl_changes(op) || (target >= 0 && target <= place))
             krl_refuse_code(flow, "a condition only goes forwards, and changes nothing");
     }
 }

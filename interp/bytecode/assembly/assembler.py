@@ -15,7 +15,7 @@ from interp.bytecode.assembly.operands import Operands
 from interp.bytecode.assembly.symbols import Symbols, constant_word
 from interp.bytecode.assembly.syntax import AssemblyError, Line, key, labels, split
 from interp.bytecode.cell_layout import kind_at, real_of, size
-from interp.bytecode.instruction_set import FORMAT
+from interp.bytecode.instruction_set.table import FORMAT
 from interp.bytecode.program import (
     Argument,
     Ask,

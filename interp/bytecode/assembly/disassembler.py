@@ -21,7 +21,7 @@ from interp.bytecode.assembly.syntax import (
     string_text,
 )
 from interp.bytecode.cell_layout import Plain, bits_of, kind_at, path_to
-from interp.bytecode.instruction_set import FORMAT, shape
+from interp.bytecode.instruction_set.table import FORMAT, shape
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,

@@ -8,7 +8,7 @@ from grammar.semantics.types import BOOL
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.assembly.symbols import Symbols, constant_word, looked_up, part_offset
 from interp.bytecode.assembly.syntax import Key, Line, key
-from interp.bytecode.instruction_set import shape
+from interp.bytecode.instruction_set.table import shape
 from interp.bytecode.program import Instruction, Mode, Parameter, Slot
 from interp.values.faults import FAULTS
 

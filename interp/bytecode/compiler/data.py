@@ -16,7 +16,7 @@ from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Context, Ended
 from interp.bytecode.compiler.places import Remote
 from interp.bytecode.compiler.tables import Tables
-from interp.bytecode.instruction_set import MAX_CELLS
+from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.executor import Machine

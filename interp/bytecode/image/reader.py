@@ -15,7 +15,7 @@ from grammar.semantics.types import Array, Enumeration, Member, Structure, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import real_of, size
 from interp.bytecode.image.layout import KINDS, MODES, SECTIONS, PartTag, TypeTag
-from interp.bytecode.instruction_set import FORMAT, MAGIC, Shape, instructions
+from interp.bytecode.instruction_set.table import FORMAT, MAGIC, Shape, instructions
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,

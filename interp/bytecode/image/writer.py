@@ -10,7 +10,7 @@ from typing import TypeVar
 from grammar.semantics.types import Array, Enumeration, Member, Structure, Type
 from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.image.layout import KINDS, MODES, SECTIONS, PartTag, TypeTag
-from interp.bytecode.instruction_set import FORMAT, MAGIC, instructions
+from interp.bytecode.instruction_set.table import FORMAT, MAGIC, instructions
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,

@@ -1,19 +1,22 @@
-"""What each instruction takes from the stack of operands, and what it leaves there.
+"""The steps that the effects of instructions are made of: what is checked, taken, pushed.
 
-The instruction set tells it of most instructions. Here are rules for those of which it depends on
-operands: on the types, cells, parameters and entries that they name.
+Which instruction has which steps stands in the table of the instruction set, see
+`interp.bytecode.instruction_set.effects`; a method here has the name of its step: ``check_array``,
+``take_any``, or only ``array_view`` for an item that is taken or pushed.
+``interp/native/stack_effects.c`` has the same steps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 
 from grammar.semantics.types import BOOL, REAL, Array, Enumeration, is_cartesian
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, is_word_of, shared_cells
-from interp.bytecode.instruction_set import shape
+from interp.bytecode.instruction_set.effects import SCALARS, EffectStep
+from interp.bytecode.instruction_set.table import instructions
 from interp.bytecode.program import (
     Argument,
     Ask,
@@ -33,19 +36,18 @@ from interp.bytecode.verifier.cell_types import CellTypes
 from interp.bytecode.verifier.signatures import may_be_missing
 from interp.bytecode.verifier.stack_types import (
     NOTHING,
-    SCALAR,
     Held,
     Refused,
     Stack,
     handed_over,
-    reference,
     view_of,
 )
+from interp.bytecode.verifier.stack_types import reference as reference_to
 
 __all__ = ["StackEffects", "at_target"]
 
-_INT, _BOOL, _CHAR = SCALAR["INT"], SCALAR["BOOL"], SCALAR["CHAR"]
 _MOST_DIMENSIONS = 3
+_INT = SCALARS.index("INT")
 
 
 class StackEffects:
@@ -57,123 +59,175 @@ class StackEffects:
         self._types = program.types
         self._cells = CellTypes(program, code)
         self._stack: list[Held] = []
-        self._rules: Mapping[Op, Callable[..., None]] = {
-            Op.LINE: self._line,
-            Op.CASE: self._case,
-            Op.CALL: self._call,
-            Op.RETURN: self._return,
-            Op.RETURN_VALUE: self._return_value,
-            Op.ASK: self._ask,
-            Op.BUILTIN: self._builtin,
-            Op.PUSH_ENUM: self._push_enum,
-            Op.PUSH_NOTHING: lambda: self._stack.append(NOTHING),
-            Op.PUSH_NO_VIEW: self._push_no_view,
-            Op.DROP: self._drop,
-            Op.LOAD_LOCAL: lambda place: self._stack.append(self._cells.local(place)),
-            Op.LOAD_DATA: lambda place: self._stack.append(self._cells.data(place)),
-            Op.STORE_LOCAL: lambda place: self._take(self._cells.local(place)),
-            Op.STORE_DATA: lambda place: self._take(self._cells.data(place)),
-            Op.REF_LOCAL: self._ref_local,
-            Op.REF_DATA: self._ref_data,
-            Op.LOAD_REF: lambda place: self._stack.append(self._cells.parameter(place, Mode.REF)),
-            Op.LOAD_VIEW: lambda place: self._stack.append(self._cells.parameter(place, Mode.VIEW)),
-            Op.PASS_VIEW: self._pass_view,
-            Op.LOAD: self._load,
-            Op.STORE: self._store,
-            Op.MEMBER: self._member,
-            Op.INDEX: self._index,
-            Op.INDEX_LOCAL: self._index_local,
-            Op.INDEX_DATA: self._index_data,
-            Op.INDEX_VIEW: self._index_view,
-            Op.ELEMENT_LOCAL: self._element_local,
-            Op.ELEMENT_DATA: self._element_data,
-            Op.VIEW: self._view,
-            Op.ROW: self._row,
-            Op.ROW_VIEW: self._row_view,
-            Op.COPY: lambda type_: self._take(reference(type_), reference(type_)),
-            Op.CLEAR: lambda type_: self._take(reference(type_)),
-            Op.FILL_POSE: self._fill_pose,
-            Op.FILL_ARRAY: self._fill_array,
-            Op.COPY_VIEW: self._copy_view,
-            Op.SET_TEXT: lambda _text: self._take(view_of(_CHAR.type, 1)),
-            Op.EQ_ENUM: self._equal,
-            Op.NE_ENUM: self._equal,
-            Op.COMPOSE: self._compose,
-            Op.FOR_LOCAL: self._for_local,
-            Op.FOR_DATA: self._for_data,
-            Op.TELL_LOCAL: self._cells.check_local,
-            Op.TELL_DATA: self._cells.check_data,
-            Op.TELL_REF: self._tell_ref,
-            Op.TELL: lambda _type, dimensions: self._rank(dimensions, 0),
-        }
+        #: What ``t`` and ``ENUM`` stand for in the effect at hand.
+        self._same = NOTHING
 
     def after(self, instruction: Instruction, before: Stack) -> Stack:
         """The stack behind an instruction; raises `Refused`."""
         self._stack = list(before)
-        self._apply(instruction)
+        for step in instructions()[instruction.op].steps:
+            self._carry_out(step, instruction.operands)
         return tuple(self._stack)
 
-    def _apply(self, instruction: Instruction) -> None:
-        rule = self._rules.get(instruction.op)
-        if rule is not None:
-            rule(*self._given(instruction))
-            return
-        effect = shape(instruction.op.name).effect
-        assert effect is not None, f"{instruction.op.name} has a rule"
-        self._take(*(SCALAR[kind] for kind in effect.takes))
-        self._stack += [SCALAR[kind] for kind in effect.leaves]
+    def _carry_out(self, step: EffectStep, operands: Sequence[int]) -> None:
+        given = [SCALARS.index(a) if isinstance(a, str) else operands[a] for a in step.arguments]
+        if not step.is_item:
+            getattr(self, f"{step.verb}_{step.name}")(*given)
+        elif step.verb == "take":
+            self._take(getattr(self, step.name)(*given))
+        else:
+            self._stack.append(getattr(self, step.name)(*given))
 
-    def _given(self, instruction: Instruction) -> Iterator[int]:
-        """The operands but targets and lines, which say nothing about the stack."""
-        kinds = shape(instruction.op.name).operands
-        for kind, operand in zip(kinds, instruction.operands, strict=True):
-            if kind not in ("target", "line"):
-                yield operand
-
-    # ----------------------------------------------------------------------- the stack
-
-    def _take(self, *kinds: Held) -> None:
-        """Take values of these kinds, the last one from the top."""
-        count = len(kinds)
-        if count and tuple(self._stack[-count:]) != kinds:
+    def _take(self, wanted: Held) -> None:
+        if not self._stack or self._stack.pop() != wanted:
             raise Refused("the stack does not hold what it takes")
-        del self._stack[len(self._stack) - count :]
 
     def _pop(self) -> Held:
         if not self._stack:
             raise Refused("the stack is empty")
         return self._stack.pop()
 
-    def _take_value(self) -> Held:
-        held = self._pop()
-        if held.mode is not Mode.IN or held == NOTHING:
+    # ----------------------------------------------------------------------- items
+
+    def value(self, type_: int) -> Held:
+        """A value of this type."""
+        return Held(Mode.IN, type_)
+
+    def nothing(self) -> Held:
+        """What an argument that was left out is."""
+        return NOTHING
+
+    def same(self) -> Held:
+        """What was taken as any value."""
+        return self._same
+
+    def local(self, cell: int) -> Held:
+        """A value such as a cell of the frame holds."""
+        return self._cells.local(cell)
+
+    def data(self, cell: int) -> Held:
+        """A value such as a cell of the data lists holds."""
+        return self._cells.data(cell)
+
+    def reference(self, type_: int) -> Held:
+        """A reference to this type."""
+        return reference_to(type_)
+
+    def parameter(self, place: int) -> Held:
+        """The reference that a parameter is."""
+        return self._cells.parameter(place, Mode.REF)
+
+    def element(self, array: int) -> Held:
+        """A reference to an element of an array type."""
+        return reference_to(self._element(array))
+
+    def element_value(self, array: int) -> Held:
+        """The value of an element of an array type."""
+        return self._cell_of(self.element(array))
+
+    def view(self, element: int, dimensions: int) -> Held:
+        """A view of elements of this type."""
+        return view_of(element, dimensions)
+
+    def missing_view(self, element: int, dimensions: int) -> Held:
+        """The same where it may be missing."""
+        return replace(view_of(element, dimensions), is_missing=True)
+
+    def letters(self) -> Held:
+        """A view of CHARs in one dimension."""
+        return view_of(SCALARS.index("CHAR"), 1)
+
+    def array_view(self, array: int) -> Held:
+        """A view of an array type."""
+        return view_of(self._element(array), self._rank(array))
+
+    def row(self, array: int, count: int) -> Held:
+        """A view of what is left of an array type behind so many indices."""
+        return view_of(self._element(array), self._rank(array) - count)
+
+    def view_parameter(self, place: int) -> Held:
+        """The view that a parameter is."""
+        return self._cells.parameter(place, Mode.VIEW)
+
+    def missing_view_parameter(self, place: int) -> Held:
+        """The same where it may be missing."""
+        return replace(self.view_parameter(place), is_missing=True)
+
+    def view_element(self, place: int) -> Held:
+        """A reference to an element of the view that a parameter is."""
+        return reference_to(self.view_parameter(place).type)
+
+    def view_row(self, place: int, count: int) -> Held:
+        """A view of what is left of that view behind so many indices."""
+        whole = self.view_parameter(place)
+        return view_of(whole.type, whole.cells - 1 - count)
+
+    def _element(self, array: int) -> int:
+        return self._cells.element(self._cells.array(array))
+
+    def _rank(self, array: int) -> int:
+        return len(self._cells.array(array).sizes)
+
+    def _cell_of(self, held: Held) -> Held:
+        """What the cell holds that a reference leads to."""
+        if held.mode is not Mode.REF or not isinstance(self._types[held.type], Plain):
+            raise Refused("a reference to a cell is needed")
+        return Held(Mode.IN, held.type)
+
+    # ----------------------------------------------------------------------- taken by rules
+
+    def take_any(self) -> None:
+        """A value of any type."""
+        self._same = self._pop()
+        if self._same.mode is not Mode.IN or self._same == NOTHING:
             raise Refused("a value is needed")
-        return held
 
-    def _drop(self) -> None:
-        self._take_value()
+    def take_enumeration(self) -> None:
+        """A constant of any enumeration."""
+        self.take_any()
+        if not isinstance(self._types[self._same.type], Enumeration):
+            raise Refused("constants of enumerations are needed")
 
-    def _take_numbers(self, count: int) -> None:
-        self._take(*[_INT] * count)
-
-    def _rank(self, dimensions: int, least: int = 1) -> None:
-        if not least <= dimensions <= _MOST_DIMENSIONS:
-            raise Refused(f"arrays have no {dimensions} dimensions")
-
-    # ----------------------------------------------------------------------- control
-
-    def _line(self) -> None:
-        if self._stack:
-            raise Refused("a statement begins with an empty stack")
-
-    def _case(self, constant: int) -> None:
-        held = self._take_value()
-        type_ = self._types[held.type]
+    def take_like(self, constant: int) -> None:
+        """A value that can be this constant."""
+        self.take_any()
+        type_ = self._types[self._same.type]
         if type_ in (REAL, BOOL) or not isinstance(type_, Plain) or not is_word_of(constant, type_):
             raise Refused(f"{constant} is no constant for {type_}")
-        self._stack.append(held)
 
-    def _call(self, number: int) -> None:
+    def take_reference_to_cell(self) -> None:
+        """A reference to a cell of any type."""
+        self._same = self._cell_of(self._pop())
+
+    def take_reference_to_same(self) -> None:
+        """A reference to a cell for the value that was taken."""
+        if self._cell_of(self._pop()) != self._same:
+            raise Refused("the value is of another kind")
+
+    def take_whole(self, offset: int, number: int) -> None:
+        """A reference to something with a part of this type so many cells behind its start."""
+        held = self._pop()
+        if held.mode is not Mode.REF:
+            raise Refused("a reference is needed")
+        self._cells.check_part(self._types[held.type], offset, number)
+
+    def take_integers(self, count: int) -> None:
+        """So many INTs."""
+        for _ in range(count):
+            self._take(self.value(_INT))
+
+    def take_indices(self, array: int) -> None:
+        """All indices of an array type."""
+        self.take_integers(self._rank(array))
+
+    def take_view_indices(self, place: int) -> None:
+        """All indices of the view that a parameter is."""
+        self.take_integers(self.view_parameter(place).cells - 1)
+
+    # ----------------------------------------------------------------------- calls and requests
+
+    def take_arguments(self, number: int) -> None:
+        """The arguments of a routine."""
         callee = self._program.codes[number]
         if callee.kind is not CodeKind.ROUTINE:
             raise Refused(f"{callee.name} is no routine")
@@ -183,197 +237,138 @@ class StackEffects:
             is_left_out = held == NOTHING and wanted.mode is Mode.IN
             if replace(held, is_missing=False) != wanted and not is_left_out:
                 raise Refused(f"the argument for {parameter.name} is of another kind")
-        if callee.result is not None:
-            self._stack.append(Held(Mode.IN, callee.result))
 
     def _argument(self, parameter: Parameter) -> Held:
         """What the stack holds for a parameter: a structure lies there by reference."""
         if parameter.mode is Mode.IN and not isinstance(self._types[parameter.type], Plain):
-            return reference(parameter.type)
+            return reference_to(parameter.type)
         return handed_over(parameter)
 
-    def _return(self) -> None:
-        if self._code.result is not None or self._code.kind is CodeKind.CONDITION:
-            raise Refused("a result is needed")
-        self._line()
+    def push_result(self, number: int) -> None:
+        """The result of a routine, if it has one."""
+        result = self._program.codes[number].result
+        if result is not None:
+            self._stack.append(self.value(result))
 
-    def _return_value(self) -> None:
-        if self._code.result is None:
-            raise Refused("there is no result")
-        self._take(Held(Mode.IN, self._code.result))
-        if self._stack:
-            raise Refused("more than the result is on the stack")
-
-    def _ask(self, number: int) -> None:
+    def take_request(self, number: int) -> None:
+        """The inputs of a request."""
         ask = self._program.asks[number]
         for handle in _handles_of(ask.parts):
             owner = self._program.codes[handle.code].owner
             if owner is None or self._program.codes[owner] is not self._code:
                 raise Refused("the action or condition belongs to another code object")
-        self._cross(ask)
+        self._take_entry(ask)
 
-    def _builtin(self, number: int) -> None:
+    def push_reply(self, number: int) -> None:
+        """What the reply becomes, if that has one cell."""
+        self._push_entry(self._program.asks[number])
+
+    def take_inputs(self, number: int) -> None:
+        """The inputs of a predefined function."""
         builtin = self._program.builtins[number]
-        self._cross(builtin, list(may_be_missing(builtin)))
+        self._take_entry(builtin, list(may_be_missing(builtin)))
 
-    def _cross(self, entry: Ask | Builtin, missing: Sequence[bool] = ()) -> None:
-        is_large = entry.result is not None and not isinstance(self._types[entry.result], Plain)
-        if entry.result is not None and is_large:
-            self._take(reference(entry.result))
+    def push_output(self, number: int) -> None:
+        """The result of a predefined function, if it has one of one cell."""
+        self._push_entry(self._program.builtins[number])
+
+    def _take_entry(self, entry: Ask | Builtin, missing: Sequence[bool] = ()) -> None:
+        if entry.result is not None and not isinstance(self._types[entry.result], Plain):
+            self._take(reference_to(entry.result))
         inputs = list(inputs_of(entry.parts))
         for given, is_text in zip_longest(reversed(inputs), reversed(missing)):
             held = self._pop()
             if (replace(held, is_missing=False) if is_text else held) != handed_over(given):
                 raise Refused("an input is of another kind")
-        if entry.result is not None and not is_large:
-            self._stack.append(Held(Mode.IN, entry.result))
 
-    # ----------------------------------------------------------------------- values
+    def _push_entry(self, entry: Ask | Builtin) -> None:
+        if entry.result is not None and isinstance(self._types[entry.result], Plain):
+            self._stack.append(self.value(entry.result))
 
-    def _push_enum(self, number: int, place: int) -> None:
+    def take_own_result(self) -> None:
+        """What this code object gives, and nothing is left."""
+        if self._code.result is None:
+            raise Refused("there is no result")
+        self._take(self.value(self._code.result))
+        if self._stack:
+            raise Refused("more than the result is on the stack")
+
+    # ----------------------------------------------------------------------- checks
+
+    def check_empty(self) -> None:
+        """Nothing is on the stack."""
+        if self._stack:
+            raise Refused("a statement begins with an empty stack")
+
+    def check_no_result(self) -> None:
+        """Nothing is to be given, and nothing is left."""
+        if self._code.result is not None or self._code.kind is CodeKind.CONDITION:
+            raise Refused("a result is needed")
+        self.check_empty()
+
+    def check_constant(self, number: int, place: int) -> None:
+        """An enumeration has a constant at this place."""
         type_ = self._types[number]
         if not isinstance(type_, Enumeration) or not place < len(type_.constants):
             raise Refused("there is no such constant")
-        self._stack.append(Held(Mode.IN, number))
 
-    def _push_no_view(self, number: int, dimensions: int) -> None:
-        self._rank(dimensions)
+    def check_rank(self, dimensions: int, least: int = 1) -> None:
+        """Arrays can have so many dimensions."""
+        if not least <= dimensions <= _MOST_DIMENSIONS:
+            raise Refused(f"arrays have no {dimensions} dimensions")
+
+    def check_element(self, number: int) -> None:
+        """A type can be that of elements."""
         if isinstance(self._types[number], Array):
             raise Refused("elements are no arrays")
-        self._stack.append(Held(Mode.VIEW, number, 1 + dimensions, is_missing=True))
 
-    def _equal(self) -> None:
-        held = self._take_value()
-        if not isinstance(self._types[held.type], Enumeration):
-            raise Refused("constants of enumerations are needed")
-        self._take(held)
-        self._stack.append(_BOOL)
+    def check_array(self, number: int) -> None:
+        """A type is an array."""
+        self._cells.array(number)
 
-    def _ref_local(self, place: int, number: int) -> None:
-        self._cells.check_local(place, number)
-        self._stack.append(reference(number))
+    def check_row(self, array: int, count: int) -> None:
+        """So many indices leave a row of an array type."""
+        _check_indices(count, self._rank(array))
 
-    def _ref_data(self, address: int, number: int) -> None:
-        self._cells.check_data(address, number)
-        self._stack.append(reference(number))
+    def check_view_row(self, place: int, count: int) -> None:
+        """So many indices leave a row of the view that a parameter is."""
+        _check_indices(count, self.view_parameter(place).cells - 1)
 
-    def _load(self) -> None:
-        self._stack.append(self._referred())
+    def check_part_of_local(self, cell: int, number: int) -> None:
+        """A part of this type begins at a cell of the frame."""
+        self._cells.check_local(cell, number)
 
-    def _store(self) -> None:
-        value = self._take_value()
-        if self._referred() != value:
-            raise Refused("the value is of another kind")
+    def check_part_of_data(self, cell: int, number: int) -> None:
+        """A part of this type begins at a cell of the data lists."""
+        self._cells.check_data(cell, number)
 
-    def _referred(self) -> Held:
-        """Take a reference to a cell; gives what the cell holds."""
-        held = self._pop()
-        if held.mode is not Mode.REF or not isinstance(self._types[held.type], Plain):
-            raise Refused("a reference to a cell is needed")
-        return Held(Mode.IN, held.type)
-
-    def _member(self, offset: int, number: int) -> None:
-        held = self._pop()
-        if held.mode is not Mode.REF:
-            raise Refused("a reference is needed")
-        self._cells.check_part(self._types[held.type], offset, number)
-        self._stack.append(reference(number))
-
-    # ----------------------------------------------------------------------- arrays
-
-    def _indices(self, number: int) -> int:
-        """Take all indices of an array; gives the number of the type of its elements."""
-        array = self._cells.array(number)
-        self._take_numbers(len(array.sizes))
-        return self._cells.element(array)
-
-    def _index(self, number: int) -> None:
-        element = self._indices(number)
-        self._take(reference(number))
-        self._stack.append(reference(element))
-
-    def _index_local(self, place: int, number: int) -> None:
-        self._cells.check_local(place, number)
-        self._stack.append(reference(self._indices(number)))
-
-    def _index_data(self, address: int, number: int) -> None:
-        self._cells.check_data(address, number)
-        self._stack.append(reference(self._indices(number)))
-
-    def _index_view(self, place: int) -> None:
-        view = self._cells.parameter(place, Mode.VIEW)
-        self._take_numbers(view.cells - 1)
-        self._stack.append(reference(view.type))
-
-    def _element_local(self, place: int, number: int) -> None:
-        self._index_local(place, number)
-        self._load()
-
-    def _element_data(self, address: int, number: int) -> None:
-        self._index_data(address, number)
-        self._load()
-
-    def _view(self, number: int) -> None:
-        array = self._cells.array(number)
-        self._take(reference(number))
-        self._stack.append(view_of(self._cells.element(array), len(array.sizes)))
-
-    def _pass_view(self, place: int) -> None:
-        self._stack.append(replace(self._cells.parameter(place, Mode.VIEW), is_missing=True))
-
-    def _row(self, number: int, count: int) -> None:
-        array = self._cells.array(number)
-        self._take_numbers(self._given_indices(count, len(array.sizes)))
-        self._take(reference(number))
-        self._stack.append(view_of(self._cells.element(array), len(array.sizes) - count))
-
-    def _row_view(self, place: int, count: int) -> None:
-        view = self._cells.parameter(place, Mode.VIEW)
-        self._take_numbers(self._given_indices(count, view.cells - 1))
-        self._stack.append(view_of(view.type, view.cells - 1 - count))
-
-    def _given_indices(self, count: int, dimensions: int) -> int:
-        if not 1 <= count < dimensions:
-            raise Refused("a row has one index at least and not all of them")
-        return count
-
-    def _fill_pose(self, to: int, of: int) -> None:
+    def check_positions(self, to: int, of: int) -> None:
+        """Both types are positions of one family."""
         if shared_cells(self._types[to], self._types[of]) is None:
             raise Refused("positions of one family are needed")
-        self._take(reference(to), reference(of))
 
-    def _fill_array(self, number: int, dimensions: int) -> None:
-        self._rank(dimensions)
-        self._take(view_of(number, dimensions), view_of(number, dimensions))
-
-    def _copy_view(self, place: int, number: int) -> None:
-        self._cells.check_local(place, number)
-        array = self._cells.array(number)
-        view = view_of(self._cells.element(array), len(array.sizes))
-        self._take(view)
-        self._stack.append(view)
-
-    def _compose(self, left: int, right: int) -> None:
-        if not (is_cartesian(self._types[left]) and is_cartesian(self._types[right])):
+    def check_poses(self, left: int, right: int) -> None:
+        """Both types are cartesian positions."""
+        types = self._types[left], self._types[right]
+        if not all(map(is_cartesian, types)) or shared_cells(*types) is None:
             raise Refused("poses are needed")
-        if shared_cells(self._types[left], self._types[right]) is None:
-            raise Refused("poses are needed")
-        self._take(reference(right), reference(left), reference(right))
 
-    # ----------------------------------------------------------------------- loops, the trace
+    def check_for_local(self, counter: int, limit: int, step: int) -> None:
+        """A loop can be counted in a cell of the frame."""
+        self._check_counter(self.local(counter), limit, step)
 
-    def _for_local(self, counter: int, limit: int, step: int) -> None:
-        self._for(self._cells.local(counter), limit, step)
+    def check_for_data(self, counter: int, limit: int, step: int) -> None:
+        """A loop can be counted in a cell of the data lists."""
+        self._check_counter(self.data(counter), limit, step)
 
-    def _for_data(self, counter: int, limit: int, step: int) -> None:
-        self._for(self._cells.data(counter), limit, step)
-
-    def _for(self, counter: Held, limit: int, step: int) -> None:
-        if counter != _INT or self._cells.local(limit) != _INT or step == 0:
+    def _check_counter(self, counter: Held, limit: int, step: int) -> None:
+        integer = self.value(_INT)
+        if counter != integer or self.local(limit) != integer or step == 0:
             raise Refused("a counter and a limit that are INT and a step that is not 0 are needed")
 
-    def _tell_ref(self, place: int, _type: int, dimensions: int) -> None:
-        self._rank(dimensions, 0)
+    def check_told(self, place: int, dimensions: int) -> None:
+        """The trace can name the parameter that something was assigned through."""
+        self.check_rank(dimensions, 0)
         slot = self._cells.slot(place)
         if (
             slot.offset != place
@@ -381,6 +376,15 @@ class StackEffects:
             or slot.variable.mode is Mode.IN
         ):
             raise Refused("no parameter :OUT begins there")
+
+    def check_told_rank(self, dimensions: int) -> None:
+        """One thing was assigned, or an array of so many dimensions."""
+        self.check_rank(dimensions, 0)
+
+
+def _check_indices(count: int, dimensions: int) -> None:
+    if not 1 <= count < dimensions:
+        raise Refused("a row has one index at least and not all of them")
 
 
 def at_target(op: Op, after: Stack) -> Stack:

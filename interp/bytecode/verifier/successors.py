@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.instruction_set import shape
+from interp.bytecode.instruction_set.table import instructions, shape
 from interp.bytecode.program import Instruction
 
 __all__ = ["ENDS", "successors", "targets"]
 
 #: What nothing follows.
-ENDS = frozenset({Op.JUMP, Op.RETURN, Op.RETURN_VALUE, Op.FAIL, Op.UNLINKED})
+ENDS = frozenset(Op(one.number) for one in instructions() if "ends" in one.flags)
 
 
 def targets(instruction: Instruction) -> Iterator[int]:

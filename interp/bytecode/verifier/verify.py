@@ -31,6 +31,7 @@ from functools import cached_property
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.image.writer import write_image
+from interp.bytecode.instruction_set.table import instructions
 from interp.bytecode.program import Code, CodeKind, Program
 from interp.bytecode.verifier.operand_stack import Flow
 from interp.bytecode.verifier.stack_types import Stack
@@ -91,7 +92,7 @@ def stacks_needed(program: Program) -> list[int]:
 
 # ------------------------------------------------------------------------------- the body
 
-_SIDE_EFFECTS = frozenset({Op.LINE, Op.AT, Op.PROCEED, Op.STORE, Op.STORE_DATA})
+_SIDE_EFFECTS = frozenset(Op(one.number) for one in instructions() if "changes" in one.flags)
 
 
 def _checked_body(program: Program, code: Code) -> list[Stack | None]:

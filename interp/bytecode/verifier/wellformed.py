@@ -21,7 +21,7 @@ from grammar.semantics.types import (
     Type,
 )
 from interp.bytecode.cell_layout import Plain, is_word_of, kind_at, path_to, real_of, size
-from interp.bytecode.instruction_set import MAX_CELLS, OPERAND_KINDS, shape
+from interp.bytecode.instruction_set.table import MAX_CELLS, OPERAND_KINDS, shape
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,
@@ -40,7 +40,7 @@ from interp.bytecode.program import (
     printable,
 )
 from interp.bytecode.verifier.signatures import misfit, unlike
-from interp.values.faults import FAULTS, LinkError
+from interp.values.faults import LinkError
 from interp.values.values import single
 
 __all__ = ["VerificationError", "check_form"]
@@ -266,25 +266,23 @@ class _Tables:
     def _ranges(self, code: Code) -> dict[str, tuple[int, int]]:
         """The least and the largest operand of each kind."""
         program = self._program
-        lengths = {
-            "target": len(code.instructions),
-            "local": program.frame_size(code),
-            "data": program.addresses[-1],
-            "type": len(program.types),
-            "text": len(program.texts),
-            "code": len(program.codes),
-            "ask": len(program.asks),
-            "builtin": len(program.builtins),
-            "fault": len(FAULTS),
-            "bool": 2,
-            "char": 256,
+        limits: dict[int | str | None, int] = {
+            "length": len(code.instructions),
+            "frame": program.frame_size(code),
+            "data_cells": program.addresses[-1],
+            "type_count": len(program.types),
+            "text_count": len(program.texts),
+            "code_count": len(program.codes),
+            "ask_count": len(program.asks),
+            "builtin_count": len(program.builtins),
+            None: INT_MAX + 1,
         }
-        lowest = {"count": 0, "line": 1}
         return {
-            kind: (0, lengths[kind] - 1)
-            if kind in lengths
-            else (lowest.get(kind, INT_MIN), INT_MAX)
-            for kind in OPERAND_KINDS
+            name: (
+                INT_MIN if kind.least is None else kind.least,
+                (kind.limit if isinstance(kind.limit, int) else limits[kind.limit]) - 1,
+            )
+            for name, kind in OPERAND_KINDS.items()
         }
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw
-from interp.bytecode.instruction_set import MAX_CELLS
+from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services

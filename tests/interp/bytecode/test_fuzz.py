@@ -15,7 +15,7 @@ from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
-from interp.bytecode.instruction_set import instructions
+from interp.bytecode.instruction_set.table import instructions
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
 from interp.bytecode.vm.executor import Machine

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
-from interp.bytecode.instruction_set import FORMAT, MAGIC, instructions
+from interp.bytecode.instruction_set.table import FORMAT, MAGIC, instructions
 from interp.bytecode.verifier.verify import VerificationError, verify
 
 if TYPE_CHECKING:

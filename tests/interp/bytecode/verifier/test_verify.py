@@ -8,7 +8,7 @@ import pytest
 
 from grammar.semantics.types import Array, Structure
 from interp.bytecode.assembly.assembler import assemble
-from interp.bytecode.instruction_set import MAX_CELLS
+from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import VerificationError, verify
 

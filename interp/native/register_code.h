@@ -1,10 +1,10 @@
-/* The steps that code objects are translated into. Operands are registers but for what is told.
+/* The register code that code objects are translated into: its steps. Operands are registers but for what is told.
  *
  * A step whose name ends in K has a constant instead of its last operand: a word, for a cell with
  * its tag in `tag`. Places of arrays are a first cell and a size; `array` is one of the table.
  */
-#ifndef KRL_STEPS_H
-#define KRL_STEPS_H
+#ifndef KRL_REGISTER_CODE_H
+#define KRL_REGISTER_CODE_H
 
 #define KRL_COMPARISONS(X) X(EQ, ==) X(NE, !=) X(LT, <) X(GT, >) X(LE, <=) X(GE, >=)
 

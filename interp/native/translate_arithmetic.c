@@ -15,10 +15,10 @@ void krl_binary(struct translator *at, enum krl_step_op op, enum krl_step_op con
     int32_t left = at->height - 2, right = at->height - 1;
     krl_secure(at, left);
     if (commutes && krl_is_constant(at, left) && !krl_is_constant(at, right)) {
-        struct held swapped = at->stack[left];
+        struct virtual_value swapped = at->stack[left];
         if (at->stack[right].kind == IN_PLACE) {
             /* what lies in the upper place is read from there */
-            at->stack[left] = (struct held){VARIABLE, krl_place_of(at, right), 0, 0, 0, 0};
+            at->stack[left] = (struct virtual_value){VARIABLE, krl_place_of(at, right), 0, 0, 0, 0};
         } else
             at->stack[left] = at->stack[right];
         at->stack[right] = swapped;
@@ -73,7 +73,7 @@ void krl_division(struct translator *at)
 
 void krl_subtraction(struct translator *at)
 {
-    struct held *right = &at->stack[at->height - 1];
+    struct virtual_value *right = &at->stack[at->height - 1];
     if (right->kind == CONSTANT && right->a != INT32_MIN) {
         right->a = -right->a;
         krl_binary(at, KRL_STEP_ADD_INT, KRL_STEP_ADD_INT_K, 0);
@@ -83,7 +83,7 @@ void krl_subtraction(struct translator *at)
 
 void krl_quotient(struct translator *at)
 {
-    const struct held *right = &at->stack[at->height - 1];
+    const struct virtual_value *right = &at->stack[at->height - 1];
     int is_plain = right->kind == CONSTANT && (right->a & 0x7fffffff) != 0;
     krl_binary(at, KRL_STEP_DIV_REAL, is_plain ? KRL_STEP_DIV_REAL_K : KRL_STEP_COUNT, 0);
 }

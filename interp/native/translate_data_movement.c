@@ -3,19 +3,19 @@
 
 void krl_load(struct translator *at)
 {
-    struct held *held = &at->stack[at->height - 1];
-    switch (held->kind) {
+    struct virtual_value *item = &at->stack[at->height - 1];
+    switch (item->kind) {
     case ADDRESS:
-        held->kind = VARIABLE;
+        item->kind = VARIABLE;
         return;
     case CONSTANT: {
-        int32_t address = held->a;
+        int32_t address = item->a;
         at->height--;
         krl_emit(at, KRL_STEP_GET_DATA)->b = address;
         break;
     }
     case ELEMENT: {
-        struct held element = *held;
+        struct virtual_value element = *item;
         krl_secure(at, --at->height);
         krl_reach(at, GET, &element, 0);
         break;
@@ -31,11 +31,11 @@ void krl_store_local(struct translator *at, int32_t place)
 {
     int32_t top = at->height - 1;
     krl_secure(at, top);
-    const struct held *held = &at->stack[top];
-    if (held->kind == IN_PLACE && krl_is_fresh(at, top)) {
+    const struct virtual_value *item = &at->stack[top];
+    if (item->kind == IN_PLACE && krl_is_fresh(at, top)) {
         at->steps[at->result].a = place;
     } else {
-        struct held value = *held;
+        struct virtual_value value = *item;
         struct krl_step *step;
         int32_t b = value.kind == CONSTANT ? value.a : krl_operand(at, top);
         step = krl_emit(at, value.kind == CONSTANT ? KRL_STEP_SET_K : KRL_STEP_MOVE);
@@ -62,7 +62,7 @@ void krl_store_data(struct translator *at, int32_t address)
 }
 
 /* For the trace: what was written last. */
-static void remember(struct translator *at, struct held where)
+static void remember(struct translator *at, struct virtual_value where)
 {
     if (at->machine->told & KRL_TOLD_ASSIGN)
         krl_emit(at, where.kind == ADDRESS ? KRL_STEP_REMEMBER_LOCAL : KRL_STEP_REMEMBER_DATA)->a = where.a;
@@ -71,7 +71,7 @@ static void remember(struct translator *at, struct held where)
 void krl_store(struct translator *at)
 {
     int32_t target = at->height - 2, value = at->height - 1;
-    struct held where = at->stack[target];
+    struct virtual_value where = at->stack[target];
     krl_secure(at, target);
     if (where.kind == ADDRESS || where.kind == CONSTANT) {
         if (where.kind == ADDRESS)
@@ -106,13 +106,13 @@ void krl_store(struct translator *at)
 
 void krl_member(struct translator *at, int32_t offset)
 {
-    struct held *held = &at->stack[at->height - 1];
-    if (held->kind == ADDRESS || held->kind == CONSTANT)
-        held->a += offset;
-    else if (held->kind == ELEMENT) {
-        struct krl_array array = at->arrays[held->array];
+    struct virtual_value *item = &at->stack[at->height - 1];
+    if (item->kind == ADDRESS || item->kind == CONSTANT)
+        item->a += offset;
+    else if (item->kind == ELEMENT) {
+        struct krl_array array = at->arrays[item->array];
         array.base += offset;
-        held->array = krl_add_array(at, array);
+        item->array = krl_add_array(at, array);
     } else if (offset != 0) {
         krl_unary(at, KRL_STEP_OFFSET);
         at->steps[at->count - 1].c = offset;
@@ -124,7 +124,7 @@ static int32_t known_place(const struct translator *at, const struct krl_array *
 {
     int32_t place = 0;
     for (int32_t i = 0; i < array->dimensions; i++) {
-        const struct held *index = &at->stack[at->height - array->dimensions + i];
+        const struct virtual_value *index = &at->stack[at->height - array->dimensions + i];
         if (index->kind != CONSTANT || index->a < 1 || index->a > array->sizes[i])
             return -1;
         place = place * array->sizes[i] + index->a - 1;
@@ -139,7 +139,7 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
     if (known >= 0) {
         at->height = first;
         if (is_local)
-            krl_push(at, (struct held){ADDRESS, base + known, 0, 0, 0, 0});
+            krl_push(at, (struct virtual_value){ADDRESS, base + known, 0, 0, 0, 0});
         else
             krl_push_constant(at, KRL_TAG_INT, base + known);
         return;
@@ -157,13 +157,13 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
         krl_push_places(at, 1);
         return;
     }
-    struct held held = {ELEMENT, krl_operand(at, first), 0, number, 0, (uint16_t)(is_local != 0)};
+    struct virtual_value item = {ELEMENT, krl_operand(at, first), 0, number, 0, (uint16_t)(is_local != 0)};
     if (array.dimensions == 2)
-        held.b = krl_operand(at, first + 1);
+        item.b = krl_operand(at, first + 1);
     at->height = first;
-    krl_push(at, held);
+    krl_push(at, item);
     /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
-    if ((array.dimensions == 2 && held.b >= at->code->frame) || at->machine->told & KRL_TOLD_ASSIGN) {
+    if ((array.dimensions == 2 && item.b >= at->code->frame) || at->machine->told & KRL_TOLD_ASSIGN) {
         krl_secure(at, first);
         krl_settle(at, first);
     }

@@ -1,6 +1,6 @@
 /* Blocks of cells: elements, views, arrays, texts. Inline, as run.c does this within its steps. */
-#ifndef KRL_BLOCKS_H
-#define KRL_BLOCKS_H
+#ifndef KRL_ARRAY_OPERATIONS_H
+#define KRL_ARRAY_OPERATIONS_H
 
 #include "machine.h"
 

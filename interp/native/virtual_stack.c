@@ -62,7 +62,7 @@ struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t
 
 /* ---------------------------------------------------------------------------- elements */
 
-struct krl_step *krl_reach(struct translator *at, enum access access, const struct held *element,
+struct krl_step *krl_reach(struct translator *at, enum access access, const struct virtual_value *element,
                            int32_t a)
 {
     static const uint16_t steps[3][3][2] = {
@@ -95,32 +95,32 @@ struct krl_step *krl_reach(struct translator *at, enum access access, const stru
 
 void krl_settle(struct translator *at, int32_t number)
 {
-    struct held *held = &at->stack[number];
+    struct virtual_value *item = &at->stack[number];
     struct krl_step *step;
-    switch (held->kind) {
+    switch (item->kind) {
     case IN_PLACE:
         return;
     case VARIABLE:
         step = krl_emit(at, KRL_STEP_MOVE);
-        step->b = held->a;
+        step->b = item->a;
         step->a = krl_place_of(at, number);
         break;
     case CONSTANT:
         step = krl_emit(at, KRL_STEP_SET_K);
-        step->b = held->a;
-        step->tag = held->tag;
+        step->b = item->a;
+        step->tag = item->tag;
         step->a = krl_place_of(at, number);
         break;
     case ADDRESS:
         step = krl_emit(at, KRL_STEP_REFER);
-        step->b = held->a;
+        step->b = item->a;
         step->a = krl_place_of(at, number);
         break;
     case ELEMENT:
-        krl_reach(at, INDEX, held, krl_place_of(at, number));
+        krl_reach(at, INDEX, item, krl_place_of(at, number));
         break;
     }
-    held->kind = IN_PLACE;
+    item->kind = IN_PLACE;
     at->result = number == at->height - 1 ? at->count - 1 : -1;
 }
 
@@ -150,20 +150,20 @@ int32_t krl_operand(struct translator *at, int32_t number)
     return krl_place_of(at, number);
 }
 
-void krl_push(struct translator *at, struct held held)
+void krl_push(struct translator *at, struct virtual_value item)
 {
-    at->stack[at->height++] = held;
+    at->stack[at->height++] = item;
 }
 
 void krl_push_constant(struct translator *at, enum krl_tag tag, int32_t bits)
 {
-    krl_push(at, (struct held){CONSTANT, bits, 0, 0, (uint16_t)tag, 0});
+    krl_push(at, (struct virtual_value){CONSTANT, bits, 0, 0, (uint16_t)tag, 0});
 }
 
 void krl_push_places(struct translator *at, int32_t count)
 {
     while (count-- > 0)
-        krl_push(at, (struct held){IN_PLACE, 0, 0, 0, 0, 0});
+        krl_push(at, (struct virtual_value){IN_PLACE, 0, 0, 0, 0, 0});
 }
 
 void krl_push_result(struct translator *at)

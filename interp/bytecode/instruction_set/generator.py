@@ -1,0 +1,206 @@
+"""What is generated from the instruction set.
+
+``python -m interp.bytecode.instruction_set --write`` writes the enumeration of opcodes, the headers
+in C and the table in ``docs/bytecode.md``; ``--check`` says whether they are up to date.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from interp.bytecode.instruction_set.effects import EffectStep
+from interp.bytecode.instruction_set.table import (
+    FORMAT,
+    MAGIC,
+    MAX_CELLS,
+    OPERAND_KINDS,
+    Shape,
+    instructions,
+)
+from interp.values.faults import FAULTS
+
+__all__ = ["outdated", "products", "stack_effects_in_c"]
+
+_ROOT = Path(__file__).resolve().parents[3]
+
+_MADE_BY = (
+    "Made from interp/bytecode/instructions.tsv"
+    " by python -m interp.bytecode.instruction_set --write"
+)
+#: Kinds of operands that the machine in C does not check: lines are not used, targets were read.
+_CHECKED_ELSEWHERE = frozenset({"line", "target"})
+#: Steps that the machine in C leaves out: nothing is ever read of a view that is missing.
+_CHECKED_IN_PYTHON = frozenset({("check", "element")})
+_BEGIN = "<!-- instructions: made by python -m interp.bytecode.instruction_set --write -->"
+_END = "<!-- end of instructions -->"
+
+
+def _opcodes() -> str:
+    lines = [
+        '"""The opcodes.',
+        "",
+        f"{_MADE_BY}.",
+        '"""',
+        "",
+        "from enum import IntEnum",
+        "",
+        '__all__ = ["Op"]',
+        "",
+        "",
+        "class Op(IntEnum):",
+        '    """The opcodes by name; what they do stands in the table that this is made from."""',
+        "",
+    ]
+    lines += [f"    {one.name} = {one.number}" for one in instructions()]
+    return "\n".join(lines) + "\n"
+
+
+def _header() -> str:
+    kinds = list(OPERAND_KINDS)
+    lines = [
+        f"/* {_MADE_BY}. */",
+        "#ifndef KRL_ISA_GEN_H",
+        "#define KRL_ISA_GEN_H",
+        "",
+        f'#define KRL_IMAGE_MAGIC "{MAGIC.decode()}"',
+        f"#define KRL_IMAGE_FORMAT {FORMAT}",
+        f"#define KRL_MAX_CELLS {MAX_CELLS}",
+        "",
+        "/* Kinds of operands, as bits of a byte each: the first operand lowest. */",
+        "enum krl_operand {",
+        *(
+            f"    KRL_OPERAND_{kind.upper()} = {number}, /* {OPERAND_KINDS[kind].meaning} */"
+            for number, kind in enumerate(kinds, start=1)
+        ),
+        "};",
+        "",
+        "/* X(name, number of operands, kinds of operands), in the order of the opcodes. */",
+        "#define KRL_OPCODES(X) \\",
+        *(f"    {_entry(one, kinds)} \\" for one in instructions()),
+        "",
+        "enum krl_opcode {",
+        *(f"    KRL_{one.name} = {one.number}, /* {one.effect} */" for one in instructions()),
+        f"    KRL_OPCODE_COUNT = {len(instructions())}",
+        "};",
+        "",
+        *_flag_test("ends", "Whether an instruction of this kind never goes on to the next one."),
+        *_flag_test("changes", "Whether no condition may have an instruction of this kind."),
+        "/* The catalogue of faults. */",
+        "enum krl_fault {",
+        *(f"    KRL_FAULT_{slug.upper()} = {kind.code}," for slug, kind in FAULTS.items()),
+        f"    KRL_FAULT_COUNT = {len(FAULTS)}",
+        "};",
+        "",
+        "#endif",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _entry(one: Shape, kinds: list[str]) -> str:
+    packed = sum((kinds.index(kind) + 1) << 8 * place for place, kind in enumerate(one.operands))
+    return f"X({one.name}, {len(one.operands)}, 0x{packed:08x})"
+
+
+def _flag_test(flag: str, meaning: str) -> Iterator[str]:
+    """A function in C that is true for the instructions with a flag."""
+    yield from (f"/* {meaning} */", f"static inline int krl_{flag}(uint32_t op)", "{")
+    names = [f"op == KRL_{one.name}" for one in instructions() if flag in one.flags]
+    yield from (f"    return {' || '.join(names)};", "}", "")
+
+
+def _operand_ranges() -> str:
+    """The cases of a switch: whether an operand of a kind names something."""
+    lines = [f"/* {_MADE_BY}. */"]
+    for name, kind in OPERAND_KINDS.items():
+        if name in _CHECKED_ELSEWHERE or kind.least is None:
+            continue
+        tests = [f"operand >= {kind.least}"]
+        if kind.limit is not None:
+            owner = "flow->code" if kind.limit == "frame" else "flow->program"
+            limit = kind.limit if isinstance(kind.limit, int) else f"{owner}->{kind.limit}"
+            tests.append(f"operand < {limit}")
+        lines.append(f"case KRL_OPERAND_{name.upper()}: return {' && '.join(tests)};")
+    return "\n".join(lines) + "\n"
+
+
+def stack_effects_in_c(shapes: Sequence[Shape]) -> str:
+    """The cases of a switch: the steps of the verifier for each instruction."""
+    cases: dict[tuple[str, ...], list[str]] = {}
+    for one in shapes:
+        cases.setdefault(tuple(_statements(one)), []).append(one.name)
+    lines = [f"/* {_MADE_BY}. */"]
+    for statements, names in cases.items():
+        lines += [f"case KRL_{name}:" for name in names]
+        lines += [f"    {statement}" for statement in (*statements, "break;")]
+    return "\n".join(lines) + "\n"
+
+
+def _statements(one: Shape) -> Iterator[str]:
+    if "trace" in one.flags:  # what the trace is told is worked out in Python
+        return
+    steps = [step for step in one.steps if (step.verb, step.name) not in _CHECKED_IN_PYTHON]
+    checks = [step for step in steps if step.verb == "check"]
+    yield from map(_statement, checks)
+    if checks and len(checks) < len(steps):
+        yield from ("if (flow->is_wrong)", "    return;")
+    yield from map(_statement, steps[len(checks) :])
+
+
+def _statement(step: EffectStep) -> str:
+    arguments = [
+        f"KRL_TYPE_{one}" if isinstance(one, str) else f"operands[{one}]" for one in step.arguments
+    ]
+    given = ", ".join(["flow", *arguments])
+    if step.is_item:
+        return f"{step.verb}(flow, {step.name}({given}));"
+    prefix = "krl_" if step.verb == "check" else ""
+    return f"{prefix}{step.verb}_{step.name}({given});"
+
+
+def _rows() -> str:
+    lines = [
+        _BEGIN,
+        "",
+        "| | instruction | operands | checks | stack | |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    for one in instructions():
+        checks = f"`{one.checks}`" if one.checks else ""
+        cells = (f"`{one.name}`", one.operand_text, checks, f"`{one.effect}`", one.sentence)
+        lines.append(f"| {one.number} | {' | '.join(cells)} |")
+    lines += ["", "| operand | |", "| --- | --- |"]
+    lines += [f"| {name} | {kind.meaning} |" for name, kind in OPERAND_KINDS.items()]
+    lines += ["", _END]
+    return "\n".join(lines)
+
+
+def _document(text: str) -> str:
+    """The document with its tables as they have to be."""
+    before, begin, rest = text.partition(_BEGIN)
+    _, end, after = rest.partition(_END)
+    if not begin or not end:
+        raise ValueError("docs/bytecode.md has no place for the instructions")
+    return before + _rows() + after
+
+
+def products() -> Mapping[Path, str]:
+    """The files that are generated, with what has to be in them."""
+    native = _ROOT / "interp" / "native"
+    document = _ROOT / "docs" / "bytecode.md"
+    return {
+        _ROOT / "interp" / "bytecode" / "_generated" / "opcodes.py": _opcodes(),
+        native / "isa.gen.h": _header(),
+        native / "operand_ranges.gen.h": _operand_ranges(),
+        native / "stack_effects.gen.h": stack_effects_in_c(instructions()),
+        document: _document(document.read_text(encoding="utf-8")),
+    }
+
+
+def outdated() -> list[str]:
+    """The files that are not what the table says, by their paths in the repository."""
+    return [
+        path.relative_to(_ROOT).as_posix()
+        for path, text in products().items()
+        if not path.exists() or path.read_text(encoding="utf-8") != text
+    ]

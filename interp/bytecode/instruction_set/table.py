@@ -1,0 +1,134 @@
+"""The instruction set, read from ``instructions.tsv``.
+
+An instruction is a word for its opcode and one for each operand, 32 bits each. The columns of the
+table:
+
+========== =========================================================================================
+number     the opcode
+name       in capitals
+operands   their kinds, see `OPERAND_KINDS`, as ``name:kind`` where the name is another
+checks     what must hold of the operands
+effect     what it takes from the stack of operands and what it leaves; for this and the checks see
+           `interp.bytecode.instruction_set.effects`
+flags      ``ends`` where the next instruction does not follow, ``changes`` what no condition may
+           have, ``trace`` what only the trace is told
+sentence   what it does, and the faults it raises
+========== =========================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Final
+
+from interp.bytecode.instruction_set.effects import EffectStep, steps_of
+from interp.program.variables import MOST_CELLS
+from interp.values.faults import FAULTS
+
+__all__ = [
+    "FORMAT",
+    "MAGIC",
+    "MAX_CELLS",
+    "OPERAND_KINDS",
+    "OperandKind",
+    "Shape",
+    "instructions",
+    "shape",
+]
+
+#: How an image begins, and the version of the format and the instruction set: a change of either
+#: makes it another one.
+MAGIC: Final = b"KRLI"
+FORMAT: Final = 2
+#: The data lists and all frames together have at most so many cells.
+MAX_CELLS: Final = MOST_CELLS
+
+
+@dataclass(frozen=True, slots=True)
+class OperandKind:
+    """What an operand may be: at least ``least``, below ``limit``.
+
+    A ``limit`` that is a word is how many of something the program or the code object has.
+    """
+
+    meaning: str
+    least: int | None = None
+    limit: int | str | None = None
+
+
+#: What operands are.
+OPERAND_KINDS: Mapping[str, OperandKind] = {
+    "int": OperandKind("a number with sign"),
+    "real": OperandKind("the bits of a single"),
+    "bool": OperandKind("0 or 1", 0, 2),
+    "char": OperandKind("a code, 0 to 255", 0, 256),
+    "count": OperandKind("a number without sign", 0),
+    "line": OperandKind("a line of the source file, from 1 on", 1),
+    "target": OperandKind(
+        "an instruction of the same code object: its first word, counted from 0", 0, "length"
+    ),
+    "local": OperandKind("a cell of the frame", 0, "frame"),
+    "data": OperandKind("a cell of the data lists", 0, "data_cells"),
+    "type": OperandKind("a type of the program", 0, "type_count"),
+    "text": OperandKind("a text of the program", 0, "text_count"),
+    "code": OperandKind("a code object", 0, "code_count"),
+    "ask": OperandKind("an entry of the table of requests", 0, "ask_count"),
+    "builtin": OperandKind("an entry of the table of predefined functions", 0, "builtin_count"),
+    "fault": OperandKind("a fault of the catalogue, by its code", 0, len(FAULTS)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """An instruction of the set: ``operands`` are their kinds, ``steps`` those of a verifier."""
+
+    number: int
+    name: str
+    operands: tuple[str, ...]
+    operand_text: str
+    checks: str
+    effect: str
+    steps: tuple[EffectStep, ...]
+    flags: frozenset[str]
+    sentence: str
+
+    @property
+    def words(self) -> int:
+        """How many words it has, the opcode included."""
+        return 1 + len(self.operands)
+
+
+@cache
+def instructions() -> tuple[Shape, ...]:
+    """All instructions, by number."""
+    table = resources.files("interp.bytecode").joinpath("instructions.tsv")
+    rows = table.read_text(encoding="utf-8").splitlines()[1:]
+    return tuple(_shape(row.split("\t")) for row in rows)
+
+
+@cache
+def shape(name: str) -> Shape:
+    """The instruction of a name; `KeyError` where there is none."""
+    return {one.name: one for one in instructions()}[name]
+
+
+def _shape(row: list[str]) -> Shape:
+    number, name, operands, checks, effect, flags, sentence = row
+    kinds: dict[str, str] = {}
+    for operand in operands.split():
+        label, _, kind = operand.rpartition(":")
+        kinds[label or kind] = kind
+    return Shape(
+        int(number),
+        name,
+        tuple(kinds.values()),
+        operands,
+        checks,
+        effect,
+        steps_of(kinds, checks, effect),
+        frozenset(flags.split()),
+        sentence,
+    )
