@@ -1,24 +1,10 @@
 """The compiler: from checked programs to bytecode.
 
-================== =================================================================================
-module             what it is
-================== =================================================================================
-`project`          a whole program: which routines, for which arguments, actions and conditions
-`data`             the data lists
-`statements`       bodies of routines, plain statements, and which rule is for which statement
-`control_flow`     blocks, IF, SWITCH, loops, GOTO, EXIT, RETURN
-`motions`          statements that only ask the world
-`calls`            calls of routines of the program
-`predefined_calls` calls of what the controller brings along
-`expressions`      values, operators, aggregates
-`designators`      variables, members, elements: which places they are
-`memory`           what reads cells, stores in them, tells of them
-`context`          one code object in the making
-`places`           where values are while code is made
-`rooms`            how large copies of arrays of unknown size can be
-`writer`           instructions, labels, frames
-`tables`           types, texts, requests, functions and data of a program
-================== =================================================================================
+A `project` compiles routines as they are called, each into a code object of its own. The parts that
+make the code of one are given those below them: `statements`, `control_flow` and `motions`, `calls`
+with `predefined_calls`, `expressions`, `designators`, `memory` (loads and stores), `emitter`. What
+leads upwards is a function that a part is given: expressions call routines, designators have
+expressions for indices, blocks have statements in them.
 """
 
 from interp.bytecode.compiler.context import Refusal

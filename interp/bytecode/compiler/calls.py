@@ -8,7 +8,7 @@ parameters for its indices only.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from grammar.semantics.scopes import Found
@@ -19,6 +19,9 @@ from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.array_bounds import Bound
+from interp.bytecode.compiler.context import Binding
+from interp.bytecode.compiler.emitter import Emitter
+from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -46,10 +49,7 @@ from interp.program.variables import (
     untyped_result,
 )
 
-__all__ = ["Binding", "Calls", "Formals", "formals_of"]
-
-#: What stands for a system variable in a routine: its path, ``None`` for each index.
-Binding = tuple[tuple[str | int | None, ...], Type] | None
+__all__ = ["Calls", "Formals", "formals_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,53 +61,63 @@ class Formals:
     is_in: tuple[bool, ...]
 
 
-def formals_of(routine: Routine, type_of: object) -> Formals:
+def formals_of(routine: Routine, type_of: Callable[[Found], Type]) -> Formals:
     """The parameters of a routine."""
     found = []
     for parameter in routine.node.parameters:
         means = routine.scope.own(Space.VALUE, parameter.name.key)
         assert means is not None, "a routine's table has its parameters"
         found.append(means)
-    assert callable(type_of), "gives the type of what a name means"
     types = tuple(type_of(one) for one in found)
     is_in = tuple(parameter.mode == "IN" for parameter in routine.node.parameters)
     return Formals(tuple(found), types, is_in)
 
 
-class Calls(PredefinedCalls):
-    """Makes the code of calls."""
+class Calls:
+    """Makes the code of calls; its ``expressions`` that of expressions with calls in them."""
 
-    def call(self, node: ast.Call, _wanted: Type) -> Value:
+    def __init__(self, emitter: Emitter) -> None:
+        self.expressions = expressions = Expressions(emitter, self.call)
+        self._predefined = PredefinedCalls(expressions)
+        self._expressions = expressions
+        self._emitter = expressions.emitter
+        self._context = expressions.emitter.context
+        self._writer = expressions.emitter.writer
+        self._emit = expressions.emitter.emit
+        self._memory = expressions.memory
+        self._designators = expressions.designators
+
+    def call(self, node: ast.Call) -> Value:
         """The value of a function."""
         value = self.called(node, is_value=True)
         if value is None:
-            raise self.unlinked(f"{node.name.text} gives no value")
+            raise self._emitter.unlinked(f"{node.name.text} gives no value")
         return value
 
     def called(self, node: ast.Call, *, is_value: bool) -> Value | None:
         """Call a routine; gives its result, ``None`` where it has none."""
-        found = self.context.unit.found(node.name)
+        found = self._context.unit.found(node.name)
         if found is None:
-            raise self.unlinked(f"{node.name.text} is declared nowhere")
+            raise self._emitter.unlinked(f"{node.name.text} is declared nowhere")
         if found.module is None:
-            return self.predefined(node, is_value=is_value)
-        routine = self.context.program.routines.get(found.symbol)
+            return self._predefined.predefined(node, is_value=is_value)
+        routine = self._context.program.routines.get(found.symbol)
         if routine is None:
-            raise self.unlinked(f"{node.name.text} is a routine that no file has")
+            raise self._emitter.unlinked(f"{node.name.text} is a routine that no file has")
         return self._routine(node, routine)
 
     def _routine(self, node: ast.Call, routine: Routine) -> Value | None:
-        program = self.context.program
+        program = self._context.program
         formals = formals_of(routine, program.type_of)
         result = program.result_of(routine)
         kept: Cells | None = None
         if result is not None and not is_complete(result):
-            raise self.refuse(str(untyped_result(routine.name)))
+            raise self._emitter.refuse(str(untyped_result(routine.name)))
         if result is not None:
-            result = self.closed(result)
+            result = self._emitter.closed(result)
             if not isinstance(result, Plain):
-                kept = Cells(self.writer.temporary(result), result)
-                self.refer(kept)
+                kept = Cells(self._writer.temporary(result), result)
+                self._memory.refer(kept)
         bindings: list[Binding] = []
         bounds: list[Bound | None] = []
         for place, type_ in enumerate(formals.types):
@@ -115,19 +125,19 @@ class Calls(PredefinedCalls):
             later = node.arguments[place + 1 :]
             if not is_complete_parameter(type_):
                 name = formals.found[place].symbol.name
-                raise self.refuse(str(untyped_parameter(name, routine.name)))
+                raise self._emitter.refuse(str(untyped_parameter(name, routine.name)))
             binding, bound = self._passed(type_, argument, formals.is_in[place], later)
             bindings.append(binding)
             bounds.append(bound)
-        if self.context.tables.cells + cells_of_routine(program, routine) > MOST_CELLS:
-            raise self.fail("stack")
-        number = self.context.project.code_of(routine, tuple(bindings))
+        if self._context.tables.cells + cells_of_routine(program, routine) > MOST_CELLS:
+            raise self._emitter.fail("stack")
+        number = self._context.shared.codes.code_of(routine, tuple(bindings))
         for place, bound in enumerate(bounds):
             if bound is not None:
-                self.context.project.sizes.receives((number, place), bound)
-        self.emit(Op.CALL, number)
+                self._context.shared.sizes.receives((number, place), bound)
+        self._emit(Op.CALL, number)
         if kept is not None:
-            self.refer(kept)
+            self._memory.refer(kept)
             return Block(kept.type)
         return None if result is None else Scalar(result)
 
@@ -145,38 +155,40 @@ class Calls(PredefinedCalls):
         is_view = isinstance(type_, Array) and (not is_in or None in type_.sizes)
         if argument is None:
             return None, self._left_out(type_, is_in, is_view)
-        if not is_in and is_variable(self.context.unit, argument):
-            place = self.place(argument)
+        if not is_in and is_variable(self._context.unit, argument):
+            place = self._designators.place(argument)
             if isinstance(place, Remote):
                 return self._bound(place), None
             return None, self._referred(place, type_, is_view)
         if is_view:
             return None, self._copied_view(type_, argument)
-        if is_in and isinstance(self.closed(type_), Plain):
-            self.convert(self.value(argument, type_), self.closed(type_))
+        if is_in and isinstance(self._emitter.closed(type_), Plain):
+            self._memory.convert(
+                self._expressions.value(argument, type_), self._emitter.closed(type_)
+            )
         else:
-            self._copied(self.closed(type_), argument, is_in and not _calls(later))
+            self._copied(self._emitter.closed(type_), argument, is_in and not _calls(later))
         return None, None
 
     def _bound(self, place: Remote) -> Binding:
         """Push the indices of a system variable; its path becomes part of the routine."""
-        self.pushed_path(place)
+        self._memory.pushed_path(place)
         path = tuple(None if isinstance(step, Hole) else step for step in place.path)
         return path, place.type
 
     def _left_out(self, type_: Type, is_in: bool, is_view: bool) -> Bound | None:
         if isinstance(type_, Array) and is_view and None in type_.sizes:
-            self.emit(Op.PUSH_NO_VIEW, self.number(type_.element), len(type_.sizes))
+            self._emit(Op.PUSH_NO_VIEW, self._emitter.number(type_.element), len(type_.sizes))
             return None
-        closed = self.closed(type_)
+        closed = self._emitter.closed(type_)
         if is_in and isinstance(closed, Plain):
-            self.emit(Op.PUSH_NOTHING)
+            self._emit(Op.PUSH_NOTHING)
             return None
-        kept = Cells(self.writer.temporary(closed), closed)
-        self.refer(kept)
-        self.emit(Op.CLEAR, self.number(closed))
-        self.refer(kept)
-        return self.as_view(Block(closed)).most if is_view else None
+        kept = Cells(self._writer.temporary(closed), closed)
+        self._memory.refer(kept)
+        self._emit(Op.CLEAR, self._emitter.number(closed))
+        self._memory.refer(kept)
+        return self._memory.as_view(Block(closed)).most if is_view else None
 
     def _referred(self, place: Place, type_: Type, is_view: bool) -> Bound | None:
         """Push a reference to a variable, or a view of an array.
@@ -186,40 +198,42 @@ class Calls(PredefinedCalls):
         assert not isinstance(place, Remote), "it is bound"
         given: Block | View
         if isinstance(place, FormalView | PushedView):
-            given = self.view(place, may_be_missing=True)
+            given = self._memory.view(place, may_be_missing=True)
         else:
-            self.refer(place)
+            self._memory.refer(place)
             given = Block(place.type)
         if isinstance(type_, Array) and is_view:
             is_array = isinstance(given, View) or isinstance(given.type, Array)
-            view = self.as_view(given) if is_array else None
-            if view is not None and is_view_of(view, self.closed(type_.element), len(type_.sizes)):
+            view = self._memory.as_view(given) if is_array else None
+            if view is not None and is_view_of(
+                view, self._emitter.closed(type_.element), len(type_.sizes)
+            ):
                 return view.most
-        elif given == Block(self.closed(type_)):
+        elif given == Block(self._emitter.closed(type_)):
             return None
-        raise self.unlinked(str(mismatched(type_)))
+        raise self._emitter.unlinked(str(mismatched(type_)))
 
     def _copied(self, type_: Type, argument: ast.Expression, is_copied_by_call: bool) -> None:
         """Push a reference to a value; the call copies it, unless something comes between."""
-        kept = Cells(self.writer.temporary(type_), type_)
-        behind = self.writer.here
-        value = self.value(argument, type_)
+        kept = Cells(self._writer.temporary(type_), type_)
+        behind = self._writer.here
+        value = self._expressions.value(argument, type_)
         if value == Block(type_) and is_copied_by_call:
             return
         if isinstance(type_, Plain):
-            self.convert(value, type_)
-            self.emit(Op.STORE_LOCAL, kept.offset)
-            self.refer(kept)
+            self._memory.convert(value, type_)
+            self._emit(Op.STORE_LOCAL, kept.offset)
+            self._memory.refer(kept)
             return
-        self.refer_below(kept, behind)
-        self.store_block(type_, value, behind + 1)
-        self.refer(kept)
+        self._memory.refer_below(kept, behind)
+        self._memory.store_block(type_, value, behind + 1)
+        self._memory.refer(kept)
 
     def _copied_view(self, type_: Type, argument: ast.Expression) -> Bound:
         """Push a view of a copy of a value."""
         assert isinstance(type_, Array), "only arrays are views"
-        behind = self.writer.here
-        value = self.value(argument, type_)
+        behind = self._writer.here
+        value = self._expressions.value(argument, type_)
         if isinstance(value, View) and None in type_.sizes:
             return self._copied_to_room(type_, value)
         made: Type = type_
@@ -230,23 +244,26 @@ class Calls(PredefinedCalls):
                 case Block(Array() as made):
                     pass
                 case _:
-                    raise self.refuse(_other_type(type_))
-        made = self.closed(made)
+                    raise self._emitter.refuse(_other_type(type_))
+        made = self._emitter.closed(made)
         assert isinstance(made, Array), "made of one"
-        if (made.element, len(made.sizes)) != (self.closed(type_.element), len(type_.sizes)):
-            raise self.refuse(_other_type(type_))
-        kept = Cells(self.writer.temporary(made), made)
-        self.refer_below(kept, behind)
-        self.store_block(made, value, behind + 1)
-        self.refer(kept)
-        return self.as_view(Block(made)).most
+        if (made.element, len(made.sizes)) != (
+            self._emitter.closed(type_.element),
+            len(type_.sizes),
+        ):
+            raise self._emitter.refuse(_other_type(type_))
+        kept = Cells(self._writer.temporary(made), made)
+        self._memory.refer_below(kept, behind)
+        self._memory.store_block(made, value, behind + 1)
+        self._memory.refer(kept)
+        return self._memory.as_view(Block(made)).most
 
     def _copied_to_room(self, type_: Array, value: View) -> Bound:
         """Make of the view on top one of a copy of the array, whose size only running tells."""
-        if not is_view_of(value, self.closed(type_.element), len(type_.sizes)):
-            raise self.refuse(_other_type(type_))
-        room = self.writer.room(value.element, value.dimensions, value.most)
-        self.emit(Op.COPY_VIEW, room.offset, room.type)
+        if not is_view_of(value, self._emitter.closed(type_.element), len(type_.sizes)):
+            raise self._emitter.refuse(_other_type(type_))
+        room = self._writer.room(value.element, value.dimensions, value.most)
+        self._emit(Op.COPY_VIEW, room.offset, room.type)
         return value.most
 
 

@@ -1,23 +1,27 @@
-"""What the makers of one code object work with."""
+"""One code object in the making, and what it shares with the others of its program."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from grammar.semantics.scopes import Scope
 from grammar.semantics.symbols import Symbol
 from grammar.semantics.types import Type
+from grammar.syntax import ast
+from interp.bytecode.compiler.array_bounds import Sizes
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.places import Place
 from interp.bytecode.compiler.tables import Tables
-from interp.program.load import CheckedProgram, Unit
+from interp.bytecode.program import CodeKind
+from interp.program.load import CheckedProgram, Routine, Unit
 
-if TYPE_CHECKING:
-    from interp.bytecode.compiler.project import Project
+__all__ = ["Binding", "CodeObjects", "Context", "Deferred", "Refusal", "Shared"]
 
-__all__ = ["Context", "Ended", "Refusal"]
+#: What stands for a system variable in a routine: its path, ``None`` for each index.
+Binding = tuple[tuple[str | int | None, ...], Type] | None
+#: What is executed or evaluated later than where it stands: an action or a condition.
+Deferred = ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +37,25 @@ class Refusal:
     is_missing: bool
 
 
-class Ended(Exception):
-    """What comes next on this way is never reached, so nothing more of it is made."""
+class CodeObjects(Protocol):
+    """Gives other code objects their numbers; they are compiled in their turn."""
+
+    def code_of(self, routine: Routine, bindings: tuple[Binding, ...]) -> int:
+        """The number of a routine, called with these system variables."""
+
+    def deferred(self, owner: Context, node: Deferred, kind: CodeKind) -> int:
+        """The number of an action or a condition, which uses variables of its owner."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """What all code objects of a program share."""
+
+    program: CheckedProgram
+    codes: CodeObjects
+    tables: Tables = field(default_factory=Tables)
+    sizes: Sizes = field(default_factory=Sizes)
+    refusals: dict[Refusal, None] = field(default_factory=dict)
 
 
 @dataclass(slots=True, eq=False)
@@ -43,10 +64,11 @@ class Context:
 
     ``variables`` are the places of parameters and local data. ``result`` is the type of what the
     routine gives; a large one goes where the parameter at ``target`` leads. ``number`` is that of
-    the code object.
+    the code object. It ``is_data_list`` where it fills one, and so has the variables itself that
+    the world has later.
     """
 
-    project: Project
+    shared: Shared
     unit: Unit
     scope: Scope
     writer: Writer
@@ -55,23 +77,19 @@ class Context:
     target: int | None = None
     line: int = 0
     number: int = -1
+    is_data_list: bool = False
 
     @property
     def program(self) -> CheckedProgram:
         """The program that is compiled."""
-        return self.project.program
+        return self.shared.program
 
     @property
     def tables(self) -> Tables:
-        """What all code objects share."""
-        return self.project.tables
-
-    @property
-    def places(self) -> Mapping[Symbol, tuple[int, Type]]:
-        """The variables of the data lists."""
-        return self.project.tables.places
+        """The tables of the program."""
+        return self.shared.tables
 
     def note(self, reason: str, *, is_missing: bool) -> None:
         """Something at the line at hand ends the program."""
         refusal = Refusal(self.unit.module.path, self.line, reason, is_missing)
-        self.project.refusals[refusal] = None
+        self.shared.refusals[refusal] = None

@@ -6,14 +6,14 @@ time of compiling, and what it leaves in the cells is written into the program.
 
 from __future__ import annotations
 
-from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import word_of
 from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Writer
-from interp.bytecode.compiler.context import Context, Ended
+from interp.bytecode.compiler.context import Context, Shared
+from interp.bytecode.compiler.emitter import Emitter, Ended
 from interp.bytecode.compiler.places import Remote
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.instruction_set.table import MAX_CELLS
@@ -42,11 +42,8 @@ def declare_data(program: CheckedProgram, tables: Tables) -> None:
                 raise LinkError(f"{unit.module.path}: the data lists hold too much")
 
 
-class _DataList(Calls):
-    """Makes the code that fills one data list."""
-
-    def _is_remote(self, found: Found) -> bool:
-        return found.symbol not in self.context.places and super()._is_remote(found)
+class _DataListEmitter(Emitter):
+    """Ends the compiling where the program could not begin."""
 
     def refuse(self, reason: str) -> Ended:
         """What cannot be compiled cannot be had."""
@@ -63,37 +60,45 @@ class _DataList(Calls):
         """The program cannot begin."""
         raise LinkError(f"the data lists cannot be filled: {fault(slug)}")
 
+
+class _DataList:
+    """Makes the code that fills one data list."""
+
+    def __init__(self, context: Context) -> None:
+        self._emitter = _DataListEmitter(context)
+        self._context = context
+        self._writer = context.writer
+        self._expressions = Calls(self._emitter).expressions
+
     def fill(self, content: ast.DataList) -> None:
         """All initial values of the list."""
-        for line, target, value in first_values(self.context.unit, content):
-            self.context.line = line
+        for line, target, value in first_values(self._context.unit, content):
+            self._context.line = line
             self._give(target, value)
 
     def _give(self, target: ast.Expression, value: ast.Expression) -> None:
-        start = self.writer.here
-        with self.writer.temporaries():
+        start = self._writer.here
+        with self._writer.temporaries():
             try:
-                place = self.place(target)
+                place = self._expressions.designators.place(target)
                 if isinstance(place, Remote):
-                    raise self.unlinked("a value is given to what is declared elsewhere")
-                self.assign(place, value)
-                if {Op.ASK, Op.CALL} & self.writer.ops(start):
-                    raise self.unlinked("an initial value needs a running program")
+                    raise self._emitter.unlinked("a value is given to what is declared elsewhere")
+                self._expressions.assign(place, value)
+                if {Op.ASK, Op.CALL} & self._writer.ops(start):
+                    raise self._emitter.unlinked("an initial value needs a running program")
             except Ended:
-                self.writer.cut(start)
+                self._writer.cut(start)
 
 
-def initial_values(context: Context, tables: Tables) -> tuple[tuple[int, int], ...]:
-    """What is in the cells of the data lists at first; raises `LinkError`.
-
-    ``context`` is that of the project; a code object of its own is made in it.
-    """
+def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
+    """What is in the cells of the data lists at first; raises `LinkError`."""
+    tables = shared.tables
     writer = Writer(tables, "DATA", CodeKind.ROUTINE, "", 0)
-    for unit, content in data_lists(context.program):
-        scope = context.program.project.scope(unit.module)
-        _DataList(Context(context.project, unit, scope, writer)).fill(content)
+    for unit, content in data_lists(shared.program):
+        scope = shared.program.project.scope(unit.module)
+        _DataList(Context(shared, unit, scope, writer, is_data_list=True)).fill(content)
     writer.emit(Op.RETURN)
-    code = writer.code(context.project.sizes)
+    code = writer.code(shared.sizes)
     program = Program(
         tuple(tables.types),
         tuple(tables.texts),

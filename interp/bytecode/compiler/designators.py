@@ -7,7 +7,7 @@ instruction until something is done with it; others are on the stack.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from typing import Protocol
 
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, SignalSymbol
@@ -16,6 +16,7 @@ from grammar.syntax import ast
 from grammar.syntax.walk import without_parentheses
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, elements
+from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.memory import Memory
 from interp.bytecode.compiler.places import (
     Block,
@@ -34,79 +35,92 @@ from interp.bytecode.compiler.places import (
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 
-__all__ = ["Designators", "literal"]
+__all__ = ["Designators", "Evaluation", "literal"]
 
 _MOST_SIGNALS = 8
 
 
-class Designators(Memory, ABC):
+class Evaluation(Protocol):
+    """Leaves the value of an expression on the stack, for a place of type ``wanted``."""
+
+    def __call__(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Value:
+        """What was left."""
+
+
+class Designators:
     """Makes the code of designators."""
 
-    @abstractmethod
-    def value(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Value:
-        """The value of an expression, for a place of type ``wanted``."""
+    def __init__(self, emitter: Emitter, memory: Memory, value: Evaluation) -> None:
+        self._emitter = emitter
+        self._context = emitter.context
+        self._writer = emitter.writer
+        self._emit = emitter.emit
+        self._memory = memory
+        self._value = value
 
     def place(self, node: ast.Expression) -> Place:
         """Where an expression has its value."""
         match node:
             case ast.Variable():
-                found = self.context.unit.found(node.name)
+                found = self._context.unit.found(node.name)
                 if found is not None and found.symbol.kind is Kind.IMPORT:
-                    self.ask("StopAdvance")
+                    self._emitter.ask("StopAdvance")
                 return self.variable(node.name)
             case ast.Parenthesised():
                 return self.place(node.inner)
             case ast.Member():
-                return self.member(self.place(node.base), node.name.text)
+                return self._memory.member(self.place(node.base), node.name.text)
             case ast.Subscript():
                 return self.element(self.place(node.base), node.indices)
-        match self.value(node):
+        match self._value(node):
             case Block(type_):
                 return Pushed(type_, None)
             case View(element, dimensions, most):
                 return PushedView(element, dimensions, None, most)
-        raise self.unlinked("a part of what has none")
+        raise self._emitter.unlinked("a part of what has none")
 
     def variable(self, name: ast.Name) -> Place:
         """The place of a variable."""
-        found = self.context.unit.found(name)
+        found = self._context.unit.found(name)
         if found is not None:
             return self.declared(found)
         if name.key.startswith("$"):  # another release may have it
             return Remote((name.key,), UNKNOWN)
-        raise self.unlinked(f"{name.text} is declared nowhere")
+        raise self._emitter.unlinked(f"{name.text} is declared nowhere")
 
     def declared(self, found: Found, signals: int = 0) -> Place:
         """The place of what a name means: of a frame, of a data list, or of the world."""
         try:
-            found = self.context.program.declaration(found)
+            found = self._context.program.declaration(found)
         except LinkError as error:
-            raise self.unlinked(str(error)) from None
+            raise self._emitter.unlinked(str(error)) from None
         symbol = found.symbol
         if found.scope.routine is not None and not isinstance(symbol, SignalSymbol):
-            if symbol in self.context.variables:
-                return self.context.variables[symbol]
-            raise self.refuse(str(untyped(symbol.name)))
+            if symbol in self._context.variables:
+                return self._context.variables[symbol]
+            raise self._emitter.refuse(str(untyped(symbol.name)))
         if self._is_remote(found):
-            return Remote((symbol.key,), self.context.program.type_of(found))
+            return Remote((symbol.key,), self._context.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
             if signals == _MOST_SIGNALS:
-                raise self.unlinked(f"the signal {symbol.name} leads nowhere")
+                raise self._emitter.unlinked(f"the signal {symbol.name} leads nowhere")
             return self._signal(symbol, found, signals)
-        if symbol in self.context.places:
-            return DataCells(*self.context.places[symbol])
+        if symbol in self._context.tables.places:
+            return DataCells(*self._context.tables.places[symbol])
         if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
-            raise self.refuse(str(untyped(symbol.name)))
-        raise self.unlinked(f"{symbol.name} is no variable")
+            raise self._emitter.refuse(str(untyped(symbol.name)))
+        raise self._emitter.unlinked(f"{symbol.name} is no variable")
 
     def _is_remote(self, found: Found) -> bool:
         """Whether it is the world that has a variable."""
+        if self._context.is_data_list and found.symbol in self._context.tables.places:
+            return False
         return found.module is None or found.symbol.key.startswith("$")
 
     def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> Remote:
         """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)`` [IOT-03]."""
         assert found.module is not None, "the controller's signals are variables"
-        unit = self.context.program.units[found.module]
+        unit = self._context.program.units[found.module]
         ends: list[Remote] = []
         for name, numbers in signal_ends(symbol):
             means = unit.found(name)
@@ -135,22 +149,22 @@ class Designators(Memory, ABC):
         if isinstance(base, FormalView | PushedView):
             return self._view_element(base, given)
         if not isinstance(base.type, Array):
-            raise self.unlinked("an index of what is no array")
+            raise self._emitter.unlinked("an index of what is no array")
         sizes = base.type.sizes
         fixed = [number for node in given if (number := literal(node)) is not None]
         if isinstance(base, Cells | DataCells) and len(fixed) == len(given) <= len(sizes):
-            found = self.fixed_element(base, tuple(fixed))
+            found = self._memory.fixed_element(base, tuple(fixed))
             if found is not None:
                 return found
         through = base.offset if isinstance(base, Formal) else None
         through = base.through if isinstance(base, Pushed) else through
         if len(given) == len(sizes):
             return self._indexed(base, base.type, given, through)
-        self.refer(base)
+        self._memory.refer(base)
         self._indices(given)
         if len(given) > len(sizes):
-            raise self.unlinked("an array has too many indices")
-        self.emit(Op.ROW, self.number(base.type), len(given))
+            raise self._emitter.unlinked("an array has too many indices")
+        self._emit(Op.ROW, self._emitter.number(base.type), len(given))
         rest = elements(base.type) // math.prod(array_sizes(base.type)[: len(given)])
         return PushedView(base.type.element, len(sizes) - len(given), through, rest)
 
@@ -161,32 +175,32 @@ class Designators(Memory, ABC):
         nodes: list[ast.Expression],
         through: int | None,
     ) -> Pushed:
-        number = self.number(type_)
+        number = self._emitter.number(type_)
         match base:
             case Cells(offset):
                 self._indices(nodes)
-                self.emit(Op.INDEX_LOCAL, offset, number)
+                self._emit(Op.INDEX_LOCAL, offset, number)
             case DataCells(address):
                 self._indices(nodes)
-                self.emit(Op.INDEX_DATA, address, number)
+                self._emit(Op.INDEX_DATA, address, number)
             case _:
-                self.refer(base)
+                self._memory.refer(base)
                 self._indices(nodes)
-                self.emit(Op.INDEX, number)
+                self._emit(Op.INDEX, number)
         return Pushed(type_.element, through)
 
     def _view_element(
         self, base: FormalView | PushedView, nodes: list[ast.Expression]
     ) -> Pushed | PushedView:
         if isinstance(base, PushedView):
-            raise self.refuse("an index of a part of an array")
+            raise self._emitter.refuse("an index of a part of an array")
         self._indices(nodes)
         if len(nodes) > base.dimensions:
-            raise self.unlinked("an array has too many indices")
+            raise self._emitter.unlinked("an array has too many indices")
         if len(nodes) == base.dimensions:
-            self.emit(Op.INDEX_VIEW, base.offset)
+            self._emit(Op.INDEX_VIEW, base.offset)
             return Pushed(base.element, base.offset)
-        self.emit(Op.ROW_VIEW, base.offset, len(nodes))
+        self._emit(Op.ROW_VIEW, base.offset, len(nodes))
         return PushedView(base.element, base.dimensions - len(nodes), base.offset, base.most)
 
     def _remote_element(self, base: Remote, nodes: list[ast.Expression]) -> Remote:
@@ -194,9 +208,9 @@ class Designators(Memory, ABC):
         for node in nodes:
             number = literal(node)
             if number is None:
-                self.convert(self.value(node), INT)
-                hole = Hole(self.writer.temporary(INT))
-                self.emit(Op.STORE_LOCAL, hole.offset)
+                self._memory.convert(self._value(node), INT)
+                hole = Hole(self._writer.temporary(INT))
+                self._emit(Op.STORE_LOCAL, hole.offset)
                 steps.append(hole)
             else:
                 steps.append(number)
@@ -204,7 +218,7 @@ class Designators(Memory, ABC):
 
     def _indices(self, nodes: list[ast.Expression]) -> None:
         for node in nodes:
-            self.convert(self.value(node), INT)
+            self._memory.convert(self._value(node), INT)
 
 
 def literal(node: ast.Expression) -> int | None:

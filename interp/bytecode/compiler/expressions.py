@@ -7,7 +7,6 @@ when it is reached, and is told to whoever compiles.
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -29,6 +28,8 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.designators import Designators, literal
+from interp.bytecode.compiler.emitter import Emitter
+from interp.bytecode.compiler.memory import Memory
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -46,8 +47,24 @@ from interp.values.values import constant, letters, position_type, single
 __all__ = ["Expressions"]
 
 
-class Expressions(Designators):
+#: Calls a function and gives its value.
+Call = Callable[[ast.Call], Value]
+
+
+class Expressions:
     """Makes the code of expressions."""
+
+    def __init__(self, emitter: Emitter, call: Call) -> None:
+        self.emitter = emitter
+        self.memory = Memory(emitter)
+        self.designators = Designators(emitter, self.memory, self.value)
+        self._call = call
+        self._emitter = emitter
+        self._context = emitter.context
+        self._writer = emitter.writer
+        self._emit = emitter.emit
+        self._memory = self.memory
+        self._designators = self.designators
 
     # ----------------------------------------------------------------------- values
 
@@ -60,41 +77,41 @@ class Expressions(Designators):
 
     def place_or_value(self, node: ast.Expression) -> Value:
         """The value of a variable, or of a part of what an expression gives."""
-        return self.load(self.place(node))
+        return self._memory.load(self._designators.place(node))
 
     def truth(self, node: ast.Expression) -> None:
         """A condition."""
         if self.value(node, BOOL) != Scalar(BOOL):
-            raise self.fail("operand")
+            raise self._emitter.fail("operand")
 
     def unless(self, node: ast.Expression, label: Label) -> None:
         """Go on at the label where a condition is FALSE."""
         self.truth(node)
-        last = self.writer.last()
+        last = self._writer.last()
         if last is not None and f"UNLESS_{last.op.name}" in Op.__members__:
-            self.writer.drop_last()
-            self.emit(Op[f"UNLESS_{last.op.name}"], label)
+            self._writer.drop_last()
+            self._emit(Op[f"UNLESS_{last.op.name}"], label)
         elif last is not None and last.op is Op.NOT_BOOL:
-            self.writer.drop_last()
-            self.emit(Op.JUMP_IF, label)
+            self._writer.drop_last()
+            self._emit(Op.JUMP_IF, label)
         else:
-            self.emit(Op.JUMP_UNLESS, label)
+            self._emit(Op.JUMP_UNLESS, label)
 
     def integer(self, node: ast.Expression) -> None:
         """A number as INT."""
-        self.convert(self.value(node, INT), INT)
+        self._memory.convert(self.value(node, INT), INT)
 
     def real(self, node: ast.Expression) -> None:
         """A number as REAL."""
-        self.convert(self.value(node, REAL), REAL)
+        self._memory.convert(self.value(node, REAL), REAL)
 
     def _integer(self, node: ast.IntegerLiteral | ast.BitLiteral, _wanted: Type) -> Value:
         number = node.value
         if isinstance(node, ast.BitLiteral) and number > INT_MAX:  # 32 bits as written [TYP-04]
             number -= 2**32
         if not INT_MIN <= number <= INT_MAX:
-            raise self.fail("overflow")
-        self.emit(Op.PUSH_INT, number)
+            raise self._emitter.fail("overflow")
+        self._emit(Op.PUSH_INT, number)
         return Scalar(INT)
 
     def literal_integer(self, node: ast.Expression) -> int | None:
@@ -111,12 +128,12 @@ class Expressions(Designators):
         try:
             number = single(node.value)
         except Fault as error:
-            raise self.fail(error.slug) from None
-        self.emit(Op.PUSH_REAL, bits_of(number))
+            raise self._emitter.fail(error.slug) from None
+        self._emit(Op.PUSH_REAL, bits_of(number))
         return Scalar(REAL)
 
     def _bool(self, node: ast.BoolLiteral, _wanted: Type) -> Value:
-        self.emit(Op.PUSH_BOOL, int(node.value))
+        self._emit(Op.PUSH_BOOL, int(node.value))
         return Scalar(BOOL)
 
     def _text(self, node: ast.StringLiteral, _wanted: Type) -> Value:
@@ -126,15 +143,15 @@ class Expressions(Designators):
         return Text(letters(node.name.key))
 
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Value:
-        type_ = self.context.unit.checked.enumerations.get(node, wanted)
+        type_ = self._context.unit.checked.enumerations.get(node, wanted)
         if not isinstance(type_, Enumeration):
-            raise self.unlinked(f"nothing tells which enumeration #{node.name.text} is of")
+            raise self._emitter.unlinked(f"nothing tells which enumeration #{node.name.text} is of")
         try:
             place = constant(type_, node.name.key).index
         except LinkError as error:
-            raise self.unlinked(str(error)) from None
-        self.emit(Op.PUSH_ENUM, self.number(type_), place)
-        return Scalar(self.closed(type_))
+            raise self._emitter.unlinked(str(error)) from None
+        self._emit(Op.PUSH_ENUM, self._emitter.number(type_), place)
+        return Scalar(self._emitter.closed(type_))
 
     def _parenthesised(self, node: ast.Parenthesised, wanted: Type) -> Value:
         return self.value(node.inner, wanted)
@@ -146,10 +163,10 @@ class Expressions(Designators):
         kind = kind_of(value.type)
         selection = None if kind is None else select(node.operator, kind)
         if selection is None:
-            raise self.fail("operand")
+            raise self._emitter.fail("operand")
         if selection.primitive is None:
             return value
-        last = self.writer.last()
+        last = self._writer.last()
         if node.operator == "-" and last is not None and last.op is Op.PUSH_INT:
             number = last.operands[0]
             assert isinstance(number, int), "a constant"
@@ -157,7 +174,7 @@ class Expressions(Designators):
                 last.operands = (-number,)
                 return value
         for step in selection.conversions[0]:
-            self.emit(Op[step.name.upper()])
+            self._emit(Op[step.name.upper()])
         self._apply(selection.primitive)
         return self._result(selection, value)
 
@@ -166,16 +183,16 @@ class Expressions(Designators):
         value = self.value(node, wanted)
         match value:
             case Text(text) if len(text) == 1:
-                self.emit(Op.PUSH_CHAR, ord(text))
+                self._emit(Op.PUSH_CHAR, ord(text))
                 return Scalar(CHAR)
             case Scalar() | Block():
                 return value
-        raise self.fail("operand")
+        raise self._emitter.fail("operand")
 
     def _binary(self, node: ast.Binary, _wanted: Type) -> Value:
-        first = self.writer.here
+        first = self._writer.here
         left = self.operand(node.left, UNKNOWN)
-        between = self.writer.here
+        between = self._writer.here
         wanted = left.type if isinstance(left.type, Enumeration) else UNKNOWN
         right = self.operand(node.right, wanted)
         selection = self.selected(node.operator, left.type, right.type)
@@ -186,9 +203,9 @@ class Expressions(Designators):
         if primitive.operands[0] == "ENUM" and left.type != right.type:
             return self.unlike(primitive)
         for step in reversed(selection.conversions[0]):
-            self.writer.insert(between, Op[step.name.upper()])
+            self._writer.insert(between, Op[step.name.upper()])
         for step in selection.conversions[1]:
-            self.emit(Op[step.name.upper()])
+            self._emit(Op[step.name.upper()])
         self._apply(primitive)
         return self._result(selection, left)
 
@@ -199,26 +216,26 @@ class Expressions(Designators):
         if kinds[0] is not None and kinds[1] is not None:
             selection = select(operator, kinds[0], kinds[1])
         if selection is None:
-            raise self.fail("operand")
+            raise self._emitter.fail("operand")
         return selection
 
     def unlike(self, primitive: Primitive) -> Value:
         """Constants of two enumerations: they are never the same."""
-        self.emit(Op.DROP)
-        self.emit(Op.DROP)
-        self.emit(Op.PUSH_BOOL, int(primitive.name != "eq_enum"))
+        self._emit(Op.DROP)
+        self._emit(Op.DROP)
+        self._emit(Op.PUSH_BOOL, int(primitive.name != "eq_enum"))
         return Scalar(BOOL)
 
     def _apply(self, primitive: Primitive) -> None:
         """Carry a primitive out; adding a constant is an instruction of its own."""
-        last = self.writer.last()
+        last = self._writer.last()
         if last is not None and last.op is Op.PUSH_INT and primitive.name in _SIGNS:
             number = last.operands[0]
             assert isinstance(number, int), "a constant"
             if number != INT_MIN:
                 last.op, last.operands = Op.ADD_CONSTANT, (_SIGNS[primitive.name] * number,)
                 return
-        self.emit(Op[primitive.name.upper()])
+        self._emit(Op[primitive.name.upper()])
 
     def _result(self, selection: Selection, operand: Scalar | Block) -> Value:
         found = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}.get(selection.result)
@@ -226,51 +243,45 @@ class Expressions(Designators):
 
     def _composed(self, left: Scalar | Block, right: Scalar | Block, first: int) -> Value:
         """The geometric operator: its result has a place below its operands."""
-        kept = Cells(self.writer.temporary(right.type), right.type)
-        self.refer_below(kept, first)
-        self.emit(Op.COMPOSE, self.number(left.type), self.number(right.type))
-        self.refer(kept)
+        kept = Cells(self._writer.temporary(right.type), right.type)
+        self._memory.refer_below(kept, first)
+        self._emit(Op.COMPOSE, self._emitter.number(left.type), self._emitter.number(right.type))
+        self._memory.refer(kept)
         return Block(right.type)
 
     # ----------------------------------------------------------------------- aggregates
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Value:
-        type_ = self.closed(self._structure(node, wanted))
-        whole = Cells(self.writer.temporary(type_), type_)
-        self.refer(whole)
-        self.emit(Op.CLEAR, self.number(type_))
+        type_ = self._emitter.closed(self._structure(node, wanted))
+        whole = Cells(self._writer.temporary(type_), type_)
+        self._memory.refer(whole)
+        self._emit(Op.CLEAR, self._emitter.number(type_))
         for component in node.components:
-            place = self.member(whole, component.name.text)
+            place = self._memory.member(whole, component.name.text)
             if component.indices:
-                place = self.element(place, component.indices)
+                place = self._designators.element(place, component.indices)
             self.assign(place, component.value)
-        self.refer(whole)
+        self._memory.refer(whole)
         return Block(type_)
 
     def _structure(self, node: ast.Aggregate, wanted: Type) -> Structure:
-        type_: Type | None = self.context.unit.checked.types.get(node, UNKNOWN)
+        type_: Type | None = self._context.unit.checked.types.get(node, UNKNOWN)
         if isinstance(type_, Aggregate):
             type_ = type_.structure
         if not isinstance(type_, Structure):
             names = frozenset(component.name.key for component in node.components)
             type_ = wanted if isinstance(wanted, Structure) else position_type(names)
         if type_ is None:
-            raise self.unlinked("nothing tells which structure an aggregate is")
+            raise self._emitter.unlinked("nothing tells which structure an aggregate is")
         return type_
 
     def assign(self, place: Place, node: ast.Expression) -> Place:
         """Store the value of an expression; gives the place to tell of."""
-        ready = self.ready(place)
-        behind = self.writer.here
+        ready = self._memory.ready(place)
+        behind = self._writer.here
         wanted = UNKNOWN if isinstance(ready, FormalView | PushedView) else ready.type
-        self.store(ready, self.value(node, wanted), behind)
+        self._memory.store(ready, self.value(node, wanted), behind)
         return ready
-
-    # ----------------------------------------------------------------------- calls
-
-    @abstractmethod
-    def call(self, node: ast.Call, _wanted: Type) -> Value:
-        """The value of a function."""
 
 
 _SIGNS = {"add_int": 1, "sub_int": -1}
@@ -289,5 +300,5 @@ _VALUES: Mapping[type[Any], _Rule] = {
     ast.Unary: Expressions._unary,
     ast.Binary: Expressions._binary,
     ast.Aggregate: Expressions._aggregate,
-    ast.Call: lambda self, node, wanted: self.call(node, wanted),
+    ast.Call: lambda self, node, _wanted: self._call(node),
 }

@@ -8,7 +8,7 @@ from __future__ import annotations
 from grammar.semantics.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, bits_of, elements, offset_of, shared_cells
-from interp.bytecode.compiler.context import Context, Ended
+from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -27,7 +27,6 @@ from interp.bytecode.compiler.places import (
 )
 from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
 from interp.program.variables import is_complete, untyped_value
-from interp.values.faults import FAULTS, LinkError
 from interp.values.values import single
 
 __all__ = ["Memory"]
@@ -44,51 +43,11 @@ _CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
 class Memory:
     """Reads and stores in one code object."""
 
-    def __init__(self, context: Context) -> None:
-        self.context = context
-        self.writer = context.writer
-        self.emit = context.writer.emit
-
-    # ----------------------------------------------------------------------- ends
-
-    def fail(self, slug: str) -> Ended:
-        """The program faults here; what comes back is to be raised."""
-        self.emit(Op.FAIL, FAULTS[slug].code)
-        return Ended()
-
-    def unlinked(self, reason: str) -> Ended:
-        """The program ends here with a `LinkError`, on every executor."""
-        self.context.note(reason, is_missing=True)
-        return self._ended(reason)
-
-    def _ended(self, reason: str) -> Ended:
-        text = reason.encode("latin-1", errors="replace").decode("latin-1")
-        self.emit(Op.UNLINKED, self.context.tables.text(text))
-        return Ended()
-
-    def refuse(self, reason: str) -> Ended:
-        """The program ends here because it cannot be compiled."""
-        self.context.note(reason, is_missing=False)
-        return self._ended(reason)
-
-    # ----------------------------------------------------------------------- asking
-
-    def ask(self, request: str, *parts: Argument) -> None:
-        """Make a request of what lies on the stack."""
-        self.emit(Op.ASK, self.context.tables.ask(Ask(request, parts, None)))
-
-    # ----------------------------------------------------------------------- types
-
-    def number(self, type_: Type) -> int:
-        """The number of a type; refuses what no variable can be of."""
-        try:
-            return self.context.tables.number(type_)
-        except LinkError as error:
-            raise self.refuse(str(error)) from None
-
-    def closed(self, type_: Type) -> Type:
-        """The type as the program has it."""
-        return self.context.tables.types[self.number(type_)]
+    def __init__(self, emitter: Emitter) -> None:
+        self._emitter = emitter
+        self._context = emitter.context
+        self._writer = emitter.writer
+        self._emit = emitter.emit
 
     # ----------------------------------------------------------------------- reading
 
@@ -108,17 +67,17 @@ class Memory:
     def _load_cell(self, place: Cells | DataCells | Formal | Pushed) -> None:
         match place:
             case Cells(offset):
-                self.emit(Op.LOAD_LOCAL, offset)
+                self._emit(Op.LOAD_LOCAL, offset)
             case DataCells(address):
-                self.emit(Op.LOAD_DATA, address)
+                self._emit(Op.LOAD_DATA, address)
             case Formal(offset):
-                self.emit(Op.LOAD_REF, offset)
-                self.emit(Op.LOAD)
+                self._emit(Op.LOAD_REF, offset)
+                self._emit(Op.LOAD)
             case Pushed():
-                last = self.writer.last()
+                last = self._writer.last()
                 element = _ELEMENTS.get(last.op) if last else None
                 if last is None or element is None:
-                    self.emit(Op.LOAD)
+                    self._emit(Op.LOAD)
                 else:
                     last.op = element
 
@@ -126,20 +85,20 @@ class Memory:
         """Leave a reference to a place on the stack."""
         match place:
             case Cells(offset, type_):
-                self.emit(Op.REF_LOCAL, offset, self.number(type_))
+                self._emit(Op.REF_LOCAL, offset, self._emitter.number(type_))
             case DataCells(address, type_):
-                self.emit(Op.REF_DATA, address, self.number(type_))
+                self._emit(Op.REF_DATA, address, self._emitter.number(type_))
             case Formal(offset):
-                self.emit(Op.LOAD_REF, offset)
+                self._emit(Op.LOAD_REF, offset)
 
     def refer_below(self, place: Cells, at: int) -> None:
         """Leave a reference to cells of the frame below what was pushed from ``at`` on."""
-        self.writer.insert(at, Op.REF_LOCAL, place.offset, self.number(place.type))
+        self._writer.insert(at, Op.REF_LOCAL, place.offset, self._emitter.number(place.type))
 
     def view(self, place: FormalView | PushedView, *, may_be_missing: bool = False) -> View:
         """Leave a view on the stack."""
         if isinstance(place, FormalView):
-            self.emit(Op.PASS_VIEW if may_be_missing else Op.LOAD_VIEW, place.offset)
+            self._emit(Op.PASS_VIEW if may_be_missing else Op.LOAD_VIEW, place.offset)
         return View(place.element, place.dimensions, place.most)
 
     def as_view(self, value: Block | View, at: int | None = None) -> View:
@@ -147,8 +106,8 @@ class Memory:
         if isinstance(value, View):
             return value
         assert isinstance(value.type, Array), "only arrays have views"
-        place = self.writer.here if at is None else at
-        self.writer.insert(place, Op.VIEW, self.number(value.type))
+        place = self._writer.here if at is None else at
+        self._writer.insert(place, Op.VIEW, self._emitter.number(value.type))
         return View(value.type.element, len(value.type.sizes), elements(value.type))
 
     def read(self, place: Remote) -> Value:
@@ -156,16 +115,16 @@ class Memory:
         type_ = place.type
         if not is_complete(type_):
             name, *rest = place.path
-            raise self.refuse(str(untyped_value([str(name), *("" for _ in rest)])))
-        type_ = self.closed(type_)
+            raise self._emitter.refuse(str(untyped_value([str(name), *("" for _ in rest)])))
+        type_ = self._emitter.closed(type_)
         path = self.pushed_path(place)
-        ask = self.context.tables.ask(Ask("Read", (path,), self.number(type_)))
+        ask = self._context.tables.ask(Ask("Read", (path,), self._emitter.number(type_)))
         if isinstance(type_, Plain):
-            self.emit(Op.ASK, ask)
+            self._emit(Op.ASK, ask)
             return Scalar(type_)
-        kept = Cells(self.writer.temporary(type_), type_)
+        kept = Cells(self._writer.temporary(type_), type_)
         self.refer(kept)
-        self.emit(Op.ASK, ask)
+        self._emit(Op.ASK, ask)
         self.refer(kept)
         return Block(type_)
 
@@ -175,15 +134,15 @@ class Memory:
         for step in place.path:
             if isinstance(step, Hole):
                 self._push_hole(step)
-                parts.append(Input(Mode.IN, self.number(INT)))
+                parts.append(Input(Mode.IN, self._emitter.number(INT)))
             else:
                 parts.append(Constant(step))
         return Items(tuple(parts))
 
     def _push_hole(self, hole: Hole) -> None:
-        self.emit(Op.LOAD_REF if hole.is_formal else Op.LOAD_LOCAL, hole.offset)
+        self._emit(Op.LOAD_REF if hole.is_formal else Op.LOAD_LOCAL, hole.offset)
         if hole.is_formal:
-            self.emit(Op.LOAD)
+            self._emit(Op.LOAD)
 
     # ----------------------------------------------------------------------- parts
 
@@ -194,10 +153,10 @@ class Memory:
             known = base.type.member(key) if isinstance(base.type, Structure) else None
             return Remote((*base.path, key), known or UNKNOWN)
         if isinstance(base, FormalView | PushedView) or not isinstance(base.type, Structure):
-            raise self.unlinked(f"{key} is a member of nothing")
+            raise self._emitter.unlinked(f"{key} is a member of nothing")
         found = offset_of(base.type, (key,))
         if found is None:
-            raise self.unlinked(f"{base.type} has no component {name} that is known")
+            raise self._emitter.unlinked(f"{base.type} has no component {name} that is known")
         return self._part(base, *found)
 
     def _part(self, base: Cells | DataCells | Formal | Pushed, offset: int, type_: Type) -> Place:
@@ -208,13 +167,13 @@ class Memory:
                 return DataCells(first + offset, type_)
         through = base.offset if isinstance(base, Formal) else base.through
         self.refer(base)
-        last = self.writer.last()
+        last = self._writer.last()
         if last is not None and last.op is Op.MEMBER:
             before = last.operands[0]
             assert isinstance(before, int), "an offset"
-            last.operands = (before + offset, self.number(type_))
+            last.operands = (before + offset, self._emitter.number(type_))
         else:
-            self.emit(Op.MEMBER, offset, self.number(type_))
+            self._emit(Op.MEMBER, offset, self._emitter.number(type_))
         return Pushed(type_, through)
 
     def fixed_element(
@@ -233,23 +192,23 @@ class Memory:
     def convert(self, value: Value, to: Type) -> None:
         """Make of the value on top a value of one cell of another type."""
         if isinstance(value, Text) and len(value.text) == 1:
-            self.emit(Op.PUSH_CHAR, ord(value.text))
+            self._emit(Op.PUSH_CHAR, ord(value.text))
             value = Scalar(CHAR)
         if not isinstance(value, Scalar):
-            raise self.fail("inadmissible")
+            raise self._emitter.fail("inadmissible")
         if value.type == to:
             return
         ways = _CONVERSIONS.get((value.type, to))
         if ways is None:
-            raise self.fail("inadmissible")
-        last = self.writer.last()
+            raise self._emitter.fail("inadmissible")
+        last = self._writer.last()
         if ways == (Op.INT_TO_REAL,) and last is not None and last.op is Op.PUSH_INT:
             number = last.operands[0]
             assert isinstance(number, int), "a constant"
             last.op, last.operands = Op.PUSH_REAL, (bits_of(single(number)),)
             return
         for op in ways:
-            self.emit(op)
+            self._emit(op)
 
     # ----------------------------------------------------------------------- storing
 
@@ -279,11 +238,11 @@ class Memory:
             self.convert(value, place.type)
             match place:
                 case Cells(offset):
-                    self.emit(Op.STORE_LOCAL, offset)
+                    self._emit(Op.STORE_LOCAL, offset)
                 case DataCells(address):
-                    self.emit(Op.STORE_DATA, address)
+                    self._emit(Op.STORE_DATA, address)
                 case _:
-                    self.emit(Op.STORE)
+                    self._emit(Op.STORE)
             return
         self.store_block(place.type, value, behind)
 
@@ -291,51 +250,51 @@ class Memory:
         """Store in a structure or array whose reference lies below the value."""
         match value:
             case Block(of) if of == type_:
-                self.emit(Op.COPY, self.number(type_))
+                self._emit(Op.COPY, self._emitter.number(type_))
             case Block(of) if shared_cells(type_, of) is not None:
-                self.emit(Op.FILL_POSE, self.number(type_), self.number(of))
+                self._emit(Op.FILL_POSE, self._emitter.number(type_), self._emitter.number(of))
             case _ if isinstance(type_, Array):
                 target = self.as_view(Block(type_), at=behind)
                 self._fill(target, value)
             case _:
-                raise self.fail("inadmissible")
+                raise self._emitter.fail("inadmissible")
 
     def _fill(self, target: View, value: Value) -> None:
         """Store in an array of which a view lies below the value."""
         if isinstance(value, Text):
             if (target.element, target.dimensions) != (CHAR, 1):
-                raise self.fail("inadmissible")
-            self.emit(Op.SET_TEXT, self.context.tables.text(value.text))
+                raise self._emitter.fail("inadmissible")
+            self._emit(Op.SET_TEXT, self._context.tables.text(value.text))
             return
         if isinstance(value, Scalar) or (
             isinstance(value, Block) and not isinstance(value.type, Array)
         ):
-            raise self.fail("inadmissible")
+            raise self._emitter.fail("inadmissible")
         given = self.as_view(value)
         if given.dimensions != target.dimensions:
-            raise self.fail("inadmissible")
+            raise self._emitter.fail("inadmissible")
         if given.element != target.element:
-            raise self.refuse(f"an array of {given.element} fills one of {target.element}")
-        self.emit(Op.FILL_ARRAY, self.number(target.element), target.dimensions)
+            raise self._emitter.refuse(f"an array of {given.element} fills one of {target.element}")
+        self._emit(Op.FILL_ARRAY, self._emitter.number(target.element), target.dimensions)
 
     def _write(self, place: Remote, value: Value, behind: int) -> None:
         """Tell the world a value. The indices of the path come before the value."""
         path = self._path_below(place, behind)
         part = self.remote_value(place.type, value, behind + _pushes(place))
-        self.ask("Write", path, part)
+        self._emitter.ask("Write", path, part)
 
     def _path_below(self, place: Remote, behind: int) -> Items:
         """The path as a part of a request; its indices are pushed below the value."""
         parts: list[Argument] = []
         for step in place.path:
             if isinstance(step, Hole):
-                parts.append(Input(Mode.IN, self.number(INT)))
-                self.writer.insert(
+                parts.append(Input(Mode.IN, self._emitter.number(INT)))
+                self._writer.insert(
                     behind, Op.LOAD_REF if step.is_formal else Op.LOAD_LOCAL, step.offset
                 )
                 behind += 1
                 if step.is_formal:
-                    self.writer.insert(behind, Op.LOAD)
+                    self._writer.insert(behind, Op.LOAD)
                     behind += 1
             else:
                 parts.append(Constant(step))
@@ -345,16 +304,16 @@ class Memory:
         """The value on top as a part of a request, converted to the type as far as it is known."""
         if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
             return self.handed(value)
-        type_ = self.closed(type_)
+        type_ = self._emitter.closed(type_)
         if isinstance(type_, Plain):
             self.convert(value, type_)
-            return Input(Mode.IN, self.number(type_))
+            return Input(Mode.IN, self._emitter.number(type_))
         if value != Block(type_):
-            kept = Cells(self.writer.temporary(type_), type_)
+            kept = Cells(self._writer.temporary(type_), type_)
             self.refer_below(kept, behind)
             self.store_block(type_, value, behind + 1)
             self.refer(kept)
-        return Input(Mode.REF, self.number(type_))
+        return Input(Mode.REF, self._emitter.number(type_))
 
     def handed(self, value: Value) -> Argument:
         """The value on top as a part of a request, as it is."""
@@ -362,10 +321,10 @@ class Memory:
             case Text(text):
                 return Constant(text)
             case Scalar(type_):
-                return Input(Mode.IN, self.number(type_))
+                return Input(Mode.IN, self._emitter.number(type_))
             case Block(type_):
-                return Input(Mode.REF, self.number(type_))
-        return Input(Mode.VIEW, self.number(value.element), value.dimensions)
+                return Input(Mode.REF, self._emitter.number(type_))
+        return Input(Mode.VIEW, self._emitter.number(value.element), value.dimensions)
 
     # ----------------------------------------------------------------------- telling
 
@@ -373,9 +332,9 @@ class Memory:
         """Tell the trace that a place was assigned, just now."""
         match place:
             case Cells(offset, type_):
-                self.emit(Op.TELL_LOCAL, offset, self.number(type_))
+                self._emit(Op.TELL_LOCAL, offset, self._emitter.number(type_))
             case DataCells(address, type_):
-                self.emit(Op.TELL_DATA, address, self.number(type_))
+                self._emit(Op.TELL_DATA, address, self._emitter.number(type_))
             case Pushed(type_, through):
                 self._tell_last(type_, 0, through)
             case PushedView(element, dimensions, through):
@@ -383,9 +342,9 @@ class Memory:
 
     def _tell_last(self, type_: Type, dimensions: int, through: int | None) -> None:
         if through is None:
-            self.emit(Op.TELL, self.number(type_), dimensions)
+            self._emit(Op.TELL, self._emitter.number(type_), dimensions)
         else:
-            self.emit(Op.TELL_REF, through, self.number(type_), dimensions)
+            self._emit(Op.TELL_REF, through, self._emitter.number(type_), dimensions)
 
 
 _ELEMENTS = {Op.INDEX_LOCAL: Op.ELEMENT_LOCAL, Op.INDEX_DATA: Op.ELEMENT_DATA}

@@ -8,8 +8,9 @@ from grammar.semantics.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Label
+from interp.bytecode.compiler.context import Deferred
+from interp.bytecode.compiler.expressions import Expressions
 from interp.bytecode.compiler.places import (
     Block,
     Cells,
@@ -43,25 +44,34 @@ __all__ = ["Motions"]
 _Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
 
 
-class Motions(Calls):
+class Motions:
     """Makes the code of statements that ask the world to do something."""
+
+    def __init__(self, expressions: Expressions) -> None:
+        self._expressions = expressions
+        self._emitter = expressions.emitter
+        self._context = expressions.emitter.context
+        self._writer = expressions.emitter.writer
+        self._emit = expressions.emitter.emit
+        self._memory = expressions.memory
+        self._designators = expressions.designators
 
     # ----------------------------------------------------------------------- motions
 
     def motion(self, node: ast.Motion) -> None:
         """PTP, LIN, CIRC and all others."""
-        self.ask("Move", *self._move(node))
+        self._emitter.ask("Move", *self._move(node))
 
     def _move(self, node: ast.Motion, *, is_early: bool = False) -> tuple[Argument, ...]:
         """The parts of a motion; ``is_early`` where something may change before the request."""
         auxiliary: Cells | None = None
         if node.auxiliary is not None:
             auxiliary = self._kept(node.auxiliary)
-        target = self.handed(self._target(node, is_early=is_early))
+        target = self._memory.handed(self._target(node, is_early=is_early))
         parts: list[Argument] = [Constant(node.kind), target, Constant(None)]
         if auxiliary is not None:
-            self.refer(auxiliary)
-            parts[2] = self.handed(Block(auxiliary.type))
+            self._memory.refer(auxiliary)
+            parts[2] = self._memory.handed(Block(auxiliary.type))
         parts.append(self._optional(node.angle))
         parts.append(self._values(node.values, is_early=is_early))
         parts.append(Items(tuple(Constant(one) for one in node.criteria)))
@@ -71,8 +81,8 @@ class Motions(Calls):
     def _target(self, node: ast.Motion, *, is_early: bool) -> Value:
         """The target; a copy where it could be changed before the request is made."""
         if is_early or self._disturbs((*_parts_of_values(node.values), node.angle)):
-            return self.load(self._kept(node.target))
-        return self.value(node.target)
+            return self._memory.load(self._kept(node.target))
+        return self._expressions.value(node.target)
 
     def _disturbs(self, nodes: Iterable[ast.Expression | None]) -> bool:
         """Whether variables may change when these are evaluated.
@@ -87,66 +97,72 @@ class Motions(Calls):
 
     def _is_asked(self, node: ast.Variable) -> bool:
         """Whether the world may be asked for a variable."""
-        found = self.context.unit.found(node.name)
+        found = self._context.unit.found(node.name)
         if found is None:
             return True
-        place = self.context.variables.get(found.symbol)
+        place = self._context.variables.get(found.symbol)
         return isinstance(place, Remote) or (
-            place is None and found.symbol not in self.context.places
+            place is None and found.symbol not in self._context.tables.places
         )
 
     def _kept(self, node: ast.Expression) -> Cells:
         """A copy of a value, in the frame."""
-        behind = self.writer.here
-        value = self.value(node)
+        behind = self._writer.here
+        value = self._expressions.value(node)
         if not isinstance(value, Block | Scalar):
-            raise self.refuse("a motion goes to what is no position")
+            raise self._emitter.refuse("a motion goes to what is no position")
         return self._kept_value(value, behind)
 
     def _kept_value(self, value: Block | Scalar, behind: int) -> Cells:
         """A copy of what has been pushed since the code was ``behind`` instructions long."""
-        kept = Cells(self.writer.temporary(value.type), value.type)
-        self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(kept.type))
-        self.emit(*((Op.COPY, self.number(kept.type)) if isinstance(value, Block) else (Op.STORE,)))
+        kept = Cells(self._writer.temporary(value.type), value.type)
+        self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
+        self._emit(
+            *(
+                (Op.COPY, self._emitter.number(kept.type))
+                if isinstance(value, Block)
+                else (Op.STORE,)
+            )
+        )
         return kept
 
     def _optional(self, node: ast.Expression | None) -> Argument:
         if node is None:
             return Constant(None)
-        self.real(node)
-        return Input(Mode.IN, self.number(REAL))
+        self._expressions.real(node)
+        return Input(Mode.IN, self._emitter.number(REAL))
 
     def _values(self, nodes: tuple[ast.Assignment, ...], *, is_early: bool = False) -> Items:
         """What stands behind WITH [SPL-08]; ``is_early`` as for `_move`."""
         found: list[Argument] = []
         for number, node in enumerate(nodes, 1):
-            place = self.place(node.target)
+            place = self._designators.place(node.target)
             if not isinstance(place, Remote):
-                raise self.unlinked("WITH gives a value to what is no system variable")
-            path = self.pushed_path(place)
-            behind = self.writer.here
-            value = self.value(node.value, place.type)
+                raise self._emitter.unlinked("WITH gives a value to what is no system variable")
+            path = self._memory.pushed_path(place)
+            behind = self._writer.here
+            value = self._expressions.value(node.value, place.type)
             if isinstance(value, Block) and (
                 is_early or self._disturbs(_parts_of_values(nodes[number:]))
             ):
                 kept = self._kept_value(value, behind)
-                behind = self.writer.here
-                self.refer(kept)
-            found.append(Items((path, self.remote_value(place.type, value, behind))))
+                behind = self._writer.here
+                self._memory.refer(kept)
+            found.append(Items((path, self._memory.remote_value(place.type, value, behind))))
         return Items(tuple(found))
 
     def emily_motion(self, node: ast.EmilyMotion) -> None:
         """MOVE_EMI."""
         parts = [self._word(node.device), self._word(node.action)]
-        self.ask("MoveEmily", *parts, self._optional(node.number))
+        self._emitter.ask("MoveEmily", *parts, self._optional(node.number))
 
     def _word(self, node: ast.Expression) -> Argument:
-        value = self.value(node)
+        value = self._expressions.value(node)
         if isinstance(value, Block):
-            value = self.as_view(value)
+            value = self._memory.as_view(value)
         if isinstance(value, Scalar):
-            raise self.fail("argument")
-        return self.handed(value)
+            raise self._emitter.fail("argument")
+        return self._memory.handed(value)
 
     # ----------------------------------------------------------------------- spline blocks
 
@@ -155,21 +171,23 @@ class Motions(Calls):
         places = enumerate(node.items, 1)
         last = max((at for at, one in places if self._disturbs(_parts_of(one))), default=0)
         values = self._values(node.values, is_early=last > 0)
-        first, items = self.context.line, []
+        first, items = self._context.line, []
         for at, item in enumerate(node.items, 1):
-            self._go_on_at(self.context.unit.line(item), end)
+            self._go_on_at(self._context.unit.line(item), end)
             items.append(self._item(item, is_early=at < last))
         self._go_on_at(first, end)
         is_approximated = Constant(node.is_approximated)
-        self.ask("MoveSpline", Constant(node.keyword), values, Items(tuple(items)), is_approximated)
+        self._emitter.ask(
+            "MoveSpline", Constant(node.keyword), values, Items(tuple(items)), is_approximated
+        )
 
     def _go_on_at(self, line: int, end: Label) -> None:
-        if line != self.context.line:
-            self.context.line = line
-            self.emit(Op.AT, line, end)
+        if line != self._context.line:
+            self._context.line = line
+            self._emit(Op.AT, line, end)
 
     def _item(self, node: _Item, *, is_early: bool) -> Record:
-        line = self.context.line
+        line = self._context.line
         match node:
             case ast.Motion():
                 return Record("Move", line, self._move(node, is_early=is_early))
@@ -184,59 +202,55 @@ class Motions(Calls):
                 value = self._optional(node.value)
                 return Record("SplineRange", 0, (*words, value, Constant(False)))
         place = self._optional(node.place)
-        condition = self.handed_over(node.condition, CodeKind.CONDITION)
+        condition = self.deferred(node.condition, CodeKind.CONDITION)
         return Record("SplineStop", 0, (place, Constant(node.on_start), condition))
 
     # ----------------------------------------------------------------------- triggers
 
     def trigger(self, node: ast.Trigger) -> None:
         """TRIGGER."""
-        self.ask("SetTrigger", *self._set_trigger(node))
+        self._emitter.ask("SetTrigger", *self._set_trigger(node))
 
     def _set_trigger(self, node: ast.Trigger) -> tuple[Argument, ...]:
         place = self._optional(node.place)
         delay = self._optional(node.delay)
         output = self._output(node.action)
         priority = self._optional_integer(node.priority)
-        action = self.handed_over(node.action, CodeKind.ACTION)
+        action = self.deferred(node.action, CodeKind.ACTION)
         words = Constant(node.place_kind), place, Constant(node.on_start)
         return (*words, delay, action, output, priority)
 
     def _optional_integer(self, node: ast.Expression | None) -> Argument:
         if node is None:
             return Constant(None)
-        self.integer(node)
-        return Input(Mode.IN, self.number(INT))
+        self._expressions.integer(node)
+        return Input(Mode.IN, self._emitter.number(INT))
 
-    def handed_over(
-        self,
-        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
-        kind: CodeKind,
-    ) -> Handle:
+    def deferred(self, node: Deferred, kind: CodeKind) -> Handle:
         """An action or a condition, as a part of a request."""
-        return Handle(self.context.project.handed_over(self.context, node, kind))
+        return Handle(self._context.shared.codes.deferred(self._context, node, kind))
 
     def _output(self, action: ast.Assignment | ast.CallStatement) -> Argument:
         """The assignment of a literal to a system variable with literal indices, if it is one."""
         if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return Constant(None)
-        before = self.writer.here
-        place = self.place(action.target)
+        before = self._writer.here
+        place = self._designators.place(action.target)
         if not isinstance(place, Remote):
             self._forget(place, before)
             return Constant(None)
         value = self._known(action.value, place.type)
-        path = self.pushed_path(place)
+        path = self._memory.pushed_path(place)
         return Items((path, self._as_part(value)))
 
     def _forget(self, place: Place, behind: int) -> None:
         """Take a place from the stack that was only looked for; its index may be wrong."""
         if isinstance(place, Pushed):
-            kept = Cells(self.writer.temporary(place.type), place.type)
-            self.writer.insert(behind, Op.REF_LOCAL, kept.offset, self.number(kept.type))
-            self.emit(Op.COPY, self.number(kept.type))
+            kept = Cells(self._writer.temporary(place.type), place.type)
+            self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
+            self._emit(Op.COPY, self._emitter.number(kept.type))
         elif isinstance(place, PushedView):
-            self.writer.cut(behind)
+            self._writer.cut(behind)
 
     def _known(self, node: ast.Expression, type_: Type) -> Known:
         """The value of a literal as a system variable receives it."""
@@ -245,9 +259,9 @@ class Motions(Calls):
             is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
             return value if is_open else converted(value, type_)
         except Fault as error:
-            raise self.fail(error.slug) from None
+            raise self._emitter.fail(error.slug) from None
         except LinkError as error:
-            raise self.unlinked(str(error)) from None
+            raise self._emitter.unlinked(str(error)) from None
 
     def _literal(self, node: ast.Expression, type_: Type) -> Known:
         match node:
@@ -266,7 +280,7 @@ class Motions(Calls):
             case ast.BoolLiteral():
                 return node.value
             case ast.EnumConstant():
-                enumeration = self.context.unit.checked.enumerations.get(node, type_)
+                enumeration = self._context.unit.checked.enumerations.get(node, type_)
                 if isinstance(enumeration, Enumeration):
                     return constant(enumeration, node.name.key)
                 raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
@@ -274,28 +288,28 @@ class Motions(Calls):
 
     def _as_part(self, value: Known) -> Argument:
         if isinstance(value, EnumValue):
-            return Choice(self.number(value.type), value.index)
+            return Choice(self._emitter.number(value.type), value.index)
         if isinstance(value, int | float | str):
             return Constant(value)
-        raise self.refuse("a text is the output of a trigger")
+        raise self._emitter.refuse("a text is the output of a trigger")
 
     # ----------------------------------------------------------------------- interrupts
 
     def interrupt_declaration(self, node: ast.InterruptDeclaration) -> None:
         """INTERRUPT DECL [INT-01]."""
         number = self._optional_integer(node.number)
-        condition = self.handed_over(node.condition, CodeKind.CONDITION)
-        action = self.handed_over(node.action, CodeKind.ACTION)
-        self.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
+        condition = self.deferred(node.condition, CodeKind.CONDITION)
+        action = self.deferred(node.action, CodeKind.ACTION)
+        self._emitter.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
 
     def interrupt_switch(self, node: ast.InterruptSwitch) -> None:
         """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
         number = self._optional_integer(node.number)
-        self.ask("SwitchInterrupt", Constant(node.action), number)
+        self._emitter.ask("SwitchInterrupt", Constant(node.action), number)
 
     def brake(self, node: ast.Brake) -> None:
         """BRAKE [INT-09]."""
-        self.ask("BrakeArm", Constant(node.mode))
+        self._emitter.ask("BrakeArm", Constant(node.mode))
 
     # ----------------------------------------------------------------------- cyclic signals
 
@@ -304,20 +318,20 @@ class Motions(Calls):
         source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
         name = self._signal_name(source)
         numbers = [self._optional(one) for one in (node.delay, node.minimum, node.maximum)]
-        cycle = self.handed_over(node.assignment, CodeKind.ACTION)
+        cycle = self.deferred(node.assignment, CodeKind.ACTION)
         words = Constant(node.keyword), Constant(True), Constant(name)
-        self.ask("SwitchSignal", *words, cycle, *numbers)
+        self._emitter.ask("SwitchSignal", *words, cycle, *numbers)
 
     def signal_off(self, node: ast.SignalOff) -> None:
         """ANIN OFF, ANOUT OFF, DIGIN OFF."""
         words = Constant(node.keyword), Constant(False), Constant(self._signal_name(node.variable))
-        self.ask("SwitchSignal", *words, *[Constant(None)] * 4)
+        self._emitter.ask("SwitchSignal", *words, *[Constant(None)] * 4)
 
     def _signal_name(self, node: ast.Expression) -> str:
         """The signal that is meant, by its name here."""
-        name = signal_name(self.context.unit, node)
+        name = signal_name(self._context.unit, node)
         if name is None:
-            raise self.unlinked("nothing tells which signal is meant")
+            raise self._emitter.unlinked("nothing tells which signal is meant")
         return name
 
 

@@ -56,8 +56,17 @@ __all__ = ["BY_TEXT", "PredefinedCalls"]
 BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 
 
-class PredefinedCalls(Expressions):
+class PredefinedCalls:
     """Makes the code of calls of predefined functions."""
+
+    def __init__(self, expressions: Expressions) -> None:
+        self._expressions = expressions
+        self._emitter = expressions.emitter
+        self._context = expressions.emitter.context
+        self._writer = expressions.emitter.writer
+        self._emit = expressions.emitter.emit
+        self._memory = expressions.memory
+        self._designators = expressions.designators
 
     def predefined(self, node: ast.Call, *, is_value: bool) -> Value | None:
         """Call a function; gives its result, ``None`` where it has none."""
@@ -70,37 +79,37 @@ class PredefinedCalls(Expressions):
         ]
         result = function.result
         if result == UNKNOWN and is_value:
-            raise self.refuse(str(untyped_result(name)))
+            raise self._emitter.refuse(str(untyped_result(name)))
         if is_builtin and not _fits(node, function.parameters, function.has_more):
-            raise self.fail("argument")
+            raise self._emitter.fail("argument")
         if result is None or result == UNKNOWN:
             self._cross(name, parts, None, is_builtin=is_builtin)
             return None
-        closed = self.closed(result)
-        number = self.number(closed)
+        closed = self._emitter.closed(result)
+        number = self._emitter.number(closed)
         if isinstance(closed, Plain):
             self._cross(name, parts, number, is_builtin=is_builtin)
             return Scalar(closed)
-        kept = Cells(self.writer.temporary(closed), closed)
-        self.refer(kept)
+        kept = Cells(self._writer.temporary(closed), closed)
+        self._memory.refer(kept)
         self._cross(name, parts, number, is_builtin=is_builtin)
-        self.refer(kept)
+        self._memory.refer(kept)
         return Block(closed)
 
     def _cross(
         self, name: str, parts: list[Argument], result: int | None, *, is_builtin: bool
     ) -> None:
-        tables = self.context.tables
+        tables = self._context.tables
         if not is_builtin:
             assert name in WORLD, "what does not compute needs the world"
             ask = Ask("Invoke", (Constant(name), Items(tuple(parts))), result)
-            self.emit(Op.ASK, tables.ask(ask))
+            self._emit(Op.ASK, tables.ask(ask))
             return
         builtin = Builtin(name, tuple(parts), result)
         reason = unlike(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
         if reason is not None:
-            raise self.refuse(f"{name}: {reason}")
-        self.emit(Op.BUILTIN, tables.builtin(builtin))
+            raise self._emitter.refuse(f"{name}: {reason}")
+        self._emit(Op.BUILTIN, tables.builtin(builtin))
 
     def _argument(
         self,
@@ -117,15 +126,15 @@ class PredefinedCalls(Expressions):
             is_out, type_ = parameter.is_out, parameter.type
         else:
             is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
-        if is_out and is_variable(self.context.unit, argument):
-            return self._changed(self.place(argument))
+        if is_out and is_variable(self._context.unit, argument):
+            return self._changed(self._designators.place(argument))
         if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
-            return self.handed(Text(letters(self._name_to_find(argument.text))))
+            return self._memory.handed(Text(letters(self._name_to_find(argument.text))))
         value = self._given(argument, type_, is_builtin=is_builtin)
         if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
-            self.convert(value, REAL)
+            self._memory.convert(value, REAL)
             value = Scalar(REAL)
-        return self.handed(value)
+        return self._memory.handed(value)
 
     def _name_to_find(self, text: str) -> str:
         """A name as the machine finds it, which knows no IMPORT: what it stands for [ADV-05].
@@ -133,30 +142,30 @@ class PredefinedCalls(Expressions):
         Where the name of that means something else here, the text stays, and finds nothing.
         """
         root = text.partition("[")[0].partition(".")[0].strip()
-        answer = self.context.scope.find(Space.VALUE, root.upper())
+        answer = self._context.scope.find(Space.VALUE, root.upper())
         if not isinstance(answer, Found) or answer.symbol.kind is not Kind.IMPORT:
             return text
         try:
-            meant = self.context.program.declaration(answer).symbol
+            meant = self._context.program.declaration(answer).symbol
         except LinkError:
             return text
-        places, data = list(self.context.places), self.context.tables.data
-        if meant not in places or any(one.key == meant.key for one in self.context.variables):
+        places, data = list(self._context.tables.places), self._context.tables.data
+        if meant not in places or any(one.key == meant.key for one in self._context.variables):
             return text
         same = [number for number, one in enumerate(data) if one.name.upper() == meant.key]
-        module = PurePosixPath(self.context.unit.module.path).stem.upper()
+        module = PurePosixPath(self._context.unit.module.path).stem.upper()
         own = [number for number in same if data[number].module.upper() == module]
         seen = own or [number for number in same if data[number].is_global]
         return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
 
     def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
         """The value of an argument :IN; for a text see `interp.values.builtins.reads_text`."""
-        if not (is_builtin and reads_text(type_) and is_variable(self.context.unit, argument)):
-            return self.value(argument, type_)
-        place = self.place(argument)
+        if not (is_builtin and reads_text(type_) and is_variable(self._context.unit, argument)):
+            return self._expressions.value(argument, type_)
+        place = self._designators.place(argument)
         if isinstance(place, FormalView) and is_view_of(place, CHAR, 1):
-            return self.view(place, may_be_missing=True)
-        return self.load(place)
+            return self._memory.view(place, may_be_missing=True)
+        return self._memory.load(place)
 
     def _changed(self, place: Place) -> Argument:
         if isinstance(place, Remote):
@@ -167,27 +176,27 @@ class PredefinedCalls(Expressions):
         elif isinstance(place, Pushed | PushedView):
             through = place.through
         if isinstance(place, FormalView | PushedView):
-            given = self.handed(self.view(place))
+            given = self._memory.handed(self._memory.view(place))
         else:
-            self.refer(place)
-            given = self.handed(Block(place.type))
+            self._memory.refer(place)
+            given = self._memory.handed(Block(place.type))
         assert isinstance(given, Input), "it is on the stack"
         return Changed(given, through)
 
     def _changed_remote(self, place: Remote) -> Argument:
         """A copy of a system variable, which is written back if it has changed."""
-        behind = self.writer.here
-        value = self.read(place)
+        behind = self._writer.here
+        value = self._memory.read(place)
         assert isinstance(value, Scalar | Block), "what is read has a known type"
-        kept = Cells(self.writer.temporary(value.type), value.type)
+        kept = Cells(self._writer.temporary(value.type), value.type)
         if isinstance(value, Scalar):
-            self.emit(Op.STORE_LOCAL, kept.offset)
+            self._emit(Op.STORE_LOCAL, kept.offset)
         else:
-            self.refer_below(kept, behind)
-            self.emit(Op.COPY, self.number(value.type))
-        path = self.pushed_path(place)
-        self.refer(kept)
-        return Changed(Input(Mode.REF, self.number(value.type)), None, path)
+            self._memory.refer_below(kept, behind)
+            self._emit(Op.COPY, self._emitter.number(value.type))
+        path = self._memory.pushed_path(place)
+        self._memory.refer(kept)
+        return Changed(Input(Mode.REF, self._emitter.number(value.type)), None, path)
 
 
 def _paired(

@@ -12,10 +12,9 @@ from grammar.syntax import ast
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
-from interp.bytecode.compiler.array_bounds import Sizes
-from interp.bytecode.compiler.calls import Binding, Formals, formals_of
+from interp.bytecode.compiler.calls import Formals, formals_of
 from interp.bytecode.compiler.code_writer import Writer
-from interp.bytecode.compiler.context import Context, Refusal
+from interp.bytecode.compiler.context import Binding, Context, Deferred, Refusal, Shared
 from interp.bytecode.compiler.data import declare_data, initial_values
 from interp.bytecode.compiler.places import (
     Cells,
@@ -30,7 +29,6 @@ from interp.bytecode.compiler.places import (
 )
 from interp.bytecode.compiler.predefined_calls import BY_TEXT
 from interp.bytecode.compiler.statements import Statements
-from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.program import CodeKind, Mode, Program
 from interp.bytecode.verifier.verify import measured
 from interp.program.load import CheckedProgram, Routine
@@ -70,21 +68,18 @@ class Project:
     """One program that is compiled."""
 
     def __init__(self, program: CheckedProgram) -> None:
-        self.program = program
-        self.tables = Tables()
-        self.refusals: dict[Refusal, None] = {}
-        self.sizes = Sizes()
+        self._shared = Shared(program, self)
+        self._program = program
+        self._tables = self._shared.tables
         self._codes: list[Writer | None] = []
         self._numbers: dict[tuple[Symbol, tuple[Binding, ...]], int] = {}
         self._todo: deque[tuple[int, Routine, tuple[Binding, ...]]] = deque()
 
     def compiled(self, starts: Sequence[Routine]) -> Compiled:
         """The whole program."""
-        declare_data(self.program, self.tables)
-        main = self.program.main
-        scope = self.program.project.scope(main.module)
-        writer = Writer(self.tables, "", CodeKind.ROUTINE, "", 0)
-        initial = initial_values(Context(self, main, scope, writer), self.tables)
+        declare_data(self._program, self._tables)
+        main = self._program.main
+        initial = initial_values(self._shared)
         numbers: dict[Symbol, int] = {
             routine.table.routine: self.code_of(routine, ()) for routine in starts
         }
@@ -93,8 +88,8 @@ class Project:
         while self._todo:
             number, routine, bindings = self._todo.popleft()
             self._codes[number] = self._routine(number, routine, bindings)
-        tables = self.tables
-        codes = tuple(one.code(self.sizes) for one in self._codes if one is not None)
+        tables = self._tables
+        codes = tuple(one.code(self._shared.sizes) for one in self._codes if one is not None)
         program = Program(
             tuple(tables.types),
             tuple(tables.texts),
@@ -104,7 +99,7 @@ class Project:
             initial,
             codes,
         )
-        return Compiled(measured(program), tuple(self.refusals), numbers)
+        return Compiled(measured(program), tuple(self._shared.refusals), numbers)
 
     # ----------------------------------------------------------------------- routines
 
@@ -123,15 +118,15 @@ class Project:
     def _routine(self, number: int, routine: Routine, bindings: tuple[Binding, ...]) -> Writer:
         unit = routine.unit
         line = unit.line(routine.node)
-        writer = Writer(self.tables, routine.name, CodeKind.ROUTINE, unit.module.path, line)
-        context = Context(self, unit, routine.scope, writer, line=line, number=number)
-        if self.tables.cells + cells_of_routine(self.program, routine) > MOST_CELLS:
-            writer.emit(Op.UNLINKED, self.tables.text(str(too_large(routine))))
+        writer = Writer(self._tables, routine.name, CodeKind.ROUTINE, unit.module.path, line)
+        context = Context(self._shared, unit, routine.scope, writer, line=line, number=number)
+        if self._tables.cells + cells_of_routine(self._program, routine) > MOST_CELLS:
+            writer.emit(Op.UNLINKED, self._tables.text(str(too_large(routine))))
             return writer
-        result = self.program.result_of(routine)
+        result = self._program.result_of(routine)
         if result is not None:
             self._give(context, result)
-        formals = formals_of(routine, self.program.type_of)
+        formals = formals_of(routine, self._program.type_of)
         for place, binding in enumerate(bindings):
             self._formal(context, formals, place, binding)
         self._declare(context, routine, {found.symbol for found in formals.found})
@@ -140,9 +135,9 @@ class Project:
 
     def _give(self, context: Context, result: Type) -> None:
         """What a function gives: a value, or something put where a hidden parameter leads."""
-        context.result = self.tables.closed(result)
+        context.result = self._tables.closed(result)
         if isinstance(context.result, Plain):
-            context.writer.result = self.tables.number(result)
+            context.writer.result = self._tables.number(result)
         else:
             context.target = context.writer.parameter("%result", Mode.REF, context.result)
 
@@ -158,11 +153,11 @@ class Project:
             return
         type_, is_in = formals.types[place], formals.is_in[place]
         if isinstance(type_, Array) and (not is_in or None in type_.sizes):
-            element, count = self.tables.closed(type_.element), len(type_.sizes)
+            element, count = self._tables.closed(type_.element), len(type_.sizes)
             offset = writer.parameter(symbol.name, Mode.VIEW, element, count)
             context.variables[symbol] = FormalView(offset, element, count, (context.number, place))
             return
-        closed = self.tables.closed(type_)
+        closed = self._tables.closed(type_)
         offset = writer.parameter(symbol.name, Mode.IN if is_in else Mode.REF, closed)
         context.variables[symbol] = Cells(offset, closed) if is_in else Formal(offset, closed)
 
@@ -175,35 +170,30 @@ class Project:
                 found = context.unit.found(declarator.name)
                 if found is None or found.symbol in formals or found.symbol in context.variables:
                     continue
-                type_ = self.program.type_of(found)
+                type_ = self._program.type_of(found)
                 if not is_complete(type_):
                     continue
-                closed = self.tables.closed(type_)
+                closed = self._tables.closed(type_)
                 offset = context.writer.local(found.symbol.name, closed)
                 context.variables[found.symbol] = Cells(offset, closed)
 
-    # ----------------------------------------------------------------------- handed over
+    # ----------------------------------------------------------------------- deferred
 
-    def handed_over(
-        self,
-        owner: Context,
-        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
-        kind: CodeKind,
-    ) -> int:
+    def deferred(self, owner: Context, node: Deferred, kind: CodeKind) -> int:
         """The number of an action or a condition, which uses variables of its owner."""
         number = self._reserved()
         line = owner.unit.line(node)
         file = owner.unit.module.path
         name = owner.writer.name
-        writer = Writer(self.tables, name, kind, file, line, owner.number)
-        context = Context(self, owner.unit, owner.scope, writer, line=line, number=number)
+        writer = Writer(self._tables, name, kind, file, line, owner.number)
+        context = Context(self._shared, owner.unit, owner.scope, writer, line=line, number=number)
         for symbol in self._used(owner, node):
             context.variables[symbol] = self._captured(writer, symbol, owner.variables[symbol])
         made = Statements(context)
         if isinstance(node, ast.Assignment | ast.CallStatement | ast.Brake):
             made.action(node)
         else:
-            writer.result = self.tables.number(BOOL)
+            writer.result = self._tables.number(BOOL)
             made.condition(node)
         self._codes[number] = writer
         return number

@@ -13,9 +13,12 @@ from typing import Any
 from grammar.semantics.types import INT, REAL
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Label
-from interp.bytecode.compiler.context import Ended
+from interp.bytecode.compiler.context import Context
 from interp.bytecode.compiler.control_flow import ControlFlow
+from interp.bytecode.compiler.emitter import Emitter, Ended
+from interp.bytecode.compiler.motions import Motions
 from interp.bytecode.compiler.places import Block, Cells, Hole, Remote, Scalar
 from interp.bytecode.program import CodeKind, Constant, Input, Mode
 from interp.values.faults import FAULTS
@@ -23,8 +26,22 @@ from interp.values.faults import FAULTS
 __all__ = ["Statements"]
 
 
-class Statements(ControlFlow):
-    """Makes the code of statements."""
+class Statements:
+    """Makes the code of statements, and of whole code objects."""
+
+    def __init__(self, context: Context) -> None:
+        emitter = Emitter(context)
+        self._calls = Calls(emitter)
+        expressions = self._calls.expressions
+        self.motions = Motions(expressions)
+        self.flow = ControlFlow(expressions, self.statement)
+        self._expressions = expressions
+        self._emitter = expressions.emitter
+        self._context = expressions.emitter.context
+        self._writer = expressions.emitter.writer
+        self._emit = expressions.emitter.emit
+        self._memory = expressions.memory
+        self._designators = expressions.designators
 
     # ----------------------------------------------------------------------- routines
 
@@ -34,33 +51,33 @@ class Statements(ControlFlow):
             self._initialise(node)
         except Ended:
             return
-        self.block(node.body)
-        if self.context.result is None:
-            self.emit(Op.RETURN)
+        self.flow.block(node.body)
+        if self._context.result is None:
+            self._emit(Op.RETURN)
         else:
-            self.emit(Op.FAIL, FAULTS["no_result"].code)
+            self._emit(Op.FAIL, FAULTS["no_result"].code)
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
         """What an interrupt, a trigger or a cyclic signal does."""
         self.statement(node)
-        self.emit(Op.RETURN)
+        self._emit(Op.RETURN)
 
     def condition(self, node: ast.Expression) -> None:
         """What an interrupt or a conditional stop waits for."""
-        with suppress(Ended), self.writer.temporaries():
-            self.truth(node)
-            self.emit(Op.RETURN_VALUE)
+        with suppress(Ended), self._writer.temporaries():
+            self._expressions.truth(node)
+            self._emit(Op.RETURN_VALUE)
 
     def _initialise(self, node: ast.Routine) -> None:
         """Initial values of local data."""
         for statement in node.body:
             if isinstance(statement, ast.VariableDeclaration):
                 for declarator in statement.declarators:
-                    found = self.context.unit.found(declarator.name)
+                    found = self._context.unit.found(declarator.name)
                     if declarator.value is not None and found is not None:
-                        place = self.context.variables.get(found.symbol)
+                        place = self._context.variables.get(found.symbol)
                         if isinstance(place, Cells):
-                            self.assign(place, declarator.value)
+                            self._expressions.assign(place, declarator.value)
 
     # ----------------------------------------------------------------------- statements
 
@@ -70,75 +87,83 @@ class Statements(ControlFlow):
         if rule is None:
             return
         end = Label()
-        with self.writer.temporaries():
-            self.begin(node, end)
+        with self._writer.temporaries():
+            self.flow.begin(node, end)
             with suppress(Ended):
                 rule(self, node, end)
-        self.writer.place(end)
+        self._writer.place(end)
 
     def _assignment(self, node: ast.Assignment, _end: Label) -> None:
-        place = self.place(node.target)
+        place = self._designators.place(node.target)
         match place:
             case Remote(path=("$CYCFLAG", int() | Hole())):
-                number = self.pushed_path(place).parts[1]
-                condition = self.handed_over(node.value, CodeKind.CONDITION)
-                self.ask("SetCyclicFlag", number, condition)
+                number = self._memory.pushed_path(place).parts[1]
+                condition = self.motions.deferred(node.value, CodeKind.CONDITION)
+                self._emitter.ask("SetCyclicFlag", number, condition)
             case _:
-                self.tell(self.assign(place, node.value))
+                self._memory.tell(self._expressions.assign(place, node.value))
 
     def _call(self, node: ast.CallStatement, _end: Label) -> None:
-        value = self.called(node.call, is_value=False)
+        value = self._calls.called(node.call, is_value=False)
         if isinstance(value, Scalar):
-            self.emit(Op.DROP)
+            self._emit(Op.DROP)
         elif isinstance(value, Block):  # nothing takes the reference
-            self.emit(Op.CLEAR, self.number(value.type))
+            self._emit(Op.CLEAR, self._emitter.number(value.type))
 
     def _proceed(self, _node: ast.OnErrorProceed, _end: Label) -> None:
-        self.emit(Op.PROCEED)
+        self._emit(Op.PROCEED)
 
     def _confirm(self, node: ast.Confirm, _end: Label) -> None:
-        self.integer(node.number)
-        self.ask("Confirm", Input(Mode.IN, self.number(INT)))
+        self._expressions.integer(node.number)
+        self._emitter.ask("Confirm", Input(Mode.IN, self._emitter.number(INT)))
 
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
         """Asked before each look at the condition, so that time passes between two [CTL-12]."""
         test, again = Label(), Label()
-        self.ask("Poll", Constant(True))
-        self.writer.place(test)
-        self.unless(node.condition, again)
-        self.emit(Op.JUMP, end)
-        self.writer.place(again)
-        self.ask("Poll", Constant(False))
-        self.emit(Op.JUMP, test)
+        self._emitter.ask("Poll", Constant(True))
+        self._writer.place(test)
+        self._expressions.unless(node.condition, again)
+        self._emit(Op.JUMP, end)
+        self._writer.place(again)
+        self._emitter.ask("Poll", Constant(False))
+        self._emit(Op.JUMP, test)
 
     def _wait_seconds(self, node: ast.WaitSeconds, _end: Label) -> None:
-        self.real(node.duration)
-        self.ask("Wait", Input(Mode.IN, self.number(REAL)))
+        self._expressions.real(node.duration)
+        self._emitter.ask("Wait", Input(Mode.IN, self._emitter.number(REAL)))
 
 
 _Rule = Callable[[Statements, Any, Label], None]
 
 
 def _plain(request: str) -> _Rule:
-    return lambda self, _node, _end: self.ask(request)
+    return lambda self, _node, _end: self._emitter.ask(request)
 
 
-def _without_end(rule: Callable[[Statements, Any], None]) -> _Rule:
-    return lambda self, node, _end: rule(self, node)
+def _flow(rule: Callable[[ControlFlow, Any, Label], None]) -> _Rule:
+    return lambda self, node, end: rule(self.flow, node, end)
+
+
+def _motion(rule: Callable[[Motions, Any], None]) -> _Rule:
+    return lambda self, node, _end: rule(self.motions, node)
+
+
+def _spline_block(self: Statements, node: ast.SplineBlock, end: Label) -> None:
+    self.motions.spline_block(node, end)
 
 
 _RULES: Mapping[type[Any], _Rule] = {
     ast.Assignment: Statements._assignment,
     ast.CallStatement: Statements._call,
-    ast.If: Statements.if_statement,
-    ast.For: Statements.for_loop,
-    ast.While: Statements.while_loop,
-    ast.Repeat: Statements.repeat_loop,
-    ast.Loop: Statements.endless_loop,
-    ast.Switch: Statements.switch,
-    ast.Exit: Statements.exit_loop,
-    ast.Goto: Statements.goto,
-    ast.Return: Statements.return_statement,
+    ast.If: _flow(ControlFlow.if_statement),
+    ast.For: _flow(ControlFlow.for_loop),
+    ast.While: _flow(ControlFlow.while_loop),
+    ast.Repeat: _flow(ControlFlow.repeat_loop),
+    ast.Loop: _flow(ControlFlow.endless_loop),
+    ast.Switch: _flow(ControlFlow.switch),
+    ast.Exit: _flow(ControlFlow.exit_loop),
+    ast.Goto: _flow(ControlFlow.goto),
+    ast.Return: _flow(ControlFlow.return_statement),
     ast.Halt: _plain("Halt"),
     ast.Continue: _plain("Continue"),
     ast.Resume: _plain("Resume"),
@@ -146,13 +171,13 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Confirm: Statements._confirm,
     ast.WaitFor: Statements._wait_for,
     ast.WaitSeconds: Statements._wait_seconds,
-    ast.SignalOn: _without_end(Statements.signal_on),
-    ast.SignalOff: _without_end(Statements.signal_off),
-    ast.Motion: _without_end(Statements.motion),
-    ast.EmilyMotion: _without_end(Statements.emily_motion),
-    ast.SplineBlock: Statements.spline_block,
-    ast.Brake: _without_end(Statements.brake),
-    ast.InterruptDeclaration: _without_end(Statements.interrupt_declaration),
-    ast.InterruptSwitch: _without_end(Statements.interrupt_switch),
-    ast.Trigger: _without_end(Statements.trigger),
+    ast.SignalOn: _motion(Motions.signal_on),
+    ast.SignalOff: _motion(Motions.signal_off),
+    ast.Motion: _motion(Motions.motion),
+    ast.EmilyMotion: _motion(Motions.emily_motion),
+    ast.SplineBlock: _spline_block,
+    ast.Brake: _motion(Motions.brake),
+    ast.InterruptDeclaration: _motion(Motions.interrupt_declaration),
+    ast.InterruptSwitch: _motion(Motions.interrupt_switch),
+    ast.Trigger: _motion(Motions.trigger),
 }

@@ -142,8 +142,8 @@ class _Lowering:
         name = table.get((form["mark"] or form["open"], self._kind(form["of"]), form["close"]))
         if name is None:
             raise ValueError(f"{item} means nothing")
-        given = [operand for operand in (form["of"], form["count"]) if operand]
-        return EffectStep(verb, name, self._operands(*given), True)
+        names = [operand for operand in (form["of"], form["count"]) if operand]
+        return EffectStep(verb, name, self._operands(*names), True)
 
     def _kind(self, operand: str) -> str:
         return self._kinds.get(operand, "")
