@@ -15,7 +15,7 @@ from conformance.differential.construct_coverage import Counts, counted, languag
 from conformance.differential.divergence import Difference, Files, difference, prepared
 from conformance.differential.reduction import reduce_program
 from conformance.differential.runs import EXECUTORS, Prepared, available, trace_of
-from grammar.generation.programs.programs import seeded
+from grammar.generation.closed.programs import seeded
 from grammar.syntax.build import builder
 from interp.values.faults import LinkError
 from support.parallel.ordered_map import ordered_map

@@ -11,7 +11,7 @@ from conformance.differential.divergence import prepared
 from conformance.differential.fault_catalogue import Mutant, mutants
 from conformance.differential.runs import EXECUTORS, Factory, Prepared, trace_of
 from conformance.differential.traces import Fact
-from grammar.generation.programs.programs import seeded
+from grammar.generation.closed.programs import seeded
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.program import Instruction
 from interp.bytecode.vm.executor import Machine

@@ -1,6 +1,6 @@
 """Programs that move, made up: points in front of the arm, lines, arcs, blends, outputs, waits.
 
-Those of `conformance.differential` have points anywhere, and mostly end with a fault of the first.
+Those of `grammar.generation` have points anywhere, and mostly end with a fault of the first.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from random import Random
 from typing import Final
 
-from conformance.differential import Sample
+from grammar.generation.closed.programs import Sample
 
 __all__ = ["moving_program"]
 

@@ -1,6 +1,6 @@
 """What laws are about: a program with all that it is run with, and how it is run.
 
-Programs come from cases and from the generator of `conformance.differential`. A law changes a
+Programs come from cases and from `grammar.generation`. A law changes a
 program and runs both; `Program.modules` are its files as trees, `Program.written` puts trees back.
 """
 
@@ -12,10 +12,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final, Literal
 
-from conformance.differential import Sample
 from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.observation import Observation
 from conformance.suite.case import Case
+from grammar.generation.closed.programs import Sample
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source

@@ -9,12 +9,12 @@ from platform import node
 from random import Random
 from typing import Any, Final
 
-from conformance.differential import seeded
 from conformance.metamorphic import control_flow_laws, motion_laws, source_text_laws
 from conformance.metamorphic.law import Attempt, Law, run_law
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program
 from conformance.suite.case import Case
+from grammar.generation.closed.programs import seeded
 from interp.executors import available
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError

@@ -18,7 +18,7 @@ from typing import Any
 from grammar.check.batch import Wishes, checkup
 from grammar.check.context import Context
 from grammar.check.framework import CHECKS
-from grammar.generation.cells import write_cells
+from grammar.generation.cells.writing import write_cells
 from grammar.parser.tree import Tree
 from grammar.semantics.link import File, link
 from grammar.semantics.predefined import System

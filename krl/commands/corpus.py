@@ -109,7 +109,7 @@ def synth(
 
     The same size and seed give the same files everywhere. They are no evidence for any grammar.
     """
-    from grammar.generation.cells import write_cells
+    from grammar.generation.cells.writing import write_cells
     from krl.progress import progress_bar
 
     wanted = _bytes(size)

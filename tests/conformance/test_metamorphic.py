@@ -5,12 +5,12 @@ from random import Random
 
 import pytest
 
-from conformance.differential import Sample
 from conformance.metamorphic import Law, laws, motion_laws, record_of, run_law, try_laws
 from conformance.metamorphic.comparison import same_axes, same_effects, same_geometry, same_trace
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten
+from grammar.generation.closed.programs import Sample
 from grammar.syntax import ast
 
 COMPUTES = """\

@@ -17,7 +17,7 @@ from conformance import runner
 from conformance.differential import campaign
 from conformance.runner import CaseResult, Result, run_cases
 from conformance.suite.case import find_cases, selected
-from grammar.generation.cells import write_cells
+from grammar.generation.cells.writing import write_cells
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from krl.cli import main

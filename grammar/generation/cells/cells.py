@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from grammar.generation.cells.chance import Chance, Weighted
 from grammar.generation.cells.dialect import Generation, Letters, a_dialect, a_way_to_store
 from grammar.generation.cells.modules import Cell, Module, library, process, public_data, sequence
 from grammar.generation.cells.names import WORDS, Names, Writing
-from grammar.generation.cells.scope import Scope
 from grammar.generation.cells.special import (
     old_machine,
     painting,
@@ -26,6 +24,7 @@ from grammar.generation.cells.system import (
     submit,
     system_routines,
 )
+from grammar.generation.choices import SeededChoices, Weighted
 
 __all__ = ["File", "files"]
 
@@ -38,22 +37,20 @@ class File:
     data: bytes
 
 
-_MODULES: Weighted[Callable[[Cell], Module]] = Weighted(
-    [
-        (44.0, process),
-        (22.0, sequence),
-        (9.0, library),
-        (10.0, public_data),
-        (0.8, path),
-        (3.0, table_filler),
-        (2.0, search),
-        (1.0, splines),
-        (1.0, painting),
-        (1.5, serial),
-        (2.0, old_machine),
-    ]
+_MODULES = Weighted[Callable[[Cell], Module]](
+    (440, process),
+    (220, sequence),
+    (90, library),
+    (100, public_data),
+    (8, path),
+    (30, table_filler),
+    (20, search),
+    (10, splines),
+    (10, painting),
+    (15, serial),
+    (20, old_machine),
 )
-_WRITINGS = Weighted([(0.5, Writing.UPPER), (0.3, Writing.TYPED), (0.2, Writing.PLAIN)])
+_WRITINGS = Weighted((5, Writing.UPPER), (3, Writing.TYPED), (2, Writing.PLAIN))
 
 
 def files(seed: int, number: int) -> Iterator[File]:
@@ -62,18 +59,20 @@ def files(seed: int, number: int) -> Iterator[File]:
     ``seed`` and ``number`` alone decide what comes. A reader that stops early has programs whose
     every name is declared in what it got.
     """
-    chance = Chance(f"krl {seed} {number}")
-    dialect = a_dialect(chance)
-    writing = Writing.UPPER if dialect.generation is Generation.KRC1 else chance.draw(_WRITINGS)
-    names = Names(chance, WORDS[dialect.language], writing)
-    cell = Cell(chance, dialect, names, Scope())
-    root = f"{number:04}_{chance.pick(names.vocabulary.trades).lower()}/KRC"
+    choices = SeededChoices(f"krl {seed} {number}")
+    dialect = a_dialect(choices)
+    writing = (
+        Writing.UPPER if dialect.generation is Generation.KRC1 else choices.weighted(_WRITINGS)
+    )
+    names = Names(choices, WORDS[dialect.language], writing)
+    cell = Cell(choices, dialect, names)
+    root = f"{number:04}_{choices.pick(names.vocabulary.trades).lower()}/KRC"
     for folder, module in _modules(cell):
         yield from _stored(cell, f"{root}/{folder}", module)
 
 
 def _modules(cell: Cell) -> Iterator[tuple[str, Module]]:
-    chance = cell.chance
+    choices = cell.choices
     yield from controller(cell)
     yield "R1/System", globals_of_cell(cell)
     for module in system_routines(cell):
@@ -82,19 +81,19 @@ def _modules(cell: Cell) -> Iterator[tuple[str, Module]]:
     words = cell.names.vocabulary
     folders = [
         "R1/Program",
-        *(f"R1/Program/{one.capitalize()}" for one in chance.few(words.things, 3)),
+        *(f"R1/Program/{one.capitalize()}" for one in choices.few(words.things, 3)),
     ]
-    technology = f"R1/TP/{chance.pick(words.stations).capitalize()}Tech"
+    technology = f"R1/TP/{choices.pick(words.stations).capitalize()}Tech"
     for _ in range(2):
         yield technology, public_data(cell)
     yield technology, library(cell)
-    for _ in range(chance.between(8, 60)):
-        make = chance.draw(_MODULES)
+    for _ in range(choices.between(8, 60)):
+        make = choices.weighted(_MODULES)
         if make is splines and not cell.dialect.generation.is_krc4:
             make = search
         if make is old_machine and cell.dialect.generation.is_krc4:
             make = process
-        folder = technology if make in (library, public_data) else chance.pick(folders)
+        folder = technology if make in (library, public_data) else choices.pick(folders)
         yield folder, make(cell)
     yield "R1", cell_program(cell)
 
@@ -108,6 +107,6 @@ def _stored(cell: Cell, folder: str, module: Module) -> Iterator[File]:
                 name = name.upper()
             elif cell.dialect.letters is Letters.LOWER:
                 name = name.lower()
-            text = "\n".join(lines) + ("\n" if cell.chance.real() < 0.93 else "")
-            dialect = a_way_to_store(cell.dialect, cell.chance)
+            text = "\n".join(lines) + ("\n" if cell.choices.chance(93) else "")
+            dialect = a_way_to_store(cell.dialect, cell.choices)
             yield File(f"{folder}/{name}", dialect.stored(text))

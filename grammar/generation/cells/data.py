@@ -3,13 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
-from grammar.generation.cells.chance import Chance, Weighted
-from grammar.generation.cells.dialect import Dialect
-from grammar.generation.cells.expressions import constant_of
 from grammar.generation.cells.names import Names
-from grammar.generation.cells.points import pose
-from grammar.generation.cells.scope import Enumeration, Scope, Structure
+from grammar.generation.cells.style import E6AXIS, E6POS, FRAME
+from grammar.generation.choices import Choices, Weighted
+from grammar.generation.code import Style
+from grammar.generation.routines import (
+    constant_datum,
+    datum,
+    enumeration,
+    structure_definition,
+)
+from grammar.generation.scope import Scope
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    Array,
+    Enumeration,
+    Member,
+    Structure,
+    Type,
+)
 
 __all__ = ["Data"]
 
@@ -21,204 +38,102 @@ class Data:
     """
 
     def __init__(
-        self, chance: Chance, dialect: Dialect, names: Names, scope: Scope, *, is_global: bool
+        self, choices: Choices, style: Style, names: Names, scope: Scope, *, is_global: bool
     ) -> None:
         self.lines: list[str] = []
-        self._chance = chance
-        self._dialect = dialect
-        self._names = names
+        self.choices = choices
+        self.names = names
+        self._style = style
         self._scope = scope
-        self._global = "GLOBAL " if is_global else ""
+        self._is_global = is_global
 
     def some(self, count: int) -> None:
         """So many declarations of any kind."""
         for _ in range(count):
-            self._chance.draw(_DECLARATIONS)(self)
+            found = self.choices.weighted(_DECLARATIONS)(self)
+            if found is not None:
+                self.variable(found)
 
-    def _declare(self, kind: str, text: str) -> None:
-        """A declaration; DECL may be missing before predefined types [TYP-06]."""
-        is_short = kind in _PREDEFINED and self._chance.real() < 0.27
-        self.lines.append(f"{'' if is_short else 'DECL '}{self._global}{kind} {text}")
-
-    # -------------------------------------------------------------------------- variables
-
-    def variable(self, kind: str) -> str:
+    def variable(self, type_: Type) -> None:
         """A variable with its first value."""
-        chance, names, eq = self._chance, self._names, self._dialect.eq
-        name = names.variable(kind)
-        text = f"{name}{eq}{self._first(kind)}"
-        if kind in ("INT", "REAL", "BOOL") and chance.real() < 0.15:
-            other = names.variable(kind)
-            text += f",{other}{eq}{self._first(kind)}"
-            self._scope.add_variable(kind, other, lasting=True)
-        if chance.real() < 0.12:
-            text += f" ;{names.remark()}"
-        self._declare(kind, text)
-        self._scope.add_variable(kind, name, lasting=True)
-        return name
-
-    def _first(self, kind: str) -> str:
-        chance = self._chance
-        if kind == "INT":
-            return str(chance.below(100)) if chance.real() < 0.97 else f"'B{chance.below(16):04b}'"
-        if kind == "REAL":
-            sign = "-" if chance.real() < 0.15 else ""
-            return f"{sign}{chance.below(5000) / 10}"
-        if kind == "BOOL":
-            return "TRUE" if chance.real() < 0.3 else "FALSE"
-        if kind == "CHAR":
-            return constant_of(kind)
-        if kind == "E6AXIS":
-            angles = ",".join(f"A{n} {180 * chance.real() - 90:.3f}" for n in range(1, 7))
-            return f"{{{angles},E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0}}"
-        x, y, z, a, b, c = pose(chance, (400.0, 0.0, 300.0), 900.0)
-        place = f"X {x:.3f},Y {y:.3f},Z {z:.3f},A {a:.3f},B {b:.3f},C {c:.3f}"
-        return f"{{{place}}}" if kind == "FRAME" else f"{{{place},S 2,T 2,{_NO_EXTERNAL_AXES}}}"
+        self.lines += datum(
+            self.choices,
+            self._style,
+            self._scope,
+            type_,
+            self.names.variable(type_),
+            is_global=self._is_global,
+        )
 
     def constant(self) -> None:
         """A named constant [TYP-07]."""
-        kind = self._chance.pick(("INT", "INT", "REAL"))
-        name = self._names.variable(kind)
+        type_ = self.choices.pick((INT, INT, REAL))
+        name = self.names.variable(type_)
         self.lines.append(
-            f"DECL {self._global}CONST {kind} {name}{self._dialect.eq}{self._first(kind)}"
+            constant_datum(
+                self.choices, self._style, self._scope, type_, name, is_global=self._is_global
+            )
         )
-        self._scope.reads[kind].append(name)
-
-    def text(self) -> None:
-        """A text with its first value."""
-        name, size = self._names.variable("CHAR"), self._chance.pick((12, 24, 32, 40, 80))
-        self._declare("CHAR", f"{name}[{size}]")
-        self.lines.append(f'{name}[]{self._dialect.eq}"{self._chance.pick((" ", "-", "none"))}"')
-        self._scope.texts.append((name, size))
-
-    def array(self) -> None:
-        """An array, its elements initialised in ascending order [TYP-09, TYP-10] or not at all."""
-        chance = self._chance
-        kind = chance.pick(("INT", "INT", "REAL", "BOOL"))
-        name, size = self._names.variable(kind), chance.between(3, 24)
-        self._declare(kind, f"{name}[{size}]")
-        if chance.real() < 0.8:
-            eq = self._dialect.eq
-            self.lines += [f"{name}[{n}]{eq}{self._first(kind)}" for n in range(1, size + 1)]
-        self._scope.arrays[kind].append((name, size))
-
-    def matrix(self) -> None:
-        """Numbers in rows and columns."""
-        name, eq = self._names.variable("REAL"), self._dialect.eq
-        rows, columns = self._chance.between(2, 6), self._chance.between(2, 6)
-        self._declare("REAL", f"{name}[{rows},{columns}]")
-        self.lines += [
-            f"{name}[{row},{column}]{eq}{self._first('REAL')}"
-            for row in range(1, rows + 1)
-            for column in range(1, columns + 1)
-        ]
-        self._scope.matrices.append((name, rows, columns))
-
-    def names_of_things(self) -> None:
-        """A table of texts, a row each [TYP-11]."""
-        names, eq = self._names, self._dialect.eq
-        name, rows = names.variable("CHAR"), self._chance.between(2, 8)
-        self._declare("CHAR", f"{name}[{rows},24]")
-        things = names.vocabulary.things
-        self.lines += [
-            f'{name}[{row},]{eq}"{self._chance.pick(things)} {row}"' for row in range(1, rows + 1)
-        ]
-
-    def places(self) -> None:
-        """An array of positions."""
-        chance, eq = self._chance, self._dialect.eq
-        name, size = self._names.variable("E6POS"), chance.between(3, 20)
-        self._declare("E6POS", f"{name}[{size}]")
-        self.lines += [f"{name}[{n}]{eq}{self._first('E6POS')}" for n in range(1, size + 1)]
-        self._scope.arrays["E6POS"].append((name, size))
-
-    # ------------------------------------------------------------------------------ types
 
     def enumeration(self) -> Enumeration:
-        """An enumeration and a variable of it."""
-        chance, names = self._chance, self._names
-        word = chance.pick(names.vocabulary.stations)
+        """A new enumeration."""
+        choices, names = self.choices, self.names
         states = names.vocabulary.states
-        constants = chance.few(states, chance.between(3, len(states)))
-        name = names.take(names.joined((word, "state", "t")))
+        constants = choices.few(states, choices.between(3, len(states)))
+        name = names.take(names.joined((choices.pick(names.vocabulary.stations), "state", "t")))
         found = Enumeration(name, tuple(constant.upper() for constant in constants))
-        self.lines.append(f"{self._global}ENUM {name} {self._dialect.comma.join(found.constants)}")
-        self.state(found)
+        self.lines.append(
+            enumeration(found, is_global=self._is_global, comma=self._style.spelling.comma)
+        )
         return found
 
-    def state(self, enumeration: Enumeration) -> None:
-        """A variable of an enumeration."""
-        names = self._names
-        name = names.variable("ENUM")
-        value = f"#{self._chance.pick(enumeration.constants)}"
-        self.lines.append(f"DECL {self._global}{enumeration.name} {name}{self._dialect.eq}{value}")
-        self._scope.enumerations.append((name, enumeration))
-
-    def structure(self) -> None:
-        """A structure, and either a record or a table of them."""
-        chance, names = self._chance, self._names
-        words = names.vocabulary
+    def structure(self) -> Type:
+        """A new structure, or an array of it."""
+        choices, names = self.choices, self.names
         inner = names.inner()
-        name = names.take(names.joined((chance.pick(words.things), "data", "t")))
+        name = names.take(names.joined((choices.pick(names.vocabulary.things), "data", "t")))
         members = [
-            (inner.variable(kind), kind)
-            for kind in ("INT", "REAL", "BOOL")
-            for _ in range(chance.between(1, 4))
+            Member(inner.variable(type_), type_)
+            for type_ in (INT, REAL, BOOL)
+            for _ in range(choices.between(1, 4))
         ]
         # words of statements are names of members too [TYP-05]
-        members += [
-            (name, "INT") for name in chance.few(("STEP", "PART", "DELAY"), 3)[: chance.below(3)]
-        ]
-        texts = [(inner.variable("CHAR"), chance.pick((12, 24, 40)))] * (chance.real() < 0.4)
-        groups = [
-            f"{kind} {self._dialect.comma.join(one for one, its in members if its == kind)}"
-            for kind in ("INT", "REAL", "BOOL")
-        ] + [f"CHAR {one}[{size}]" for one, size in texts]
-        self.lines.append(f"{self._global}STRUC {name} {self._dialect.comma.join(groups)}")
-        found = Structure(name, tuple(members), tuple(texts))
-        if chance.real() < 0.5:
-            self.table(found)
-        else:
-            record = names.variable("STRUC")
-            self.lines.append(
-                f"DECL {self._global}{name} {record}{self._dialect.eq}{self._aggregate(found)}"
+        words = choices.few(("STEP", "PART", "DELAY"), 3)[: choices.below(3)]
+        members += [Member(word, INT) for word in words]
+        if choices.chance(40):
+            text = Array(CHAR, (choices.pick((12, 24, 40)),))
+            members.append(Member(inner.variable(CHAR), text))
+        found = Structure(name, tuple(members))
+        self.lines.append(
+            structure_definition(
+                choices, found, is_global=self._is_global, comma=self._style.spelling.comma
             )
-            self._scope.records.append((record, found))
-
-    def table(self, structure: Structure) -> None:
-        """An array of records."""
-        chance, eq = self._chance, self._dialect.eq
-        name, size = self._names.variable("STRUC"), chance.between(3, 20)
-        self.lines.append(f"DECL {self._global}{structure.name} {name}[{size}]")
-        self.lines += [f"{name}[{n}]{eq}{self._aggregate(structure)}" for n in range(1, size + 1)]
-        self._scope.tables.append((name, size, structure))
-
-    def _aggregate(self, structure: Structure) -> str:
-        values = [f"{member} {self._first(kind)}" for member, kind in structure.members]
-        values += [f'{member}[] "{self._chance.pick(_CONTENTS)}"' for member, _ in structure.texts]
-        prefix = f"{structure.name}: " if self._chance.real() < 0.05 else ""
-        return f"{{{prefix}{self._dialect.comma.join(values)}}}"
+        )
+        return Array(found, (choices.between(3, 20),)) if choices.chance(50) else found
 
 
-_NO_EXTERNAL_AXES = "E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0"
-_PREDEFINED = frozenset(("INT", "REAL", "BOOL", "CHAR", "FRAME", "E6POS", "E6AXIS"))
-_CONTENTS = ("none", " ", "A 100", "type 7; left", "0815", "blank", "left", "right", "-")
-_DECLARATIONS: Weighted[Callable[[Data], object]] = Weighted(
-    [
-        (30.0, lambda data: data.variable("INT")),
-        (22.0, lambda data: data.variable("REAL")),
-        (22.0, lambda data: data.variable("BOOL")),
-        (1.0, lambda data: data.variable("CHAR")),
-        (8.0, lambda data: data.variable("FRAME")),
-        (8.0, lambda data: data.variable("E6POS")),
-        (3.0, lambda data: data.variable("E6AXIS")),
-        (5.0, Data.constant),
-        (6.0, Data.text),
-        (6.0, Data.array),
-        (4.0, Data.matrix),
-        (1.5, Data.names_of_things),
-        (3.0, Data.places),
-        (2.5, Data.enumeration),
-        (3.5, Data.structure),
-    ]
+def _array(*elements: Type) -> Callable[[Data], Type]:
+    return lambda data: Array(data.choices.pick(elements), (data.choices.between(3, 24),))
+
+
+def _is(type_: Type) -> Callable[[Data], Type]:
+    return lambda _data: type_
+
+
+_DECLARATIONS: Final = Weighted[Callable[[Data], Type | None]](
+    (60, _is(INT)),
+    (44, _is(REAL)),
+    (44, _is(BOOL)),
+    (2, _is(CHAR)),
+    (16, _is(FRAME)),
+    (16, _is(E6POS)),
+    (6, _is(E6AXIS)),
+    (10, Data.constant),
+    (12, lambda data: Array(CHAR, (data.choices.pick((12, 24, 32, 40, 80)),))),
+    (12, _array(INT, INT, REAL, BOOL)),
+    (8, lambda data: Array(REAL, (data.choices.between(2, 6), data.choices.between(2, 6)))),
+    (3, lambda data: Array(CHAR, (data.choices.between(2, 8), 24))),
+    (6, _array(E6POS)),
+    (5, Data.enumeration),
+    (7, Data.structure),
 )

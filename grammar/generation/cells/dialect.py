@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from grammar.generation.cells.chance import Chance, Weighted
+from grammar.generation.choices import Choices, Weighted
+from grammar.generation.code import Spelling
 
 __all__ = ["Dialect", "Generation", "Letters", "a_dialect", "a_way_to_store"]
 
@@ -35,28 +35,18 @@ class Letters(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Dialect:
+class Dialect(Spelling):
     """How the programs of a cell are written, and how a file is stored.
 
-    ``gap`` stands around operators, ``eq`` is the equals sign of an assignment, ``before`` stands
-    before the parenthesis of a call, ``language`` is that of comments and names.
+    ``language`` is that of comments and names.
     """
 
-    generation: Generation
-    letters: Letters
-    language: str
-    indent: str
-    eq: str
-    gap: str
-    comma: str
-    before: str
-    inline_forms: bool
+    generation: Generation = Generation.KRC2
+    letters: Letters = Letters.UPPER
+    language: str = "en"
+    inline_forms: bool = True
     newline: str = "\r\n"
     encoding: str = "cp1252"
-
-    def call(self, name: str, arguments: Iterable[str]) -> str:
-        """A call as a statement or as part of an expression."""
-        return f"{name}{self.before}({self.comma.join(arguments)})"
 
     def stored(self, text: str) -> bytes:
         """The bytes of a file with this text, whose lines end with a line feed."""
@@ -92,38 +82,38 @@ def _capitalised(found: re.Match[str]) -> str:
 
 
 _GENERATIONS = Weighted(
-    [
-        (0.10, Generation.KRC1),
-        (0.25, Generation.KRC2),
-        (0.40, Generation.KRC4),
-        (0.25, Generation.KRC4_SPLINE),
-    ]
+    (2, Generation.KRC1),
+    (5, Generation.KRC2),
+    (8, Generation.KRC4),
+    (5, Generation.KRC4_SPLINE),
 )
-_LETTERS = Weighted([(0.89, Letters.UPPER), (0.08, Letters.LOWER), (0.03, Letters.MIXED)])
-_INDENTS = Weighted([(0.2, ""), (0.3, "  "), (0.35, "   "), (0.1, "    "), (0.05, "\t")])
-_NEWLINES = Weighted([(0.82, "\r\n"), (0.16, "\n"), (0.02, "\r")])
-_ENCODINGS = Weighted([(0.6, "cp1252"), (0.25, "utf-8"), (0.15, "utf-8-sig")])
+_LETTERS = Weighted((89, Letters.UPPER), (8, Letters.LOWER), (3, Letters.MIXED))
+_INDENTS = Weighted((4, ""), (6, "  "), (7, "   "), (2, "    "), (1, "\t"))
+_NEWLINES = Weighted((41, "\r\n"), (8, "\n"), (1, "\r"))
+_ENCODINGS = Weighted((12, "cp1252"), (5, "utf-8"), (3, "utf-8-sig"))
 
 
-def a_dialect(chance: Chance) -> Dialect:
+def a_dialect(choices: Choices) -> Dialect:
     """How one cell is written."""
-    generation = chance.draw(_GENERATIONS)
-    letters = Letters.UPPER if generation is Generation.KRC1 else chance.draw(_LETTERS)
-    spaced = chance.real() < 0.35 and generation is not Generation.KRC1
+    generation = choices.weighted(_GENERATIONS)
+    letters = Letters.UPPER if generation is Generation.KRC1 else choices.weighted(_LETTERS)
+    is_spaced = choices.chance(35) and generation is not Generation.KRC1
     return Dialect(
         generation=generation,
         letters=letters,
-        language="de" if chance.real() < 0.35 else "en",
-        indent=chance.draw(_INDENTS),
-        eq=" = " if spaced else "=",
-        gap=" " if spaced else "",
-        comma=", " if spaced or chance.real() < 0.2 else ",",
-        before="" if chance.real() < 0.6 else " ",
+        language="de" if choices.chance(35) else "en",
+        indent=choices.weighted(_INDENTS),
+        eq=" = " if is_spaced else "=",
+        gap=" " if is_spaced else "",
+        comma=", " if is_spaced or choices.chance(20) else ",",
+        before=" " if choices.chance(40) else "",
         # programs in small letters are typed, forms come from the panel
-        inline_forms=letters is Letters.UPPER and chance.real() < 0.85,
+        inline_forms=letters is Letters.UPPER and choices.chance(85),
     )
 
 
-def a_way_to_store(dialect: Dialect, chance: Chance) -> Dialect:
+def a_way_to_store(dialect: Dialect, choices: Choices) -> Dialect:
     """The same with line ends and an encoding for a single file, as it came to the backup."""
-    return replace(dialect, newline=chance.draw(_NEWLINES), encoding=chance.draw(_ENCODINGS))
+    return replace(
+        dialect, newline=choices.weighted(_NEWLINES), encoding=choices.weighted(_ENCODINGS)
+    )

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Final
 
-from grammar.generation.cells.chance import Chance
 from grammar.generation.cells.data import Data
 from grammar.generation.cells.dialect import Dialect
+from grammar.generation.cells.forms import Forms
 from grammar.generation.cells.names import Names
 from grammar.generation.cells.points import Taught
-from grammar.generation.cells.routines import Program
-from grammar.generation.cells.scope import Routine, Scope
+from grammar.generation.cells.program import Program
+from grammar.generation.cells.style import style_of
+from grammar.generation.choices import Choices
+from grammar.generation.scope import Routine, Scope
+from grammar.semantics.types import INT, REAL
 
 __all__ = [
     "Cell",
@@ -25,22 +29,45 @@ __all__ = [
 ]
 
 
-@dataclass(slots=True)
+#: Of each kind of name that a program sees of those of the cell.
+_MOST_NAMES: Final = 6
+
+
 class Cell:
     """What the modules of a cell have in common: how they are written, and what is global.
 
     ``shared`` are modules and integers of theirs that others can import.
     """
 
-    chance: Chance
-    dialect: Dialect
-    names: Names
-    scope: Scope
-    shared: list[tuple[str, str]] = field(default_factory=list)
+    def __init__(self, choices: Choices, dialect: Dialect, names: Names) -> None:
+        self.choices = choices
+        self.dialect = dialect
+        self.names = names
+        self.scope = Scope()
+        self.style = style_of(dialect, names, Forms(dialect, Taught(choices, dialect)))
+        self.shared: list[tuple[str, str]] = []
 
     def module_name(self) -> str:
         """A new name for a module."""
-        return self.names.routine(self.chance.pick(self.names.vocabulary.stations))
+        return self.names.routine(self.choices.pick(self.names.vocabulary.stations))
+
+    def program(self, name: str, *, is_shared: bool = False) -> Program:
+        """The routines of a file, which see a few of the names of the cell.
+
+        Those of routines that all programs see are names of the cell themselves.
+        """
+        names = self.names if is_shared else self.names.inner()
+        scope = self.scope.some(self.choices, _MOST_NAMES)
+        return Program(name, self.choices, self.dialect, self.style, names, scope)
+
+    def callable(self) -> list[str]:
+        """The names of procedures without parameters, as they were made."""
+        found = self.scope.callable(None, 0)
+        return [one.name for one in found if not one.parameters]
+
+    def data(self, names: Names, scope: Scope, *, is_global: bool = False) -> Data:
+        """A data list."""
+        return Data(self.choices, self.style, names, scope, is_global=is_global)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,18 +80,18 @@ class Module:
 
 
 def _head(cell: Cell, access: str = "RVP") -> Iterator[str]:
-    chance = cell.chance
-    if chance.real() < 0.03:  # typed on a PC, never stored by a controller
+    choices = cell.choices
+    if choices.chance(3):  # typed on a PC, never stored by a controller
         return
     yield f"&ACCESS {access}"
-    if chance.real() < 0.7:
-        yield f"&REL {chance.between(1, 250)}"
-    if chance.real() < 0.3:
+    if choices.chance(70):
+        yield f"&REL {choices.between(1, 250)}"
+    if choices.chance(30):
         yield f"&COMMENT {cell.names.remark()}"
-    if chance.real() < 0.6:
+    if choices.chance(60):
         yield "&PARAM EDITMASK = *"
         yield r"&PARAM TEMPLATE = C:\KRC\Roboter\Template\vorgabe"
-    if chance.real() < 0.15:
+    if choices.chance(15):
         yield r"&PARAM DISKPATH = KRC:\R1\Program"
 
 
@@ -78,7 +105,7 @@ def as_data_list(
 ) -> list[str]:
     """Declarations with the head of a file and of a data list."""
     public = " PUBLIC" if is_public else ""
-    gap = " " if cell.chance.real() < 0.4 else ""
+    gap = " " if cell.choices.chance(40) else ""
     return [*_head(cell), f"DEFDAT {gap}{name}{public}", *lines, "ENDDAT"]
 
 
@@ -97,89 +124,89 @@ _EXTERNAL = (
 
 def _data_list(cell: Cell, name: str, data: Data, taught: Taught) -> list[str]:
     if cell.dialect.inline_forms:
-        callable_ = [one for one in cell.scope.routines[-9:] if not one.parameters]
-        external = [f"EXT  {one.name} ( )" for one in cell.chance.few(callable_, 2)]
+        external = [f"EXT  {one} ( )" for one in cell.choices.few(cell.callable()[-9:], 2)]
         if cell.dialect.generation.is_krc4:
             external = []
         lines = [*_EXTERNAL[:-2], *external, *_EXTERNAL[-2:]]
         lines += [*data.lines, *taught.lines, taught.suggestion()]
     else:
         lines = [*data.lines, *taught.lines]
-    return as_data_list(cell, name, lines, is_public=cell.chance.real() < 0.2)
+    return as_data_list(cell, name, lines, is_public=cell.choices.chance(20))
 
 
-def _program(
-    cell: Cell, name: str, declarations: int, names: Names | None = None
-) -> tuple[Program, Data]:
-    names, scope = names or cell.names.inner(), cell.scope.some(cell.chance)
-    data = Data(cell.chance, cell.dialect, names, scope, is_global=False)
+def _finished(cell: Cell, program: Program, data: Data) -> Module:
+    """A program that others can call, with its data list."""
+    cell.scope.add_routine(Routine(program.name))
+    listed = _data_list(cell, program.name, data, program.taught)
+    return Module(program.name, as_program(cell, program.lines), listed)
+
+
+def _begun(cell: Cell, declarations: int) -> tuple[Program, Data]:
+    program = cell.program(cell.module_name())
+    data = cell.data(program.names, program.scope)
     data.some(declarations)
-    taught = Taught(cell.chance, cell.dialect)
-    return Program(name, cell.chance, cell.dialect, names, scope, taught), data
+    return program, data
 
 
 def process(cell: Cell) -> Module:
     """A program that moves: most of its lines are motions and what happens between them."""
-    chance = cell.chance
-    name = cell.module_name()
-    program, data = _program(cell, name, chance.below(10))
-    for _ in range(chance.below(3)):
+    choices = cell.choices
+    program, data = _begun(cell, choices.below(10))
+    for _ in range(choices.below(3)):
         program.add_quick()
-    if chance.real() < 0.1:
+    if choices.chance(10):
         program.add_brake()
-    if chance.real() < 0.3:
+    if choices.chance(30):
         program.add_function()
-    for _ in range(chance.below(3)):
-        program.add_procedure(chance.between(10, 70), moving=chance.pick((0.0, 0.1, 0.3)))
-    program.add_main(chance.between(20, 260), moving=chance.pick((0.1, 0.15, 0.25, 0.5)))
-    cell.scope.add_routine(Routine(name))
-    return Module(
-        name, as_program(cell, program.lines), _data_list(cell, name, data, program.taught)
-    )
+    for _ in range(choices.below(3)):
+        program.add_procedure(choices.between(10, 70), moving=choices.pick((0, 10, 30)))
+    program.add_main(choices.between(20, 260), moving=choices.pick((10, 15, 25, 50)))
+    return _finished(cell, program, data)
 
 
 def sequence(cell: Cell) -> Module:
     """A program that decides, counts and calls."""
-    chance = cell.chance
-    name = cell.module_name()
-    program, data = _program(cell, name, chance.between(4, 24))
-    if chance.real() < 0.3:
+    choices = cell.choices
+    program, data = _begun(cell, choices.between(4, 24))
+    if choices.chance(30):
         program.add_quick()
-    for _ in range(chance.below(3)):
+    for _ in range(choices.below(3)):
         program.add_function()
-    for _ in range(chance.below(5)):
-        program.add_procedure(chance.between(10, 70), moving=0.0)
-    program.add_main(chance.between(30, 260), moving=chance.pick((0.0, 0.0, 0.05)))
-    cell.scope.add_routine(Routine(name))
-    return Module(
-        name, as_program(cell, program.lines), _data_list(cell, name, data, program.taught)
-    )
+    for _ in range(choices.below(5)):
+        program.add_procedure(choices.between(10, 70), moving=0)
+    program.add_main(choices.between(30, 260), moving=choices.pick((0, 0, 5)))
+    return _finished(cell, program, data)
 
 
 def library(cell: Cell) -> Module:
     """Functions and procedures for all programs; the first routine does nothing."""
-    chance = cell.chance
-    name = cell.module_name()
-    # its routines are global, so their names are those of the cell
-    program, data = _program(cell, name, chance.between(2, 12), cell.names)
-    added = [program.add_function(is_global=True) for _ in range(chance.between(2, 6))]
+    choices = cell.choices
+    program = cell.program(cell.module_name(), is_shared=True)
+    data = cell.data(cell.names, program.scope)
+    data.some(choices.between(2, 12))
+    added = [program.add_function(is_global=True) for _ in range(choices.between(2, 6))]
     added += [
-        program.add_procedure(chance.between(6, 40), moving=0.0, is_global=True)
-        for _ in range(chance.below(5))
+        program.add_procedure(choices.between(6, 40), moving=0, is_global=True)
+        for _ in range(choices.below(5))
     ]
-    if program.scope.arrays["REAL"]:
+    if program.scope.arrays(REAL, 1):
         program.add_array_function()
     program.add_empty_main()
     for routine in added:
         cell.scope.add_routine(routine)
-    return Module(name, as_program(cell, program.lines), as_data_list(cell, name, data.lines))
+    listed = as_data_list(cell, program.name, data.lines)
+    return Module(program.name, as_program(cell, program.lines), listed)
 
 
 def public_data(cell: Cell) -> Module:
     """A data list alone, whose types and variables all programs see [SCO-04]."""
     name = cell.module_name()
-    data = Data(cell.chance, cell.dialect, cell.names, cell.scope, is_global=True)
-    seen = len(cell.scope.lasting["INT"])
-    data.some(cell.chance.between(8, 60))
-    cell.shared += [(name, variable) for variable in cell.scope.lasting["INT"][seen:]]
+    before = {one.name for one in cell.scope.variables()}
+    data = cell.data(cell.names, cell.scope, is_global=True)
+    data.some(cell.choices.between(8, 60))
+    cell.shared += [
+        (name, one.name)
+        for one in cell.scope.variables()
+        if one.type == INT and one.is_writable and one.name not in before
+    ]
     return Module(name, data=as_data_list(cell, name, data.lines, is_public=True))

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from grammar.generation.cells.chance import Chance
+from grammar.generation.choices import Choices
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
 
 __all__ = ["LONGEST", "WORDS", "Names", "Vocabulary", "Writing"]
 
@@ -155,8 +156,14 @@ class Writing(Enum):
     PLAIN = "PartCount"
 
 
-_PREFIXES = {"INT": "n", "REAL": "r", "BOOL": "b", "CHAR": "s", "ENUM": "e", "STRUC": "st"}
+_PREFIXES = {"INT": "n", "REAL": "r", "BOOL": "b", "CHAR": "s"}
 _PREFIXES |= {"FRAME": "f", "E6POS": "x", "E6AXIS": "a"}
+
+
+def _prefix(type_: Type) -> str:
+    if isinstance(type_, Enumeration):
+        return "e"
+    return _PREFIXES.get(str(type_), "st" if isinstance(type_, Structure) else "")
 
 
 class Names:
@@ -165,24 +172,24 @@ class Names:
     They are put together from two words or more, so that none is a word of the language.
     """
 
-    __slots__ = ("_outer", "_taken", "chance", "vocabulary", "writing")
+    __slots__ = ("_outer", "_taken", "choices", "vocabulary", "writing")
 
     def __init__(
         self,
-        chance: Chance,
+        choices: Choices,
         vocabulary: Vocabulary,
         writing: Writing,
         outer: Names | None = None,
     ) -> None:
-        self.chance = chance
+        self.choices = choices
         self.vocabulary = vocabulary
         self.writing = writing
         self._outer = outer
         self._taken: set[str] = set()
 
-    def inner(self, chance: Chance | None = None) -> Names:
+    def inner(self, choices: Choices | None = None) -> Names:
         """Names for a place within, where those of here are seen."""
-        return Names(chance or self.chance, self.vocabulary, self.writing, self)
+        return Names(choices or self.choices, self.vocabulary, self.writing, self)
 
     def is_taken(self, name: str) -> bool:
         """Whether the name is used here or further out, in whatever letters."""
@@ -204,55 +211,59 @@ class Names:
         self._taken.add(found.upper())
         return found
 
-    def of_type(self, kind: str, words: Sequence[str]) -> str:
-        """A new name for a variable of the type ``kind``."""
-        return self.take(self.joined(words, kind))
-
-    def joined(self, words: Sequence[str], kind: str = "") -> str:
+    def joined(self, words: Sequence[str], type_: Type | None = None) -> str:
         """Words put together as this cell does it."""
         if self.writing is Writing.UPPER:
             return "_".join(words).upper()
         name = "".join(word.capitalize() for word in words)
-        return _PREFIXES.get(kind, "") + name if self.writing is Writing.TYPED else name
+        is_typed = self.writing is Writing.TYPED and type_ is not None
+        return f"{_prefix(type_)}{name}" if is_typed and type_ else name
 
-    def variable(self, kind: str) -> str:
+    def variable(self, type_: Type, _letter: str = "V") -> str:
         """A new name for a variable, after something of the trade."""
+        element = type_.element if isinstance(type_, Array) else type_
+        words = self._words(element, self.vocabulary.stations)
+        thing = self.choices.pick(self.vocabulary.things)
+        return self.take(self.joined((thing, self.choices.pick(words)), element))
+
+    def _words(self, type_: Type | None, others: Sequence[str]) -> Sequence[str]:
+        """What a value of a type is called."""
         words = self.vocabulary
-        last = {
-            "INT": words.integers,
-            "REAL": words.reals,
-            "BOOL": words.truths,
-            "CHAR": words.texts,
-        }.get(kind, words.stations)
-        return self.of_type(kind, (self.chance.pick(words.things), self.chance.pick(last)))
+        if type_ in (INT, REAL):
+            return words.integers if type_ == INT else words.reals
+        if type_ in (BOOL, CHAR):
+            return words.truths if type_ == BOOL else words.texts
+        return others
 
     def routine(self, station: str) -> str:
         """A new name for a routine that does something at a station."""
         words = self.vocabulary
-        return self.take(self.joined((self.chance.pick(words.verbs), station)))
+        return self.take(self.joined((self.choices.pick(words.verbs), station)))
 
-    def function(self, kind: str) -> str:
-        """A new name for a function that tells a value of the type ``kind``."""
+    def function(self, result: Type) -> str:
+        """A new name for a function with a result of a type."""
         words = self.vocabulary
-        last = {"INT": words.integers, "REAL": words.reals, "BOOL": words.truths}.get(kind)
-        thing, station = self.chance.pick(words.things), self.chance.pick(words.stations)
-        return self.take(self.joined((thing, self.chance.pick(last) if last else station, "of")))
+        thing, station = self.choices.pick(words.things), self.choices.pick(words.stations)
+        last = self.choices.pick(self._words(result, (station,)))
+        return self.take(self.joined((thing, last, "of")))
 
     def label(self) -> str:
         """A new name for a label."""
         words = ("again", "next", "retry", "cycle", "ready", "once_more")
-        return self.take(self.joined((self.chance.pick(words), self.chance.pick(("part", "loop")))))
+        return self.take(
+            self.joined((self.choices.pick(words), self.choices.pick(("part", "loop"))))
+        )
 
     def remark(self) -> str:
         """A comment, without its semicolon."""
-        return self._filled(self.chance.pick(self.vocabulary.remarks))
+        return self._filled(self.choices.pick(self.vocabulary.remarks))
 
     def message(self) -> str:
         """A text for the operator, in its quotes."""
-        return f'"{self._filled(self.chance.pick(self.vocabulary.messages))}"'
+        return f'"{self._filled(self.choices.pick(self.vocabulary.messages))}"'
 
     def _filled(self, text: str) -> str:
         words = self.vocabulary
-        return text.replace("{station}", self.chance.pick(words.stations)).replace(
-            "{thing}", self.chance.pick(words.things)
+        return text.replace("{station}", self.choices.pick(words.stations)).replace(
+            "{thing}", self.choices.pick(words.things)
         )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from grammar.generation.cells.code import Code
-from grammar.generation.cells.expressions import condition, constant_of
 from grammar.generation.cells.modules import Cell, Module, as_data_list, as_program
-from grammar.generation.cells.motions import Mover
-from grammar.generation.cells.points import Taught
-from grammar.generation.cells.scope import Routine
+from grammar.generation.cells.program import Program
+from grammar.generation.cells.style import E6POS
+from grammar.generation.code import Code
+from grammar.generation.expressions import constant, truth
+from grammar.generation.literals import elements
+from grammar.generation.motions import spline_block
+from grammar.generation.scope import Routine
+from grammar.semantics.types import Array, Structure, Type
 
 __all__ = ["old_machine", "painting", "path", "search", "serial", "splines", "table_filler"]
 
@@ -17,43 +20,41 @@ __all__ = ["old_machine", "painting", "path", "search", "serial", "splines", "ta
 _COS, _SIN = 0.9986295347545738, 0.05233595624294383
 
 
-def _code(cell: Cell) -> Code:
-    code = Code(cell.chance, cell.dialect, cell.names.inner(), cell.scope.some(cell.chance))
-    code.pad = cell.dialect.indent
-    return code
+def _begin(cell: Cell) -> tuple[Program, Code]:
+    program = cell.program(cell.module_name())
+    return program, program.code()
 
 
-def _finish(cell: Cell, name: str, code: Code, data: list[str]) -> Module:
-    code.lines.append("END")
+def _finish(cell: Cell, program: Program, code: Code, data: Sequence[str]) -> Module:
+    """The module, whose main routine is complete."""
+    name = program.name
+    program.end(code, Routine(name), is_called=False)
     cell.scope.add_routine(Routine(name))
-    return Module(name, as_program(cell, code.lines), as_data_list(cell, name, data))
-
-
-def _begin(cell: Cell) -> tuple[str, Code]:
-    name, code = cell.module_name(), _code(cell)
-    code.lines.append(f"DEF {name}{cell.dialect.before}( )")
-    return name, code
+    return Module(name, as_program(cell, program.lines), as_data_list(cell, name, data))
 
 
 def path(cell: Cell) -> Module:
     """A path as a planning system puts it out: hundreds of LIN with their values in braces."""
-    chance = cell.chance
-    name, code = _begin(cell)
+    choices = cell.choices
+    program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
-    code.set("$VEL.CP", f"0.{chance.between(1, 9)}")
-    code.set("$APO.CDIS", f"{chance.between(1, 9)}.0")
-    code.set("$TOOL", f"TOOL_DATA[{chance.between(1, 16)}]")
-    code.set("$BASE", f"BASE_DATA[{chance.between(1, 32)}]")
+    code.set("$VEL.CP", f"0.{choices.between(1, 9)}")
+    code.set("$APO.CDIS", f"{choices.between(1, 9)}.0")
+    code.set("$TOOL", f"TOOL_DATA[{choices.between(1, 16)}]")
+    code.set("$BASE", f"BASE_DATA[{choices.between(1, 32)}]")
     code.line("PTP XHOME C_PTP")
-    blend = chance.pick((" C_DIS", " C_DIS", " C_VEL", ""))
-    code.lines += _turns(cell, code.pad, chance.between(60, 700), blend)
+    blend = choices.pick((" C_DIS", " C_DIS", " C_VEL", ""))
+    code.lines += _turns(cell, code.pad, choices.between(60, 700), blend)
     code.line("PTP XHOME")
-    return _finish(cell, name, code, [f"INT PASSES{cell.dialect.eq}0"])
+    return _finish(cell, program, code, [f"INT PASSES{cell.dialect.eq}0"])
 
 
 def _turns(cell: Cell, pad: str, count: int, blend: str) -> Iterator[str]:
     """Points along a spiral with some noise, as a scanned surface has it."""
-    real = cell.chance.real
+
+    def real() -> float:
+        return cell.choices.below(1_000_000) / 1_000_000
+
     dx, dy, z = 80.0 + 300.0 * real(), 0.0, 20.0 + 100.0 * real()
     tilt, turn, sink = 30.0 * real() - 15.0, 0.0, -0.05 * real()
     for number in range(count):
@@ -72,108 +73,120 @@ def _turns(cell: Cell, pad: str, count: int, blend: str) -> Iterator[str]:
 
 def table_filler(cell: Cell) -> Module:
     """Fills the tables that all programs see, an element a line."""
-    chance = cell.chance
-    name, code = _begin(cell)
-    for table, size, structure in chance.few(cell.scope.tables, 3):
-        with code.fold(table):
-            for number in range(1, size + 1):
-                for member, kind in structure.members:
-                    value = str(chance.below(900)) if kind == "INT" else constant_of(kind)
-                    if kind == "REAL":
-                        value = f"{chance.below(9000) / 10}"
-                    code.set(f"{table}[{number}].{member}", value)
-    for array, size in chance.few(cell.scope.arrays["INT"], 3):
-        for number in range(1, size + 1):
-            code.set(f"{array}[{number}]", str(chance.below(50)))
+    choices = cell.choices
+    program, code = _begin(cell)
+    arrays = [one for one in cell.scope.variables() if _is_table(one.type)]
+    for table in choices.few(arrays, 5):
+        with code.fold(table.name):
+            for target, value in _cells(code, table.type, table.name):
+                code.set(target, value)
     code.set("PASSES", "1")
-    return _finish(cell, name, code, [f"INT PASSES{cell.dialect.eq}0"])
+    return _finish(cell, program, code, [f"INT PASSES{cell.dialect.eq}0"])
+
+
+def _is_table(type_: Type) -> bool:
+    return isinstance(type_, Array) and not type_.is_text and type_.element != E6POS
+
+
+def _cells(code: Code, type_: Type, name: str) -> Iterator[tuple[str, str]]:
+    """The parts of a table that are no tables, with a value for each."""
+    if isinstance(type_, Array) and not type_.is_text:
+        for index in elements(type_):
+            yield from _cells(code, type_.element, f"{name}[{index}]")
+    elif isinstance(type_, Structure):
+        for member in type_.members:
+            yield from _cells(code, member.type, f"{name}.{member.name}")
+    else:
+        suffix = "[]" if isinstance(type_, Array) else ""
+        yield f"{name}{suffix}", constant(code, type_)
 
 
 def search(cell: Cell) -> Module:
     """Moves until a sensor answers, then leaves the motion by RESUME [INT-10, INT-12]."""
-    chance, dialect = cell.chance, cell.dialect
-    name, code = _begin(cell)
-    moving = code.names.routine("part")
-    found = code.names.routine("edge")
-    number, sensor = chance.between(4, 39), chance.between(1, 512)
+    choices, dialect = cell.choices, cell.dialect
+    program, code = _begin(cell)
+    moving = program.names.routine("part")
+    found = program.names.routine("edge")
+    number, sensor = choices.between(4, 39), choices.between(1, 512)
     code.call("BAS", "#INITMOV", "0")
     code.line(f"INTERRUPT DECL {number} WHEN $IN[{sensor}]==TRUE DO {dialect.call(found, ())}")
     code.line("PTP XHOME")
     code.line(f"INTERRUPT ON {number}")
     code.call(moving)
     code.line(f"INTERRUPT OFF {number}")
-    with code.block("IF FOUND THEN", "ENDIF"):
+    code.line("IF FOUND THEN")
+    with code.indented():
         code.line("LIN FOUND_AT")
-        code.middle("ELSE")
-        code.call("MsgFault", code.names.message(), "17")
+    code.line("ELSE")
+    with code.indented():
+        code.call("MsgFault", cell.names.message(), "17")
+    code.line("ENDIF")
     code.line("PTP XHOME")
-    code.lines += ["END", "", f"DEF {moving}{dialect.before}( )"]
-    code.set("FOUND", "FALSE")
-    for _ in range(chance.between(1, 4)):
-        code.line(f"LIN_REL {{{chance.pick('XYZ')} {chance.between(-20, 20)}0.0}}")
-    code.line("WAIT SEC 0")
-    code.lines += ["END", "", f"DEF {found}{dialect.before}( )"]
-    code.line(chance.pick(("BRAKE", "BRAKE F", "BRAKE FF")))
-    code.set("FOUND_AT", "$POS_INT")
-    code.set("FOUND", "TRUE")
-    code.line("RESUME")
+    inner = program.code()
+    inner.set("FOUND", "FALSE")
+    for _ in range(choices.between(1, 4)):
+        inner.line(f"LIN_REL {{{choices.pick('XYZ')} {choices.between(-20, 20)}0.0}}")
+    inner.line("WAIT SEC 0")
+    program.end(inner, Routine(moving))
+    inner = program.code()
+    inner.line(choices.pick(("BRAKE", "BRAKE F", "BRAKE FF")))
+    inner.set("FOUND_AT", "$POS_INT")
+    inner.set("FOUND", "TRUE")
+    inner.line("RESUME")
+    program.end(inner, Routine(found))
     eq = dialect.eq
-    first = constant_of("E6POS")
-    return _finish(cell, name, code, [f"BOOL FOUND{eq}FALSE", f"DECL E6POS FOUND_AT{eq}{first}"])
+    first = constant(code, E6POS)
+    return _finish(cell, program, code, [f"BOOL FOUND{eq}FALSE", f"DECL E6POS FOUND_AT{eq}{first}"])
 
 
 def splines(cell: Cell) -> Module:
     """Spline blocks, where the release has them."""
-    name, code = _begin(cell)
-    taught = Taught(cell.chance, cell.dialect)
-    mover = Mover(code, taught)
+    program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
-    mover.home()
-    for _ in range(cell.chance.between(2, 8)):
-        mover.block()
-        if cell.chance.real() < 0.3:
-            code.line(f"SPTP_REL {{A1 {cell.chance.between(-9, 9)}.0}} C_SPL")
-        if cell.chance.real() < 0.3:
+    program.forms.home(code)
+    for _ in range(cell.choices.between(2, 8)):
+        spline_block(code)
+        if cell.choices.chance(30):
+            code.line(f"SPTP_REL {{A1 {cell.choices.between(-9, 9)}.0}} C_SPL")
+        if cell.choices.chance(30):
             code.line("SCIRC_REL {X 10.0,Y 5.0},{X 20.0,Y 0.0},CA 180.0 C_SPL #BASE")
-    mover.home()
-    return _finish(cell, name, code, [*taught.lines, taught.suggestion()])
+    program.forms.home(code)
+    return _finish(cell, program, code, [*program.taught.lines, program.taught.suggestion()])
 
 
 def painting(cell: Cell) -> Module:
     """Analogue values read and written again and again while the robot moves."""
-    chance, eq, gap = cell.chance, cell.dialect.eq, cell.dialect.gap
-    name, code = _begin(cell)
-    taught = Taught(chance, cell.dialect)
-    mover = Mover(code, taught)
+    choices, eq, gap = cell.choices, cell.dialect.eq, cell.dialect.gap
+    program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
-    mover.home()
-    code.line(f"ANIN ON PRESSURE{eq}0.{chance.between(1, 9)}{gap}*{gap}SENSOR_IN{gap}+{gap}0.01")
+    program.forms.home(code)
+    code.line(f"ANIN ON PRESSURE{eq}0.{choices.between(1, 9)}{gap}*{gap}SENSOR_IN{gap}+{gap}0.01")
     code.line(f"DIGIN ON COUNTED{eq}1.0{gap}*{gap}$DIGIN1")
     options = (f" DELAY{eq}0.02", f" MINIMUM{eq}0.1", f" MAXIMUM{eq}0.9")
-    chosen = "".join(chance.few(options, chance.below(4)))
-    code.line(f"ANOUT ON FLOW_OUT{eq}{chance.between(1, 9)}.5{gap}*{gap}$VEL_ACT{chosen}")
-    for _ in range(chance.between(4, 40)):
-        mover.lin()
+    chosen = "".join(choices.few(options, choices.below(4)))
+    code.line(f"ANOUT ON FLOW_OUT{eq}{choices.between(1, 9)}.5{gap}*{gap}$VEL_ACT{chosen}")
+    for _ in range(choices.between(4, 40)):
+        code.line(f"LIN {program.forms.goal(code, 'LIN')} C_DIS")
     code.line("ANOUT OFF FLOW_OUT")
     code.line("ANIN OFF SENSOR_IN")
     code.line("DIGIN OFF $DIGIN1")
-    mover.home()
+    program.forms.home(code)
     data = [
-        f"SIGNAL FLOW_OUT $ANOUT[{chance.between(1, 8)}]",
-        f"SIGNAL SENSOR_IN $ANIN[{chance.between(1, 8)}]",
+        f"SIGNAL FLOW_OUT $ANOUT[{choices.between(1, 8)}]",
+        f"SIGNAL SENSOR_IN $ANIN[{choices.between(1, 8)}]",
         f"REAL PRESSURE{eq}0.0",
         f"REAL COUNTED{eq}0.0",
-        *taught.lines,
+        *program.taught.lines,
     ]
-    return _finish(cell, name, code, data)
+    return _finish(cell, program, code, data)
 
 
 def serial(cell: Cell) -> Module:
     """Asks a device over a serial line."""
-    chance, eq = cell.chance, cell.dialect.eq
-    name, code = _begin(cell)
+    choices, eq = cell.choices, cell.dialect.eq
+    program, code = _begin(cell)
     channel = cell.names.take(
-        code.names.joined((chance.pick(code.names.vocabulary.things), "line"))
+        cell.names.joined((choices.pick(cell.names.vocabulary.things), "line"))
     )
     code.line("DECL STATE_T STAT")
     code.line("DECL MODUS_T MODE")
@@ -181,7 +194,7 @@ def serial(cell: Cell) -> Module:
     code.line("REAL VALUE")
     code.set("TRIES", "0")
     code.call("COPEN", f":{channel}", "HANDLE")
-    with code.block("REPEAT", f"UNTIL ANSWERED OR (TRIES>{chance.between(2, 9)})"):
+    with code.block("REPEAT", f"UNTIL ANSWERED OR (TRIES>{choices.between(2, 9)})"):
         code.set("TRIES", "TRIES+1")
         code.set("MODE", "#SYNC")
         code.call("CWRITE", "HANDLE", "STAT", "MODE", '"?%d"', "TRIES")
@@ -202,7 +215,7 @@ def serial(cell: Cell) -> Module:
         "CHAR ANSWER[40]",
         f'ANSWER[]{eq}" "',
     ]
-    return _finish(cell, name, code, data)
+    return _finish(cell, program, code, data)
 
 
 def old_machine(cell: Cell) -> Module:
@@ -210,20 +223,20 @@ def old_machine(cell: Cell) -> Module:
 
     Needs a module whose data it can import.
     """
-    chance = cell.chance
-    name, code = _begin(cell)
-    others = chance.few([one for one in cell.scope.routines if not one.parameters][-9:], 4)
-    code.lines += [f"{code.pad}EXT {one.name}( )" for one in others]
+    choices = cell.choices
+    program, code = _begin(cell)
+    others = choices.few(cell.callable()[-9:], 4)
+    code.lines += [f"{code.pad}EXT {one}( )" for one in others]
     code.line("DECL INT NUMBER")
     code.set("NUMBER", "CARRIED+1")
     code.line("PTP XHOME")
     for one in others:
-        with code.block(f"IF {condition(code)} THEN", "ENDIF"):
-            code.call(one.name)
+        with code.block(f"IF {truth(code)} THEN", "ENDIF"):
+            code.call(one)
     with code.block("IF NUMBER>100 THEN", "ENDIF"):
         code.line("CONFIRM NUMBER")
-    code.line(f"ASYPTP {{E1 {chance.between(-90, 90)}.0}}")
-    if chance.real() < 0.5:
-        code.line(f'MOVE_EMI "planner" "{chance.pick(code.names.vocabulary.things)}.emi" FLT 0')
-    module, variable = chance.pick(cell.shared)
-    return _finish(cell, name, code, [f"IMPORT INT CARRIED IS /R1/{module}..{variable}"])
+    code.line(f"ASYPTP {{E1 {choices.between(-90, 90)}.0}}")
+    if choices.chance(50):
+        code.line(f'MOVE_EMI "planner" "{choices.pick(cell.names.vocabulary.things)}.emi" FLT 0')
+    module, variable = choices.pick(cell.shared)
+    return _finish(cell, program, code, [f"IMPORT INT CARRIED IS /R1/{module}..{variable}"])

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
 
-from grammar.generation.cells.blocks import Body
-from grammar.generation.cells.code import Code, indented
-from grammar.generation.cells.data import Data
-from grammar.generation.cells.dialect import Generation
-from grammar.generation.cells.expressions import constant_of
+from grammar.generation.cells.dialect import Dialect, Generation
 from grammar.generation.cells.modules import Cell, Module, as_data_list, as_program
+from grammar.generation.cells.points import frame
+from grammar.generation.scope import Routine, Variable
+from grammar.semantics.types import BOOL, INT
 
 __all__ = ["cell_program", "controller", "globals_of_cell", "submit", "system_routines"]
 
+_OPENERS = (
+    *("DEF ", "DEFFCT ", "GLOBAL DEF ", "GLOBAL DEFFCT "),
+    *("IF ", "FOR ", "WHILE ", "REPEAT", "LOOP", "SWITCH "),
+)
+_CLOSERS = frozenset("END ENDFCT ENDIF ENDFOR ENDWHILE UNTIL ENDLOOP ENDSWITCH".split())
+_MIDDLES = frozenset(("ELSE", "CASE", "DEFAULT"))
+_NO_FRAME = "{X 0.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}"
 TOOLS, BASES = 16, 32
 """Elements of TOOL_DATA and BASE_DATA: what programs may index."""
 
@@ -50,7 +56,18 @@ def _text(name: str) -> list[str]:
 def _written(cell: Cell, *names: str) -> list[str]:
     """Lines that all cells share, with the indentation of this one."""
     lines = [line for name in names for line in _text(name)]
-    return list(indented(lines, cell.dialect))
+    return list(_indented(lines, cell.dialect))
+
+
+def _indented(lines: Iterable[str], dialect: Dialect) -> Iterator[str]:
+    """Lines that were written without indentation, with that of a dialect."""
+    depth = 0
+    for line in lines:
+        word = line.split(" ", 1)[0]
+        depth -= word in _CLOSERS
+        place = depth - 1 if word in _MIDDLES else depth
+        yield dialect.indent * place + line if line else line
+        depth += line.startswith(_OPENERS)
 
 
 # -------------------------------------------------------------------------------- $config.dat
@@ -59,54 +76,49 @@ def _written(cell: Cell, *names: str) -> list[str]:
 def globals_of_cell(cell: Cell) -> Module:
     """The data list that all programs see; what it declares goes into the scope of the cell."""
     lines = [*_text("config.dat"), *_frames(cell), ";FOLD USER GLOBALS", *_signals(cell)]
-    data = Data(cell.chance, cell.dialect, cell.names, cell.scope, is_global=False)
-    data.some(cell.chance.between(10, 60))
+    data = cell.data(cell.names, cell.scope)
+    data.some(cell.choices.between(10, 60))
     lines += [*data.lines, ";ENDFOLD (USER GLOBALS)"]
     return Module("$config", data=as_data_list(cell, "$CONFIG", lines))
 
 
 def _frames(cell: Cell) -> Iterator[str]:
-    real = cell.chance.real
+    choices = cell.choices
     home = ",".join(f"A{n} {angle}" for n, angle in enumerate((0, -90, 90, 0, 90, 0), 1))
     yield f"E6AXIS XHOME={{{home},E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0}}"
-    zeros = constant_of("FRAME")
     for name, size in (("TOOL", TOOLS), ("BASE", BASES)):
         yield f"DECL FRAME {name}_DATA[{size}]"
         for number in range(1, size + 1):
-            value = zeros
-            if number <= 8:
-                x, y, z = (f"{900 * real() - 300:.3f}" for _ in "XYZ")
-                value = f"{{X {x},Y {y},Z {z},A {180 * real() - 90:.3f},B 0.0,C 0.0}}"
-            yield f"{name}_DATA[{number}]={value}"
+            yield f"{name}_DATA[{number}]={frame(choices) if number <= 8 else _NO_FRAME}"
         yield f"DECL CHAR {name}_NAME[{size},24]"
         for number in range(1, size + 1):
             title = f"{name.lower()}_{number}" if number <= 8 else " "
             yield f'{name}_NAME[{number},]="{title}"'
     yield f"DECL LOAD LOAD_DATA[{TOOLS}]"
     for number in range(1, TOOLS + 1):
-        mass = f"{60 * real():.1f}" if number <= 8 else "-1.0"
-        yield f"LOAD_DATA[{number}]={{M {mass},CM {zeros},J {{X 0.0,Y 0.0,Z 0.0}}}}"
+        mass = f"{choices.below(600) / 10}" if number <= 8 else "-1.0"
+        yield f"LOAD_DATA[{number}]={{M {mass},CM {_NO_FRAME},J {{X 0.0,Y 0.0,Z 0.0}}}}"
 
 
 def _signals(cell: Cell) -> Iterator[str]:
-    chance, names, scope = cell.chance, cell.names, cell.scope
+    choices, names, scope = cell.choices, cell.names, cell.scope
     words = names.vocabulary
-    place = {"IN": chance.between(1, 60), "OUT": chance.between(1, 60)}
-    for _ in range(chance.between(10, 60)):
-        way = chance.pick(("IN", "IN", "OUT"))
+    place = {"IN": choices.between(1, 60), "OUT": choices.between(1, 60)}
+    for _ in range(choices.between(10, 60)):
+        way = choices.pick(("IN", "IN", "OUT"))
         first = place[way]
-        is_code = chance.real() < 0.12
-        last = first + chance.between(2, 15) if is_code else first
-        place[way] = last + chance.between(1, 3)
-        pair = (chance.pick(words.stations), chance.pick(words.truths))
+        is_code = choices.chance(12)
+        last = first + choices.between(2, 15) if is_code else first
+        place[way] = last + choices.between(1, 3)
+        pair = (choices.pick(words.stations), choices.pick(words.truths))
         name = names.take(names.joined(("di" if way == "IN" else "do", *pair)))
         if is_code:
             yield f"SIGNAL {name} ${way}[{first}] TO ${way}[{last}]"
-            (scope.codes_in if way == "IN" else scope.codes_out).append(name)
         else:
-            remark = f" ;{names.remark()}" if chance.real() < 0.1 else ""
+            remark = f" ;{names.remark()}" if choices.chance(10) else ""
             yield f"SIGNAL {name} ${way}[{first}]{remark}"
-            (scope.inputs if way == "IN" else scope.outputs).append(name)
+        type_, is_output = INT if is_code else BOOL, way == "OUT"
+        scope.add(Variable(name, type_, is_output, is_local=False, is_signal=True))
 
 
 # ------------------------------------------------------------------------------- machine data
@@ -114,8 +126,8 @@ def _signals(cell: Cell) -> Iterator[str]:
 
 def controller(cell: Cell) -> Iterator[tuple[str, Module]]:
     """The machine data, each with its folder."""
-    chance = cell.chance
-    version = f"V{chance.between(1, 9)}.{chance.below(30)}.{chance.below(9)}"
+    choices = cell.choices
+    version = f"V{choices.between(1, 9)}.{choices.below(30)}.{choices.below(9)}"
     yield "STEU/Mada", _machine_data(cell, "$machine", _interface(cell))
     yield "STEU/Mada", _machine_data(cell, "$custom", _custom(cell))
     option = ["BOOL $TECH_OPT=TRUE", "BOOL $LOOP_CONT=FALSE", "CHAR $LOOP_MSG[128]"]
@@ -126,13 +138,14 @@ def controller(cell: Cell) -> Iterator[tuple[str, Module]]:
     for kind, name, size, value in _ARRAYS:
         axes.append(f"{kind} {name}[{size}]")
         axes += [
-            f"{name}[{n}]={value.format(number=chance.between(1, 900))}" for n in range(1, size + 1)
+            f"{name}[{n}]={value.format(number=choices.between(1, 900))}"
+            for n in range(1, size + 1)
         ]
     yield "R1/Mada", _machine_data(cell, "$machine", axes)
-    model = [f'CHAR $MODEL_NAME[32]\n$MODEL_NAME[]="#CW{chance.between(6, 500)}"']
+    model = [f'CHAR $MODEL_NAME[32]\n$MODEL_NAME[]="#CW{choices.between(6, 500)}"']
     model += [
-        f"REAL $DEF_L_M={chance.between(3, 300)}.0",
-        f"FRAME $DEF_L_CM={constant_of('FRAME')}",
+        f"REAL $DEF_L_M={choices.between(3, 300)}.0",
+        f"FRAME $DEF_L_CM={_NO_FRAME}",
     ]
     yield "R1/Mada", _machine_data(cell, "$robcor", model)
 
@@ -143,7 +156,7 @@ def _machine_data(cell: Cell, name: str, lines: list[str]) -> Module:
 
 def _interface(cell: Cell) -> list[str]:
     inputs, outputs, unused = (group.split() for group in _SIGNALS.split("/"))
-    first = cell.chance.between(900, 960)
+    first = cell.choices.between(900, 960)
     return [
         *(f"SIGNAL {name} $IN[{n}]" for n, name in enumerate(inputs, first)),
         *(f"SIGNAL {name} $OUT[{n}]" for n, name in enumerate(outputs, first)),
@@ -158,7 +171,7 @@ def _custom(cell: Cell) -> list[str]:
         "CHANNEL :SER_1 :SER_1 $PSER_1",
         "CHANNEL :SER_2 :SER_2 $PSER_2",
         "INT $COUNT_I[32]",
-        *(f"$COUNT_I[{n}]={cell.chance.below(999)}" for n in range(1, 33)),
+        *(f"$COUNT_I[{n}]={cell.choices.below(999)}" for n in range(1, 33)),
     ]
 
 
@@ -180,11 +193,10 @@ def system_routines(cell: Cell) -> Iterator[Module]:
 
 def submit(cell: Cell) -> Module:
     """The program that runs beside the robot's, in a loop and without motions."""
-    code = Code(cell.chance, cell.dialect, cell.names.inner(), cell.scope.some(cell.chance))
+    program = cell.program("SPS")
+    code = program.code()
     # programs that move are no business of the submit interpreter [SUB-05]
-    code.scope.routines.clear()
-    code.lines.append("DEF SPS ( )")
-    code.pad = cell.dialect.indent
+    code.scope.forget_routines()
     with code.fold("DECLARATIONS", "DECLARATIONS"):
         code.line("INT ROUND")
     with code.fold("INI", "INI"):
@@ -193,28 +205,27 @@ def submit(cell: Cell) -> Module:
         code.line("WAIT FOR NOT($POWER_FAIL)")
         with code.fold("USER PLC"):
             code.set("ROUND", "ROUND+1")
-            Body(code, None).write(cell.chance.between(10, 120))
-    code.lines.append("END")
-    return Module("sps", program=as_program(cell, code.lines))
+            program.fill(code, cell.choices.between(10, 120))
+    program.end(code, Routine("SPS"), is_called=False)
+    return Module("sps", program=as_program(cell, program.lines))
 
 
 def cell_program(cell: Cell) -> Module:
     """What the line controller starts: calls the programs by their numbers."""
-    programs = [one.name for one in cell.scope.routines if not one.parameters]
-    code = Code(cell.chance, cell.dialect, cell.names.inner(), cell.scope)
-    code.lines.append("DEF CELL ( )")
-    code.pad = cell.dialect.indent
+    names = cell.callable()
+    program = cell.program("CELL")
+    code = program.code()
     code.call("BAS", "#INITMOV", "0")
     code.line("PTP XHOME")
     with code.block("LOOP", "ENDLOOP"):
         code.line("WAIT FOR $IN[1017]")
         code.line("SWITCH PGNO_BITS")
-        for number, name in enumerate(cell.chance.few(programs, 20), 1):
+        for number, name in enumerate(cell.choices.few(names, 20), 1):
             code.line(f"CASE {number}")
             code.call(name)
         code.line("DEFAULT")
         code.call("MsgNote", '"program number %1 is unknown"', "PGNO_BITS")
         code.line("ENDSWITCH")
-    code.lines.append("END")
+    program.end(code, Routine("CELL"), is_called=False)
     data = ["SIGNAL PGNO_BITS $IN[1001] TO $IN[1008]"]
-    return Module("cell", as_program(cell, code.lines), as_data_list(cell, "CELL", data))
+    return Module("cell", as_program(cell, program.lines), as_data_list(cell, "CELL", data))

@@ -19,7 +19,7 @@ from conformance.differential.random_world import RandomWorld
 from conformance.differential.reduction import reduce_program, statements_of
 from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
 from conformance.differential.traces import plain, shown
-from grammar.generation.programs.programs import seeded
+from grammar.generation.closed.programs import seeded
 from grammar.semantics.types import INT, Array
 from interp.bytecode._generated.opcodes import Op
 from interp.port.requests import At, Invoke, Poll, Read, Write
@@ -121,7 +121,7 @@ def test_difference_is_reduced(
     """A program on which executors part is made small and still tells them apart."""
     wrong(mutant_of(Op.MUL_INT, "does what ADD_INT does"))
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
-    found = fuzz(12, 1, ["tree", "vm"])
+    found = fuzz(60, 1, ["tree", "vm"])
     assert found.findings
     small = found.findings[0]
     assert small.statements is not None

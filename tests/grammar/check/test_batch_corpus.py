@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from grammar.check.batch import Wishes, checkup
-from grammar.generation.cells import write_cells
+from grammar.generation.cells.writing import write_cells
 from grammar.notation.generate import GRAMMAR
 
 PROGRAMS = GRAMMAR.parents[1] / "corpus" / "programs"

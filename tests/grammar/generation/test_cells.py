@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from grammar.generation.cells import File, files, write_cells
-from grammar.generation.cells.chance import Chance, Weighted
+from grammar.generation.cells.cells import File, files
 from grammar.generation.cells.dialect import Generation, Letters, a_dialect
+from grammar.generation.cells.writing import write_cells
+from grammar.generation.choices import SeededChoices
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser import antlr_reference
@@ -117,7 +118,7 @@ def test_proportions_are_those_of_real_programs(
 
 def test_all_dialects_occur() -> None:
     """Generations, letters, indentation, line ends and encodings all differ between cells."""
-    dialects = [a_dialect(Chance(f"krl 1 {number}")) for number in range(1, 200)]
+    dialects = [a_dialect(SeededChoices(f"krl 1 {number}")) for number in range(1, 200)]
     assert set(Generation) == {one.generation for one in dialects}
     assert set(Letters) == {one.letters for one in dialects}
     assert {"", "  ", "   ", "    ", "\t"} == {one.indent for one in dialects}
@@ -170,7 +171,7 @@ def test_larger_corpus_begins_like_a_smaller_one(tmp_path: Path) -> None:
 def test_corpus_depends_on_the_seed_alone() -> None:
     """Neither the process nor its hash seed has a say; another seed gives other programs."""
     script = (
-        "import hashlib; from grammar.generation.cells import files; "
+        "import hashlib; from grammar.generation.cells.cells import files; "
         "print(hashlib.sha256(b''.join(f.data for f in files(7, 2))).hexdigest())"
     )
     digests = {
@@ -187,19 +188,3 @@ def test_corpus_depends_on_the_seed_alone() -> None:
     assert {here} == digests
     other = hashlib.sha256(b"".join(file.data for file in files(8, 2))).hexdigest()
     assert here != other
-
-
-def test_weights_decide_how_often_something_is_drawn() -> None:
-    """What weighs nine times as much is drawn about nine times as often."""
-    chance, weighted = Chance("weights"), Weighted([(9.0, "often"), (1.0, "seldom")])
-    drawn = Counter(chance.draw(weighted) for _ in range(2_000))
-    assert 1_700 < drawn["often"] < 1_900
-
-
-def test_few_are_different_and_in_order() -> None:
-    """As many as asked for are chosen, none twice, in the order given; all where there are less."""
-    chance = Chance("few")
-    chosen = chance.few(range(100), 10)
-    assert 10 == len(set(chosen))
-    assert sorted(chosen) == chosen
-    assert [1, 2] == chance.few([1, 2], 5)

@@ -1,0 +1,74 @@
+"""Texts from values and values from texts: SWRITE and SREAD [FCT-10]."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.generation.closed.types import COLOUR, STATE
+from grammar.generation.code import Code
+from grammar.generation.expressions import (
+    array,
+    constant_or_place,
+    expression,
+    read,
+    target,
+    text,
+)
+from grammar.generation.literals import TEXT
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
+
+__all__ = ["format_text", "scan_text"]
+
+_FORMATS: Final[tuple[tuple[Type, tuple[str, ...]], ...]] = (
+    (INT, ("%d", "%5d", "%x", "%-4d|", "%+d", "%03d", "%c", "%u", "%#x", "%.3i")),
+    (REAL, ("%f", "%8.3f", "%.2f", "%e", "%g", "%+.1f", "%d")),
+    (BOOL, ("%s", "%d")),
+    (CHAR, ("%c", "%d", "%s")),
+    (COLOUR, ("%s", "%d")),
+    (TEXT, ("%s", "%10s", "%.2s", "%-6s|")),
+)
+_SCANNED: Final[tuple[tuple[str, str, tuple[Type, ...]], ...]] = (
+    ('"12 3.5"', '"%d %f"', (INT, REAL)),
+    ('"x7"', '"x%d"', (INT,)),
+    ('"A1"', '"%c%d"', (CHAR, INT)),
+    ('"TRUE"', '"%s"', (BOOL,)),
+    ('"1"', '"%d"', (BOOL,)),
+    ('"#RED"', '"%s"', (COLOUR,)),
+    ('"ff"', '"%x"', (INT,)),
+    ('"abc"', '"%d"', (INT,)),
+    ('"1.25E1 9"', '"%e %2d"', (REAL, INT)),
+    ('"77"', '"%1d%1d"', (INT, INT)),
+)
+
+
+def format_text(code: Code) -> bool:
+    """SWRITE: texts from values; now and then a format does not fit its value."""
+    place, state = array(code, TEXT), target(code, STATE)
+    offset = target(code, INT)
+    if not place or state is None or offset is None:
+        return False
+    pattern, values = "", ""
+    for _ in range(code.choices.between(0, 3)):
+        type_, formats = code.choices.pick(_FORMATS)
+        pattern += code.choices.pick(("", " ", "x=", "%%")) + code.choices.pick(formats)
+        if type_ == COLOUR:  # nothing would tell which enumeration a constant is of
+            values += f", {read(code, COLOUR) or 'TRUE'}"
+        else:
+            values += f", {text(code) if type_ == TEXT else expression(code, type_, 1)}"
+    code.spend(2)
+    code.set(offset, code.choices.pick(("0", "0", "1", "3", "99")))
+    return code.line(f'SWRITE({place}, {state}, {offset}, "{pattern}"{values})')
+
+
+def scan_text(code: Code) -> bool:
+    """SREAD: values from texts."""
+    state, offset = target(code, STATE), target(code, INT)
+    if state is None or offset is None:
+        return False
+    choices = code.choices
+    given, pattern, types = choices.pick(_SCANNED)
+    source = given if choices.chance(70) else text(code)
+    places = [constant_or_place(code, type_) for type_ in types]
+    code.spend(2)
+    code.set(offset, choices.pick(("0", "0", "1")))
+    return code.line(f"SREAD({source}, {state}, {offset}, {', '.join((pattern, *places))})")

@@ -1,0 +1,54 @@
+"""What closed programs assign: small numbers, converted ones, and at times one too large."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.generation.code import Code
+from grammar.generation.expressions import atom, expression, operand, read
+from grammar.semantics.types import CHAR, INT, REAL, Type
+
+__all__ = ["assigned_value"]
+
+#: What is too large for an INT, or for a REAL, or nearly so.
+_TOO_LARGE: Final = (
+    *("2147483647+?", "?-2147483647-2", "99999*99999+?", "-2147483647-1-?", "1.0E30*1.0E30+?"),
+    *("46341*46341+?", "3.0E38+3.0E38+?", "-(-2147483647-1)", "2147483647.0+?", "0.5E-30*1.0E-30"),
+)
+
+
+def assigned_value(code: Code, _place: str, type_: Type) -> str:
+    """A value for a variable of a type, converted now and then."""
+    choices = code.choices
+    depth = choices.between(1, code.size.depth)
+    if type_ in (INT, REAL) and code.risks():
+        return choices.pick(_TOO_LARGE).replace("?", atom(code, INT))
+    if type_ == INT:
+        return _integer(code, depth)
+    if type_ == REAL and choices.chance(25):
+        if choices.chance(20):  # more than a REAL can hold
+            return f"{operand(code, INT, 1)} B_OR 16777217"
+        return expression(code, INT, depth)
+    if type_ == CHAR and code.risks():
+        return '""'  # the checker lets it stand for a letter
+    if type_ == CHAR and choices.chance(25):
+        if code.risks():
+            return expression(code, INT, 1)
+        return f"{operand(code, INT, 1)} B_AND 127"
+    return expression(code, type_, depth)
+
+
+def _integer(code: Code, depth: int) -> str:
+    choices = code.choices
+    match choices.below(12):
+        case 0 | 1 | 2 | 3:
+            return f"({expression(code, INT, depth)}) B_AND {choices.pick(('255', '4095'))}"
+        case 4 | 5:
+            return f"({expression(code, INT, depth)})/{choices.pick(('10', '7', '100'))}"
+        case 6:
+            return expression(code, REAL, depth)
+        case 7:
+            return f"{operand(code, INT, 1)}/{choices.pick(('2.0', '-2.0', '4.0'))}"
+        case 8:
+            return read(code, CHAR) or expression(code, INT, 1)
+    return expression(code, INT, depth)

@@ -1,0 +1,338 @@
+"""Blocks of statements: branches, loops, jumps, returns.
+
+In closed programs every loop is bounded: by its limits, or by a variable that only it counts with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from grammar.generation.code import Code
+from grammar.generation.expressions import count, expression, operand, read, text, truth
+from grammar.generation.scope import Variable
+from grammar.generation.statements import assignment
+from grammar.semantics.types import CHAR, INT, Array, Enumeration, Type
+
+__all__ = [
+    "backward_jump",
+    "branch",
+    "give_back",
+    "loop",
+    "loop_for",
+    "loop_repeat",
+    "loop_while",
+    "returned",
+    "statement",
+    "statements",
+    "switch",
+]
+
+#: Loops within blocks.
+_DEEPEST: Final = 5
+#: An upper limit that is not known.
+_UNKNOWN: Final = 10_000
+
+
+def statement(code: Code) -> None:
+    """A statement of the style: an assignment where the place has not what another one takes."""
+    style, choices = code.style, code.choices
+    is_motion = code.moving > 0 and choices.chance(code.moving)
+    if not choices.weighted(style.moving if is_motion else style.statements)(code):
+        assignment(code)
+
+
+def statements(code: Code, most: int | None = None) -> None:
+    """The body of a block, of ``most`` statements."""
+    choices, style = code.choices, code.style
+    for _ in range(choices.between(1, most or code.size.statements)):
+        if code.left() < style.reserve:
+            break
+        if style.jump_share and choices.chance(style.jump_share):
+            _forward_jump(code)
+        else:
+            statement(code)
+
+
+# ------------------------------------------------------------------------- branches
+
+
+def branch(code: Code) -> bool:
+    """IF."""
+    if code.level > code.style.deepest:
+        return False
+    code.spend()
+    code.line(f"IF {truth(code, code.choices.between(1, 2))} THEN")
+    with code.indented():
+        statements(code, 3)
+    if code.choices.chance(code.style.else_share):
+        code.line("ELSE")
+        with code.indented():
+            statements(code, 3)
+    return code.line("ENDIF")
+
+
+def switch(code: Code) -> bool:
+    """SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
+    choices, style = code.choices, code.style
+    type_ = style.selectors(code)
+    labels = _labels(type_)
+    if type_ == INT and style.is_closed:
+        selector: str | None = f"({expression(code, INT, 1)}) B_AND 3"
+    else:
+        selector = read(code, type_)
+    if selector is None or code.level > style.deepest:
+        return False
+    names = [
+        one.variable.name for one in code.scope.places(type_).all if _is_constant(one.variable)
+    ]
+    code.spend()
+    code.line(f"SWITCH {selector}")
+    left = list(labels)
+    while left and (len(left) == len(labels) or choices.chance(style.case_share)):
+        count_ = choices.between(1, min(len(left), style.case_labels))
+        given, left = left[:count_], left[count_:]
+        if names and style.is_closed and choices.chance(20):
+            given.append(choices.pick(names))
+        code.line(f"CASE {code.spelling.comma.join(given)}")
+        with code.indented():
+            statements(code, 2)
+    if choices.chance(60):
+        code.line("DEFAULT")
+        with code.indented():
+            statements(code, 2)
+    return code.line("ENDSWITCH")
+
+
+def _labels(type_: Type) -> Sequence[str]:
+    if isinstance(type_, Enumeration):
+        return [f"#{name}" for name in type_.constants]
+    if type_ == CHAR:
+        return ['"A"', '"Z"', '"a"', '" "', '"x"', '"0"']
+    return ["0", "1", "-1", "2", "3", "'HF'", "100"]
+
+
+def _is_constant(variable: Variable) -> bool:
+    return not variable.is_writable and not isinstance(variable.type, Array)
+
+
+# ------------------------------------------------------------------------- loops
+
+
+def _times(code: Code) -> int:
+    """How often a loop is passed; 0 where there is no room for one."""
+    if not code.style.is_closed:
+        return code.choices.between(2, 12) if code.level <= code.style.deepest else 0
+    room = code.left() // 12
+    if code.loops >= 3 or code.level > _DEEPEST or room < 1:
+        return 0
+    return code.choices.between(1, min(5, room))
+
+
+def _spare(code: Code) -> list[str]:
+    """Variables for counting that no loop around counts with; of a data list in one routine."""
+    used = {one.name for one in code.counters}
+    return [name for name in code.passes if name not in used]
+
+
+def loop_for(code: Code) -> bool:
+    """FOR, upwards or downwards, its limits constants or not [CTL-05]."""
+    choices = code.choices
+    times, spare = _times(code), _spare(code)
+    if not times or not spare:
+        return False
+    name = choices.pick(spare)
+    limits = _closed_limits if code.style.is_closed else _open_limits
+    begin, end, step, low, high, times = limits(code, times)
+    written = "" if step == 1 and choices.chance(60) else f" STEP {step}"
+    code.spend(2)
+    with (
+        code.block(f"FOR {name}{code.spelling.eq}{begin} TO {end}{written}", "ENDFOR"),
+        code.repeated(times + 1),
+    ):
+        code.spend()
+        count(code, name, low, high)
+        statements(code, 3)
+        _leave(code)
+    return True
+
+
+_Limits = tuple[str, str, int, int, int, int]
+
+
+def _closed_limits(code: Code, times: int) -> _Limits:
+    """First and last value, the step, the least and the greatest value, how often it goes."""
+    choices = code.choices
+    first, step = choices.pick((1, 1, 1, 0, -2)), choices.pick((1, 1, 1, 2, -1, -3))
+    final = first + step * (times - 1)
+    last = final + choices.between(0, abs(step) - 1) * (1 if step > 0 else -1)
+    low, high = min(first, final), max(first, final)
+    begin, end = str(first), str(last)
+    way = choices.below(10)
+    if way == 0:
+        end = f"{last}+0*({expression(code, INT, 1)} B_AND 1)"
+    elif way == 1:
+        begin = f"({operand(code, INT, 1)} B_AND 0)+({first})"
+    elif way == 2 and step == 1:
+        end, low, high = f"({operand(code, INT, 1)} B_AND {3 if times >= 3 else 1})", first, 3
+        times = max(3 - first + 1, 1)
+    return begin, end, step, low, high, times
+
+
+def _open_limits(code: Code, times: int) -> _Limits:
+    """The same, as people write it: from one upwards as a rule."""
+    choices = code.choices
+    way = choices.below(100)
+    if way < 10:
+        return str(times), "1", -1, 1, times, 1
+    if way < 20:
+        return "1", read(code, INT) or "$NUM_AX", 1, 1, _UNKNOWN, 1
+    return "1", str(times), choices.pick((1,) * 12 + (2,)), 1, times, 1
+
+
+def _counted(code: Code) -> tuple[str, int] | None:
+    """A variable of its own for a loop or a jump, set to zero, and how often it goes.
+
+    In an open style the name is empty: a condition alone decides.
+    """
+    times = _times(code)
+    if not code.style.is_closed:
+        return ("", 1) if times else None
+    spare = _spare(code)
+    if not times or not spare:
+        return None
+    name = code.choices.pick(spare)
+    code.spend()
+    code.set(name, "0")
+    return name, times
+
+
+def loop_while(code: Code) -> bool:
+    """WHILE [CTL-01]."""
+    found = _counted(code)
+    if found is None:
+        return False
+    name, times = found
+    with code.repeated(times + 1):
+        code.spend()
+        condition = _both(code, code.choices.pick((f"{name}<{times}", f"{name}<>{times}")), "AND")
+        with code.block(f"WHILE {condition}", "ENDWHILE"):
+            _count(code, name, times)
+            statements(code, 3)
+            _leave(code)
+    return True
+
+
+def loop_repeat(code: Code) -> bool:
+    """REPEAT [CTL-01]."""
+    found = _counted(code)
+    if found is None:
+        return False
+    name, times = found
+    code.line("REPEAT")
+    with code.repeated(times):
+        with code.indented():
+            code.spend(2)
+            _count(code, name, times)
+            statements(code, 3)
+            _leave(code)
+        condition = _both(code, f"{name}>={times}", "OR")
+    return code.line(f"UNTIL {condition}")
+
+
+def loop(code: Code) -> bool:
+    """LOOP, left by EXIT [CTL-01, CTL-02]."""
+    found = _counted(code)
+    if found is None:
+        return False
+    name, times = found
+    with code.block("LOOP", "ENDLOOP"), code.repeated(times):
+        code.spend(4)
+        _count(code, name, times)
+        statements(code, 3)
+        code.guarded(f"{name}>={times}" if name else truth(code, 1), "EXIT")
+    return True
+
+
+def _both(code: Code, bound: str, word: str) -> str:
+    """The condition of a loop: its bound, at times with another one; no bound in an open style."""
+    if not code.style.is_closed:
+        return truth(code)
+    return f"({bound}) {word} ({truth(code, 1)})" if code.choices.chance(40) else bound
+
+
+def _count(code: Code, name: str, times: int, low: int = 1) -> None:
+    if name:
+        count(code, name, low, times)
+        code.spend()
+        code.set(name, f"{name}+1")
+
+
+def _leave(code: Code) -> None:
+    """EXIT, sometimes."""
+    if code.choices.chance(code.style.exit_share):
+        code.spend(2)
+        code.guarded(truth(code, 1), "EXIT")
+
+
+# ------------------------------------------------------------------------- jumps
+
+
+def _forward_jump(code: Code) -> None:
+    """GOTO to a label further on, from the same block or out of blocks [CTL-07]."""
+    label = code.names.label()
+    code.spend(2)
+    way = code.choices.below(3)
+    found = _counted(code) if way == 2 else None
+    if way == 1:
+        code.guarded(truth(code), f"GOTO {label}")
+    elif found is None:
+        code.line(f"GOTO {label}")
+    else:
+        name, times = found
+        with code.block("LOOP", "ENDLOOP"), code.repeated(times):
+            code.spend(3)
+            _count(code, name, times)
+            code.guarded(f"({name}>={times}) OR ({truth(code, 1)})", f"GOTO {label}")
+            statements(code, 2)
+    if code.left() >= 12:
+        statements(code, 2)
+    code.line(f"{label}:")
+
+
+def backward_jump(code: Code) -> bool:
+    """GOTO to a label passed before, so often as a variable counts."""
+    found = _counted(code)
+    if found is None:
+        return False
+    name, times = found
+    label = code.names.label()
+    code.line(f"{label}:")
+    with code.repeated(times, is_loop=False):
+        code.spend(3)
+        _count(code, name, times, low=0)
+        statements(code, 3)
+        return code.guarded(f"{name}<{times}" if name else truth(code), f"GOTO {label}")
+
+
+def give_back(code: Code) -> bool:
+    """RETURN, on some condition [CTL-09]."""
+    if code.loops and code.choices.chance(50):
+        return False
+    code.spend(2)
+    with code.block(f"IF {truth(code)} THEN", "ENDIF"):
+        returned(code)
+    return True
+
+
+def returned(code: Code) -> bool:
+    """RETURN, with a value in functions."""
+    result = code.part.result
+    if result is None:
+        return code.line("RETURN")
+    if isinstance(result, Array):
+        return code.line(f"RETURN {text(code)}")
+    value = expression(code, result, 2)
+    if result == INT and code.style.is_closed:
+        value = f"({value}) B_AND 1023"
+    return code.line(f"RETURN {value}")

@@ -1,0 +1,440 @@
+"""Expressions of a type that is asked for, from what a place can name: operators, places, calls.
+
+Relations bind weakest in KRL and stand in parentheses where they are operands [ARI-05, ARI-06].
+Numbers of closed programs are kept small as a rule, so that most go on; now and then one is not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from grammar.generation.code import Code, Counter, ExpressionRule
+from grammar.generation.literals import POSES, TEXT, Path
+from grammar.generation.scope import Parameter, Place, Places, Routine, Variable
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Type
+
+__all__ = [
+    "argument",
+    "array",
+    "atom",
+    "bits",
+    "call_of",
+    "chain",
+    "comparison",
+    "constant",
+    "constant_comparison",
+    "constant_or_place",
+    "count",
+    "expression",
+    "joined",
+    "letter",
+    "mixed_comparison",
+    "near_comparison",
+    "negated",
+    "operand",
+    "pose",
+    "product",
+    "quotient",
+    "read",
+    "relation",
+    "scaled",
+    "signed",
+    "sum_of",
+    "target",
+    "text",
+    "truth",
+    "truth_comparison",
+    "value_comparison",
+]
+
+_ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")
+_EQUAL: Final = ("==", "<>")
+#: Deep enough for the program stack to overflow.
+_TOO_DEEP: Final = 70
+_ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
+
+
+# ------------------------------------------------------------------------- places and atoms
+
+
+def constant(code: Code, type_: Type, *, is_signed: bool = True) -> str:
+    """A constant of the style."""
+    return code.style.literals.constant(code.choices, type_, is_signed=is_signed)
+
+
+def _index(code: Code, size: int) -> str:
+    """An index for a dimension of so many elements: nearly always one that it has."""
+    choices = code.choices
+    if code.risks() and choices.chance(30):
+        # The checker finds what lies outside if it is a constant.
+        wrong = choices.pick(("-1", "0", str(size + 1), "100"))
+        return f"{wrong}+0*{code.passes[0]}"
+    way = choices.below(20 if code.style.is_closed else 16)
+    fitting = [one.name for one in code.counters if one.low >= 1 and one.high <= size]
+    if 10 <= way < 16 and fitting:
+        return choices.pick(fitting)
+    if 16 <= way < 18 and size >= 2:
+        return f"({operand(code, INT, 1)} B_AND {3 if size >= 4 else 1})+1"
+    if way == 18:
+        return f"{choices.between(1, size)}.{choices.pick('04')}"
+    return str(choices.between(1, size))
+
+
+def _written(code: Code, variable: Variable, path: Path) -> str:
+    """A place as text, with indices drawn for it."""
+    way = (_index(code, one) if isinstance(one, int) else one for one in path)
+    return "".join([variable.name, *way])
+
+
+def target(code: Code, type_: Type, *, is_local: bool = True) -> str | None:
+    """A place that can be assigned, ``None`` where there is none."""
+    return _one_of(code, code.scope.places(type_, is_written=True, is_local=is_local))
+
+
+def read(code: Code, type_: Type) -> str | None:
+    """A place that has a value, ``None`` where there is none."""
+    is_bare = code.risks()
+    has_letters = type_ != CHAR or not code.choices.chance(92)
+    return _one_of(code, code.scope.places(type_, is_bare=is_bare, has_letters=has_letters))
+
+
+def _one_of(code: Code, places: Places) -> str | None:
+    """A variable as a whole, any place alike, or one of each variable alike."""
+    choices, style = code.choices, code.style
+    if not places.holders:
+        return None
+    if style.whole_share and places.whole and choices.chance(style.whole_share):
+        return choices.pick(places.whole).name
+    if style.any_place_share and choices.chance(style.any_place_share):
+        place = choices.pick(places.all)
+        return _written(code, place.variable, place.path)
+    variable, paths = choices.pick(places.holders)
+    return _written(code, variable, choices.pick(paths))
+
+
+def atom(code: Code, type_: Type) -> str:
+    """A variable or a constant."""
+    choices, style = code.choices, code.style
+    if type_ in style.atoms:
+        share, rules = style.atoms[type_]
+        if choices.chance(share):
+            return choices.weighted(rules)(code, 0)
+    share = style.truth_share if type_ == BOOL else style.variable_share
+    if choices.chance(share):
+        if type_ == INT and code.counters and choices.chance(25):
+            return choices.pick(code.counters).name
+        found = read(code, type_)
+        if found is not None:
+            return found
+    return constant(code, type_, is_signed=False)
+
+
+def constant_or_place(code: Code, type_: Type) -> str:
+    """A variable, or a constant where there is none."""
+    return target(code, type_) or constant(code, type_)
+
+
+def count(code: Code, name: str, low: int, high: int) -> None:
+    """In this loop a variable has a value within limits."""
+    code.counters.append(Counter(name, low, high))
+
+
+# ------------------------------------------------------------------------- calls
+
+
+def call_of(code: Code, routine: Routine) -> str:
+    """A call, whose cost is charged to the place it stands in."""
+    if not routine.deepest:
+        code.spend(routine.cost)
+        return code.spelling.call(routine.name, _arguments(code, routine.parameters))
+    deepest = max(min(code.left() // routine.cost - 1, routine.deepest), 1)
+    bound = code.choices.between(1, min(deepest, 6))
+    if deepest > _TOO_DEEP and code.risks():
+        bound = _TOO_DEEP
+    code.spend(routine.cost * (bound + 1))
+    given = _arguments(code, routine.parameters[1:])
+    return code.spelling.call(routine.name, [str(bound), *given])
+
+
+def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
+    return [argument(code, one.type, is_out=one.is_out) for one in parameters]
+
+
+def argument(code: Code, type_: Type, *, is_out: bool) -> str:
+    """An argument; for a parameter :OUT a variable nearly always."""
+    choices, style = code.choices, code.style
+    if style.omitted_share and choices.chance(style.omitted_share):
+        return ""  # left out [SCO-13]
+    if isinstance(type_, Array):
+        return text(code) if not is_out and type_ == TEXT else array(code, type_)
+    if is_out and choices.chance(95):
+        place = target(code, type_)
+        if place is not None:
+            return place
+    if is_out or type_ not in (INT, REAL):
+        return expression(code, type_, 1)
+    if not style.is_closed:
+        return atom(code, type_)
+    return expression(code, choices.pick((type_, type_, type_, type_, INT, REAL)), 1)
+
+
+def array(code: Code, type_: Array) -> str:
+    """A whole array, or a row of one of more dimensions; empty where there is none."""
+    rank, choices = len(type_.sizes), code.choices
+    found = []
+    for given in range(4 - rank):
+        arrays = code.scope.arrays(type_.element, rank + given, is_written=True)
+        if arrays and (given == 0 or choices.chance(40)):
+            found.append(_row(code, choices.pick(arrays), given))
+    return choices.pick(found) if found else ""
+
+
+def _row(code: Code, place: Place, given: int) -> str:
+    """A whole array, or a part of one, whose first dimensions have an index [TYP-11]."""
+    assert isinstance(place.type, Array)
+    sizes = [size or 2 for size in place.type.sizes]
+    first = ",".join(_index(code, size) for size in sizes[:given])
+    commas = "," * (len(sizes) - max(given, 1))
+    return f"{_written(code, place.variable, place.path)}[{first}{commas}]"
+
+
+def text(code: Code) -> str:
+    """A text: a variable, a row of a table, or a text as written."""
+    found = array(code, TEXT) if code.choices.chance(60) else ""
+    return found or constant(code, TEXT)
+
+
+# ------------------------------------------------------------------------- expressions
+
+
+def expression(code: Code, type_: Type, depth: int) -> str:
+    """An expression of a type; ``depth`` is how deep it may nest."""
+    if depth <= 0:
+        return atom(code, type_)
+    choices, style = code.choices, code.style
+    way = choices.below(100)
+    if way < style.atom_share:
+        return atom(code, type_)
+    if style.operator_share <= way < style.operator_share + style.call_share:
+        found = code.scope.callable(type_, code.left() - 1)
+        if found:
+            return call_of(code, choices.pick(found))
+    elif way >= style.operator_share and type_ in style.functions:
+        return choices.weighted(style.functions[type_])(code, depth - 1)
+    if type_ in style.expressions:
+        return choices.weighted(style.expressions[type_])(code, depth)
+    return atom(code, type_)
+
+
+def truth(code: Code, depth: int = 2) -> str:
+    """A condition."""
+    return expression(code, BOOL, depth)
+
+
+def operand(code: Code, type_: Type, depth: int) -> str:
+    """An expression as an operand: in parentheses where it is not an atom."""
+    found = expression(code, type_, depth)
+    return found if _ATOM.fullmatch(found) else f"({found})"
+
+
+def _other(code: Code, type_: Type) -> Type:
+    """The type of an operand beside one: REAL is joined by INT at times."""
+    if type_ == REAL and code.style.is_closed:
+        return code.choices.pick((REAL, REAL, REAL, INT))
+    return type_
+
+
+def _factor(code: Code, type_: Type) -> str:
+    """A number that a product stays small with."""
+    choices = code.choices
+    small = ("2", "3", "7", "-1", "0") if type_ == INT else ("0.5", "1.1", "-2.0")
+    found = choices.pick((*small, atom(code, type_)))
+    return f"({found})" if found.startswith("-") else found
+
+
+def _divisor(code: Code, type_: Type) -> str:
+    choices = code.choices
+    if code.risks():
+        return choices.pick(("0", atom(code, type_)))
+    if code.style.is_closed and choices.chance(30):
+        return f"(({atom(code, INT)} B_AND 7)+1)"
+    return choices.pick(("2", "3", "(-2)", "7") if type_ == INT else ("2.0", "0.3", "4", "1.5"))
+
+
+def _of(type_: Type, rule: Callable[[Code, Type, int], str]) -> ExpressionRule:
+    return lambda code, depth: rule(code, type_, depth)
+
+
+def sum_of(type_: Type) -> ExpressionRule:
+    """A sum or a difference."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        left = operand(code, type_, depth - 1)
+        sign = code.choices.pick("+-")
+        return code.spelling.binary(left, sign, operand(code, _other(code, type_), depth - 1))
+
+    return _of(type_, rule)
+
+
+def scaled(type_: Type) -> ExpressionRule:
+    """A product with a number that is small."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        left = operand(code, type_, depth - 1)
+        return code.spelling.binary(left, "*", _factor(code, type_))
+
+    return _of(type_, rule)
+
+
+def product(type_: Type) -> ExpressionRule:
+    """A product of any numbers."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        left = operand(code, _other(code, type_), depth - 1)
+        return code.spelling.binary(left, "*", operand(code, type_, depth - 1))
+
+    return _of(type_, rule)
+
+
+def quotient(type_: Type) -> ExpressionRule:
+    """A quotient whose divisor is seldom zero."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        left = operand(code, type_, depth - 1)
+        return code.spelling.binary(left, "/", _divisor(code, type_))
+
+    return _of(type_, rule)
+
+
+def chain(type_: Type) -> ExpressionRule:
+    """Sums and products without parentheses, so that precedence is at work [ARI-05]."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        choices = code.choices
+        found = atom(code, type_)
+        for _ in range(choices.between(1, depth + 1)):
+            sign = choices.pick("+-*/")
+            if sign == "/":
+                right = _divisor(code, type_)
+            elif sign == "*":
+                right = str(choices.between(0, 4))
+            else:
+                right = atom(code, type_)
+            found = code.spelling.binary(found, sign, right)
+        return found
+
+    return _of(type_, rule)
+
+
+def signed(type_: Type) -> ExpressionRule:
+    """A number with a sign before it."""
+
+    def rule(code: Code, type_: Type, depth: int) -> str:
+        return f"{code.choices.pick('-+')}{operand(code, type_, depth - 1)}"
+
+    return _of(type_, rule)
+
+
+def bits(code: Code, depth: int) -> str:
+    """Bits of integers, or of a letter, combined."""
+    left = operand(code, INT, depth - 1)
+    word = code.choices.pick(("B_AND", "B_OR", "B_EXOR", "B_AND"))
+    right = code.choices.pick((INT, INT, INT, INT, INT, CHAR))
+    return f"{left} {word} {operand(code, right, depth - 1)}"
+
+
+def negated(word: str, type_: Type) -> ExpressionRule:
+    """NOT or B_NOT of an operand."""
+    return lambda code, depth: f"{word} {operand(code, type_, depth - 1)}"
+
+
+def joined(code: Code, depth: int) -> str:
+    """Truth values combined."""
+    operands = [operand(code, BOOL, depth - 1) for _ in range(code.choices.between(2, 3))]
+    return f" {code.choices.pick(('AND', 'OR', 'EXOR'))} ".join(operands)
+
+
+def letter(code: Code, depth: int) -> str:
+    """A letter, which no operator makes, in parentheses at times."""
+    found = atom(code, CHAR)
+    return f"({found})" if depth > 1 and code.choices.chance(10) else found
+
+
+def pose(type_: Structure) -> ExpressionRule:
+    """Frames composed by the geometric operator; the last one gives the type [ARI-08]."""
+
+    def rule(code: Code, depth: int) -> str:
+        choices = code.choices
+        if choices.chance(45):
+            return atom(code, type_)
+        frames = [_frame(code, choices.pick(POSES)) for _ in range(choices.between(1, depth))]
+        gap = code.spelling.gap
+        return f"{gap}:{gap}".join([*frames, _frame(code, type_)])
+
+    return rule
+
+
+def _frame(code: Code, type_: Structure) -> str:
+    """A variable, or an aggregate that names its type, as nothing else would tell it."""
+    choices = code.choices
+    found = read(code, type_)
+    if found is None or choices.chance(15):
+        return f"{{{type_.name}: X 1.0,Y {constant(code, REAL)},Z 3.0,A 10.0,B 0.0,C -90.0}}"
+    return f"({found})" if code.style.is_closed and choices.chance(10) else found
+
+
+# ------------------------------------------------------------------------- relations
+
+
+def relation(code: Code, depth: int) -> str:
+    """A comparison of two values of one type, of numbers of both, of letters [ARI-10]."""
+    return code.choices.weighted(code.style.relations)(code, depth)
+
+
+def near_comparison(code: Code, _depth: int) -> str:
+    """A comparison of numbers that are equal or nearly so."""
+    choices = code.choices
+    left = atom(code, choices.pick((INT, REAL)))
+    others = (left, left, left, f"{left}+1", f"{left}-1", "0", "1", "2", f"{left}*1.0")
+    return f"{left} {choices.pick(_ORDERS)} {choices.pick(others)}"
+
+
+def value_comparison(code: Code, depth: int) -> str:
+    """A comparison of numbers or letters."""
+    return comparison(
+        code, depth, code.choices.pick(((INT, INT), (REAL, REAL), (INT, REAL), (CHAR, CHAR)))
+    )
+
+
+def mixed_comparison(code: Code, depth: int) -> str:
+    """A comparison of values of two types."""
+    return comparison(code, depth, code.choices.pick(((CHAR, INT), (INT, CHAR), (REAL, INT))))
+
+
+def truth_comparison(code: Code, depth: int) -> str:
+    """A comparison of truth values."""
+    return comparison(code, depth, (BOOL, BOOL))
+
+
+def comparison(code: Code, depth: int, types: tuple[Type, Type]) -> str:
+    """A comparison of two values of these types."""
+    left, right = types
+    sign = code.choices.pick(_EQUAL if left == BOOL else _ORDERS)
+    if left == right == CHAR and code.risks():
+        return f'{operand(code, CHAR, depth - 1)} {sign} ""'  # which is no letter
+    first = operand(code, left, depth - 1)
+    return code.spelling.binary(first, sign, operand(code, right, depth - 1))
+
+
+def constant_comparison(code: Code, depth: int) -> str:
+    """A comparison of constants of an enumeration, the controller's own among them."""
+    choices, style = code.choices, code.style
+    type_ = style.compared(code)
+    functions = style.functions.get(type_)
+    left = choices.weighted(functions)(code, depth) if functions else read(code, type_)
+    if left is None:
+        return truth_comparison(code, depth)
+    right = read(code, type_) if choices.chance(30) else None
+    return code.spelling.binary(left, choices.pick(_EQUAL), right or constant(code, type_))

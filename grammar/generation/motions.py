@@ -1,0 +1,253 @@
+"""Motions, spline blocks, triggers, interrupts."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.generation.code import Code
+from grammar.generation.expressions import (
+    atom,
+    constant,
+    expression,
+    operand,
+    target,
+    truth,
+)
+from grammar.generation.literals import POSES
+from grammar.generation.scope import Routine
+from grammar.generation.statements import output
+from grammar.semantics.types import INT, REAL
+
+__all__ = [
+    "action_call",
+    "brake",
+    "emily_motion",
+    "interrupt",
+    "motion",
+    "motion_text",
+    "spline_block",
+    "spline_motion",
+    "trigger",
+]
+
+_PRIORITIES: Final = ("1", "4", "20", "39", "81", "-1")
+_NUMBERS: Final = (1, 2, 4, 5, 10, 39, 81, 128)
+_SINGLE: Final = ("SPTP", "SLIN", "SCIRC", "SPTP_REL", "SLIN_REL", "SCIRC_REL")
+_AXIS_SEGMENTS: Final = ("SPTP", "SPTP_REL")
+_PATH_SEGMENTS: Final = ("SPL", "SLIN", "SCIRC", "SPL_REL", "SLIN_REL", "SCIRC_REL")
+
+
+# ------------------------------------------------------------------------- single motions
+
+
+def motion_text(code: Code, kind: str) -> str:
+    """A motion of a kind, up to where it blends."""
+    choices, style = code.choices, code.style
+    text = f"{kind} {style.goal(code, kind)}"
+    if "CIRC" in kind:
+        text += f",{code.spelling.gap}{style.goal(code, kind)}"
+        if choices.chance(40 if kind[0] == "S" else 50):
+            text += f", CA {expression(code, REAL, 1)}"
+    return text
+
+
+def motion(code: Code) -> bool:
+    """PTP, LIN, CIRC, the relative ones, and asynchronous axes."""
+    choices, style = code.choices, code.style
+    code.spend()
+    kind = choices.weighted(style.motions)
+    if kind == "ASYPTP":
+        return code.line(f"ASYPTP {{E1 {constant(code, REAL)}}}")
+    text = motion_text(code, kind) + style.blend(code, kind)
+    if kind in ("LIN_REL", "CIRC_REL"):
+        text += choices.pick(("", " #BASE", " #TOOL"))
+    return code.line(text)
+
+
+def spline_motion(code: Code) -> bool:
+    """SPTP, SLIN, SCIRC by themselves; none within interrupts [SPL-11]."""
+    if code.part.is_action or not code.style.has_splines:
+        return False
+    kind = code.choices.pick(_SINGLE)
+    code.spend()
+    return code.line(_segment(code, kind) + code.choices.pick(("", "", " C_SPL")))
+
+
+def _segment(code: Code, kind: str) -> str:
+    return motion_text(code, kind) + _with(code, 30)
+
+
+def _with(code: Code, percent: int) -> str:
+    """Values for one motion only [SPL-08]."""
+    choices, eq = code.choices, code.spelling.eq
+    if not choices.chance(percent):
+        return ""
+    values = [
+        choices.pick(
+            (
+                f"$VEL.CP{eq}{expression(code, REAL, 1)}",
+                f"$ORI_TYPE{eq}#CONSTANT",
+                f"$VEL_AXIS[{choices.between(1, 6)}]{eq}50",
+                f"$BASE{eq}{atom(code, POSES[0])}",
+                f"$ACC.CP{eq}{constant(code, REAL)}",
+            )
+        )
+        for _ in range(choices.between(1, 2))
+    ]
+    return f" WITH {', '.join(values)}"
+
+
+def emily_motion(code: Code) -> bool:
+    """MOVE_EMI."""
+    name = code.choices.pick(("EMI1", "A"))
+    more = f" FLT {expression(code, REAL, 1)}" if code.choices.chance(50) else ""
+    code.spend()
+    return code.line(f'MOVE_EMI "{name}" "START"{more}')
+
+
+# ------------------------------------------------------------------------- spline blocks
+
+
+def spline_block(code: Code) -> bool:
+    """SPLINE or PTP_SPLINE [SPL-01]."""
+    if code.part.is_action or not code.style.has_splines:
+        return False
+    choices = code.choices
+    is_axis = choices.chance(25)
+    code.spend()
+    head = f"{'PTP_SPLINE' if is_axis else 'SPLINE'}{_with(code, 25)}"
+    # CONST_VEL and TIME_BLOCK exclude one another [SPL-10].
+    is_timed = choices.chance(30) and not is_axis
+    code.line(head)
+    with code.indented():
+        if is_timed:
+            code.line("TIME_BLOCK START")
+        edges = ["END", "START"]
+        for _ in range(choices.between(1, 4)):
+            _item(code, edges, is_axis=is_axis, is_timed=is_timed)
+        if is_timed:
+            code.line(f"TIME_BLOCK END{code.spelling.eq}{expression(code, REAL, 1)}")
+        elif edges == ["END"]:
+            code.line(f"CONST_VEL END{code.spelling.eq}{_distance(code)}")
+    return code.line(f"ENDSPLINE{choices.pick(('', '', ' C_SPL'))}")
+
+
+def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> None:
+    """A segment with what belongs to it; ``edges`` of constant velocity are still to come."""
+    choices, eq = code.choices, code.spelling.eq
+    way = choices.below(10)
+    if way < 2:
+        code.line(f"TRIGGER WHEN PATH{eq}{_distance(code)}{_onstart(code)} {_triggered(code)}")
+    elif way == 2 and not is_axis:
+        path, condition = f"{_distance(code)}{_onstart(code)}", truth(code)
+        code.line(f"STOP WHEN PATH{eq}{path} IF {condition}")
+    elif way == 3 and is_timed:
+        code.line(f"TIME_BLOCK PART{eq}{expression(code, REAL, 1)}")
+    elif way == 3 and not is_axis and edges:
+        code.line(f"CONST_VEL {edges.pop()}{eq}{_distance(code)}{_onstart(code)}")
+    code.line(_segment(code, choices.pick(_AXIS_SEGMENTS if is_axis else _PATH_SEGMENTS)))
+
+
+# ------------------------------------------------------------------------- triggers
+
+
+def _distance(code: Code) -> str:
+    return code.choices.pick(("0", "10.0", "-5", atom(code, REAL)))
+
+
+def _onstart(code: Code) -> str:
+    return code.choices.pick(("", " ONSTART"))
+
+
+def _triggered(code: Code) -> str:
+    """What stands behind the place of a trigger: delay, action, priority."""
+    choices, eq = code.choices, code.spelling.eq
+    delay = choices.pick(("0", "20", "-10.5", f"{operand(code, INT, 1)} B_AND 255"))
+    actions = code.scope.actions()
+    if actions and choices.chance(50):
+        called = action_call(code, choices.pick(actions))
+        return f"DELAY{eq}{delay} DO {called} PRIO{eq}{choices.pick(_PRIORITIES)}"
+    way = choices.below(3)
+    action = None
+    if way == 0:
+        found = target(code, INT, is_local=False)
+        if found is not None:
+            action = f"{found}{eq}{expression(code, INT, 1)}"
+    if way == 1:
+        action = code.spelling.call("PULSE", (output(code), "TRUE", "0.2"))
+    if action is None:
+        value = choices.pick(("TRUE", "FALSE", truth(code, 1)))
+        action = f"{output(code)}{eq}{value}"
+    return f"DELAY{eq}{delay} DO {action}"
+
+
+def action_call(code: Code, routine: Routine) -> str:
+    """A call for later, when the variables of this routine may be gone."""
+    given = [
+        constant(code, one.type)
+        if not one.is_out
+        else target(code, one.type, is_local=code.choices.chance(70)) or constant(code, one.type)
+        for one in routine.parameters
+    ]
+    return code.spelling.call(routine.name, given)
+
+
+def trigger(code: Code) -> bool:
+    """TRIGGER, and the motion it belongs to."""
+    if code.part.is_action:
+        return False
+    choices, eq = code.choices, code.spelling.eq
+    code.spend(2)
+    if not code.style.has_splines or choices.chance(60):
+        place = choices.pick(("0", "1"))
+        code.line(f"TRIGGER WHEN DISTANCE{eq}{place} {_triggered(code)}")
+        return motion(code)
+    code.line(f"TRIGGER WHEN PATH{eq}{_distance(code)}{_onstart(code)} {_triggered(code)}")
+    return code.line(f"{motion_text(code, 'LIN')}{choices.pick(('', ' C_DIS'))}")
+
+
+# ------------------------------------------------------------------------- interrupts
+
+
+def interrupt(code: Code) -> bool:
+    """INTERRUPT DECL, ON, OFF, ENABLE, DISABLE [INT-01, INT-07]."""
+    choices = code.choices
+    code.spend()
+    if not code.interrupts or choices.chance(40):
+        return _declaration(code)
+    number = choices.pick(code.interrupts)
+    way = choices.below(8)
+    if way < 2:
+        return code.line(f"INTERRUPT ON {number}")
+    if way < 6:
+        return code.line(f"INTERRUPT {choices.pick(('OFF', 'ENABLE', 'DISABLE'))} {number}")
+    return code.line(f"INTERRUPT {choices.pick(('ON', 'OFF', 'ENABLE', 'DISABLE'))}")
+
+
+def _declaration(code: Code) -> bool:
+    choices = code.choices
+    actions = code.scope.actions()
+    number, word = choices.pick(_NUMBERS), ""
+    inputs = f"$IN[{choices.between(1, 16)}]", f"$FLAG[{choices.between(1, 16)}]==TRUE"
+    condition = choices.pick((*inputs, truth(code)))
+    if actions and choices.chance(85):
+        action = action_call(code, choices.pick(actions))
+    else:
+        action = choices.pick(("BRAKE", "BRAKE F", "BRAKE FF", "SYNC()", "PULSE($OUT[4],TRUE,1)"))
+        word = choices.pick(("", "GLOBAL "))
+    code.line(f"{word}INTERRUPT DECL {number} WHEN {condition} DO {action}")
+    code.interrupts.append(number)
+    if choices.chance(75):
+        code.spend()
+        code.line(f"INTERRUPT ON {number}")
+    return True
+
+
+def brake(code: Code) -> bool:
+    """BRAKE and RESUME, where an interrupt routine is made."""
+    if not code.part.is_action:
+        return False
+    code.spend()
+    return code.line(
+        code.choices.pick(("BRAKE", "BRAKE F", "BRAKE FF", "RESUME", "RESUME", "RESUME"))
+    )

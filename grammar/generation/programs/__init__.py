@@ -1,1 +1,0 @@
-"""Closed programs for the fuzzer: they run without a cell and use much of the language."""

@@ -1,0 +1,150 @@
+"""Declarations, and routines as they are written: heads, parameters, local data, first values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Final
+
+from grammar.generation.choices import Choices
+from grammar.generation.code import Code, Naming, Style
+from grammar.generation.literals import declarator, type_name
+from grammar.generation.scope import Parameter, Routine, Scope, Variable
+from grammar.semantics.types import Array, Enumeration, Structure, Type
+
+__all__ = [
+    "DEPTH",
+    "begin",
+    "constant_datum",
+    "datum",
+    "declare",
+    "declare_parameters",
+    "enumeration",
+    "parameters",
+    "routine_text",
+    "structure_definition",
+]
+
+#: The parameter that counts how often a routine may still call itself.
+DEPTH: Final = "N"
+#: Types that are declared without DECL as well [TYP-06].
+_WITHOUT_DECL: Final = frozenset(
+    "INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
+)
+
+
+# ------------------------------------------------------------------------- data lists
+
+
+def decl(choices: Choices, style: Style, type_: Type, *, is_global: bool = False) -> str:
+    """What stands before a declarator: DECL where it is not left out, GLOBAL, the type."""
+    name = type_name(type_)
+    is_short = name in _WITHOUT_DECL and choices.chance(style.short_declaration_share)
+    return f"{'' if is_short else 'DECL '}{'GLOBAL ' if is_global else ''}{name}"
+
+
+def datum(
+    choices: Choices, style: Style, scope: Scope, type_: Type, name: str, *, is_global: bool
+) -> list[str]:
+    """A variable of a data list, with initial values nearly always [TYP-10]."""
+    has_value = not choices.chance(style.bare_share)
+    first = f"{decl(choices, style, type_, is_global=is_global)} {declarator(type_, name)}"
+    scope.add(Variable(name, type_, is_local=False, has_value=has_value))
+    if not has_value:
+        return [first]
+    values = style.literals.initialisation(choices, type_, name)
+    if isinstance(type_, Array):
+        return [first, *(f"{target}{style.spelling.eq}{value}" for target, value in values)]
+    return [f"{first}{style.spelling.eq}{values[0][1]}"]
+
+
+def constant_datum(
+    choices: Choices, style: Style, scope: Scope, type_: Type, name: str, *, is_global: bool
+) -> str:
+    """A named constant [TYP-07]."""
+    scope.add(Variable(name, type_, is_writable=False, is_local=False))
+    word = "GLOBAL " if is_global else ""
+    value = style.literals.constant(choices, type_)
+    return f"DECL {word}CONST {type_name(type_)} {name}{style.spelling.eq}{value}"
+
+
+def enumeration(type_: Enumeration, *, is_global: bool, comma: str = ",") -> str:
+    """The definition of an enumeration."""
+    return f"{'GLOBAL ' if is_global else ''}ENUM {type_.name} {comma.join(type_.constants)}"
+
+
+def structure_definition(
+    choices: Choices, type_: Structure, *, is_global: bool, comma: str = ","
+) -> str:
+    """The definition of a structure; members of one type share its name or have one each."""
+    groups: list[str] = []
+    before = ""
+    for member in type_.members:
+        name, written = type_name(member.type), declarator(member.type, member.name)
+        groups.append(written if name == before and choices.chance(50) else f"{name} {written}")
+        before = name
+    return f"{'GLOBAL ' if is_global else ''}STRUC {type_.name} {comma.join(groups)}"
+
+
+# ------------------------------------------------------------------------- routines
+
+
+def parameters(
+    choices: Choices, style: Style, names: Naming, count: int, *, has_arrays: bool = True
+) -> list[Parameter]:
+    """Formal parameters of types of the style; what is called by interrupts has no arrays."""
+    drawn = [style.parameter(choices, has_arrays) for _ in range(count)]
+    return [replace(one, name=names.variable(one.type, "P")) for one in drawn]
+
+
+def declare_parameters(code: Code, given: Sequence[Parameter]) -> None:
+    """Declarations of parameters; what counts how deep a routine calls itself is not written."""
+    for one in given:
+        first = decl(code.choices, code.style, one.type)
+        code.line(f"{first} {declarator(one.type, one.name, is_open=True)}")
+        code.scope.add(Variable(one.name, one.type, is_writable=one.name != DEPTH))
+
+
+def declare(code: Code, types: Sequence[Type], name_of: Callable[[Type], str]) -> list[Variable]:
+    """Declarations of local variables, which have no value yet."""
+    found: list[Variable] = []
+    for type_ in types:
+        name, style = name_of(type_), code.style
+        is_joined = style.group_share and found and type_name(found[-1].type) == type_name(type_)
+        if is_joined and code.choices.chance(style.group_share):
+            code.lines[-1] += f"{style.spelling.comma}{declarator(type_, name)}"
+        else:
+            code.line(f"{decl(code.choices, style, type_)} {declarator(type_, name)}")
+        has_value = not code.choices.chance(style.bare_local_share)
+        found.append(Variable(name, type_, has_value=has_value))
+        code.scope.add(found[-1])
+    return found
+
+
+def begin(code: Code, variables: Sequence[Variable], most: int) -> None:
+    """Give local variables their first values, each in so many parts at most."""
+    for variable in variables:
+        if variable.has_value:
+            values = code.style.literals.initialisation(code.choices, variable.type, variable.name)
+            for target, value in values[:most]:
+                code.spend()
+                code.set(target, value)
+
+
+def routine_text(
+    code: Code, routine: Routine, *, is_global: bool = False, close: str = ")"
+) -> list[str]:
+    """The routine with its head and its end."""
+    spelling = code.spelling
+    formal = []
+    for one in routine.parameters:
+        rank = len(one.type.sizes) if isinstance(one.type, Array) else 0
+        index = f"[{',' * (rank - 1)}]" if rank else ""
+        mode = (":OUT" if one.is_out else ":IN") if one.is_explicit else ""
+        formal.append(f"{one.name}{index}{mode}")
+    word, given = "GLOBAL " if is_global else "", spelling.comma.join(formal)
+    name = f"{routine.name}{spelling.before}({given}{close}"
+    if routine.result is None:
+        return [f"{word}DEF {name}", *code.lines, "END"]
+    size = f"[{routine.result.sizes[0]}]" if isinstance(routine.result, Array) else ""
+    return [f"{word}DEFFCT {type_name(routine.result)}{size} {name}", *code.lines, "ENDFCT"]
