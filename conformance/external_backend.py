@@ -6,7 +6,7 @@
 
 An executor is made as ours are: ``MyExecutor(program, routine, limits, sink)`` gives an
 `interp.port.executor.Executor` for a checked program. A robot is made by ``MyRobot(machine,
-cycle)``, an `interp.robot.simulation.robots.Robot`. Each case is evaluated by what it expects, and
+cycle)``, an `interp.robot.simulation.robot.Robot`. Each case is evaluated by what it expects, and
 compared with the reference event by event: the tree interpreter, and the kinematic robot.
 """
 

@@ -14,12 +14,12 @@ from interp.robot.api.commands import MotionCommand, OutputCommand, Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import Motions
 from interp.robot.arm import Approximation, Place, Settings
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.simulation.robots import ROBOTS, make_robot
+from interp.robot.simulation.factory import ROBOTS, make_robot
 from interp.robot.simulation.tracking import Tracking
+from interp.values.poses import Pose
 
 CYCLE = 12_000  # µs: the interpolation cycle
 HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)

@@ -25,7 +25,8 @@ from interp.robot.kinematics.data_list import DataListError
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDataError, read_machine
 from interp.robot.models import default_machine, model_file
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.simulation.robots import Robot, RobotName, make_robot
+from interp.robot.simulation.factory import RobotName, make_robot
+from interp.robot.simulation.robot import Robot
 from interp.robot.simulation.tracking import PathRecord, Tracking
 from interp.tree import system_values
 from interp.values.faults import Fault, LinkError

@@ -34,7 +34,8 @@ from interp.port.executor import Executor
 from interp.program.load import CheckedProgram, Limits, load
 from interp.robot.kinematics.machine_data import Machine
 from interp.robot.models import default_machine
-from interp.robot.simulation.robots import ROBOTS, Robot, RobotName
+from interp.robot.simulation.factory import ROBOTS, RobotName
+from interp.robot.simulation.robot import Robot
 from interp.values.faults import LinkError
 
 __all__ = [

@@ -16,13 +16,13 @@ from interp.robot.api.batch import BatchCore
 from interp.robot.api.commands import MotionCommand, Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Approximation, Motion, Settings, Target
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.simulation.robots import ROBOTS, RobotName, make_robot
+from interp.robot.simulation.factory import ROBOTS, RobotName, make_robot
 from interp.robot.simulation.tracking import Tracking
+from interp.values.poses import Pose
 
 __all__ = ["AIMS", "STEPS", "drive", "measure", "motions"]
 

@@ -30,10 +30,10 @@ from interp.robot.api.commands import (
     Transaction,
 )
 from interp.robot.arm import Motion, Place, Position
-from interp.robot.kinematics.frames import Pose
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
+from interp.values.poses import Pose
 from interp.values.values import EnumValue
 
 __all__ = ["MotionQueue", "PlannedPoint", "TriggerCall"]

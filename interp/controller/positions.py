@@ -18,13 +18,13 @@ from interp.controller.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
-from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.kinematics.targets import turn_of
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import fault
+from interp.values.poses import IDENTITY, Pose
 from interp.values.values import EnumValue, StructureValue, single
 
 __all__ = ["FramesInForce", "Positions", "axes_value", "pose_of", "pose_value", "word_of"]

@@ -26,7 +26,7 @@ from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.controller.waits import Waits
 from interp.port.requests import At, Crash, End, Fail, Request
-from interp.robot.simulation.robots import RobotFault
+from interp.robot.simulation.robot import RobotFault
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import BudgetExhausted, RuntimeFailure
 

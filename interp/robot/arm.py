@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.port.requests import At
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
+from interp.values.poses import Pose
 
 __all__ = [
     "Approximation",

@@ -32,7 +32,7 @@ from grammar.semantics.types import (
 )
 from interp.values.faults import fault
 from interp.values.formats import sread, swrite
-from interp.values.frames import RADIAN, inverted, radians
+from interp.values.geometric_operator import RADIAN, inverted, radians
 from interp.values.operators import Kind, Primitive
 from interp.values.texts import TEXTS, Outcome
 from interp.values.values import (

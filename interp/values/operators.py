@@ -34,7 +34,7 @@ from grammar.semantics.types import (
     is_cartesian,
 )
 from interp.values.faults import fault
-from interp.values.frames import composed
+from interp.values.geometric_operator import composed
 from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
 
 __all__ = [

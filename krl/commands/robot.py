@@ -13,8 +13,8 @@ from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.frames import Pose
     from interp.robot.kinematics.solver import Arm
+    from interp.values.poses import Pose
 
 __all__ = ["app"]
 
@@ -139,7 +139,7 @@ def _read_points(path: Path) -> list[_Point]:
 
 
 def _point(where: str, given: object) -> _Point:
-    from interp.robot.kinematics.frames import Pose
+    from interp.values.poses import Pose
 
     members = _members(where, given)
     if "id" not in members:
@@ -156,7 +156,7 @@ def _point(where: str, given: object) -> _Point:
 
 def _frame(where: str, given: object) -> "Pose | None":
     """A frame; components left out are 0."""
-    from interp.robot.kinematics.frames import Pose
+    from interp.values.poses import Pose
 
     if given is None:
         return None
@@ -201,7 +201,7 @@ def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
 
 def _listed(option: str, text: str) -> "Pose":
     """A frame from six numbers with commas between them."""
-    from interp.robot.kinematics.frames import Pose
+    from interp.values.poses import Pose
 
     try:
         numbers = [float(part) for part in text.split(",")]

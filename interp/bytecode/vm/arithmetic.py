@@ -16,7 +16,7 @@ from interp.bytecode.cell_layout import cells_of, size, value_at
 from interp.bytecode.vm.context import Here, Kit, Rule
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
-from interp.values.frames import composed
+from interp.values.geometric_operator import composed
 from interp.values.operators import PRIMITIVES, Primitive
 from interp.values.values import StructureValue, single
 

@@ -21,7 +21,7 @@ from enum import Enum
 from typing import Any
 
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
-from interp.robot.kinematics.frames import IDENTITY, Pose
+from interp.values.poses import IDENTITY, Pose
 
 __all__ = [
     "ROBOT_AXES",

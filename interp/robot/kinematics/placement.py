@@ -1,6 +1,6 @@
 """Where a programmed point puts the flange: $BASE, $TOOL, $ROBROOT and $IPO_MODE.
 
-A point P is the pose of the tool in the base. So the flange stands in the world at
+A point P is the pose of the tool in the base. So the flange is in the world at
 ``BASE · P · TOOL⁻¹``, and in front of the robot's foot at ``ROBROOT⁻¹ · BASE · P · TOOL⁻¹``
 [ARI-09]. That holds for a fixed tool as well: there $BASE is the tool, and $TOOL the workpiece on
 the flange. What $IPO_MODE changes is the path between points, which is that of the tool in the base
@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from interp.robot.kinematics.frames import IDENTITY, Pose
+from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["IpoMode", "Placement"]
 
@@ -26,7 +26,7 @@ class IpoMode(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The frames in force, each as its system variable has it."""
+    """The frames in force, each with the value of its system variable."""
 
     base: Pose = IDENTITY
     tool: Pose = IDENTITY
@@ -35,12 +35,12 @@ class Placement:
 
     @property
     def before(self) -> Pose:
-        """What stands in front of the point in the chain to the flange."""
+        """What comes before the point in the chain to the flange."""
         return self.robroot.inverse() @ self.base
 
     @property
     def after(self) -> Pose:
-        """What stands behind the point in the chain to the flange."""
+        """What comes after the point in the chain to the flange."""
         return self.tool.inverse()
 
     def flange(self, point: Pose) -> Pose:
@@ -54,7 +54,3 @@ class Placement:
     def in_path(self, point: Pose) -> Pose:
         """The pose that is interpolated for a point."""
         return point if self.mode is IpoMode.BASE else point.inverse()
-
-    def from_path(self, pose: Pose) -> Pose:
-        """The point for a pose that was interpolated; the inverse of `in_path`."""
-        return self.in_path(pose)

@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 from py_opw_kinematics import KinematicModel, RigidTransform, Robot
 
-from interp.robot.kinematics.frames import Pose, sine_cosine
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDataError
+from interp.values.poses import Pose, sine_cosine
 
 __all__ = ["BRANCHES", "Arm", "Array", "matrix_of"]
 

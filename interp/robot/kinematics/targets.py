@@ -15,10 +15,10 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import Axis
 from interp.robot.kinematics.solver import Arm, Array, matrix_of
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = [
     "Singularity",

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Target
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm, Array
 from interp.robot.kinematics.targets import Singularity, TargetStatus, check_limits, ptp_target
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = ["Goal", "Programmed", "check_numbers", "check_start"]
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm, Array, matrix_of
 from interp.robot.kinematics.targets import ptp_target
 from interp.robot.path.axis_path import CourseCurve, Others
 from interp.robot.path.pose_path import Course, poses_of
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = ["WristCurve"]
 

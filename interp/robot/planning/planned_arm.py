@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
@@ -35,6 +34,7 @@ from interp.robot.planning.timeline import (
 )
 from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = ["PlannedArm"]
 

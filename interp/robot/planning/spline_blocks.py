@@ -14,7 +14,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from interp.robot.arm import Motion, Settings, SplinePart
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.kinematics.targets import check_path
@@ -27,6 +26,7 @@ from interp.robot.planning.limits import ceiling_of
 from interp.robot.planning.spline_ranges import with_ranges
 from interp.robot.planning.tracks import Piece, Track, Tracks
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = ["block"]
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Settings, Target
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.kinematics.solver import Arm, Array, matrix_of
@@ -28,6 +27,7 @@ from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 __all__ = ["Piece", "Track", "Tracks"]
 

@@ -23,7 +23,7 @@ from mujoco import rollout
 from interp.robot.arm import Samples
 from interp.robot.kinematics.machine_data import AxisKind, Machine
 from interp.robot.simulation.mujoco_model import TOUCH, Box, mjcf_of
-from interp.robot.simulation.robots import RobotFault, check_samples
+from interp.robot.simulation.robot import RobotFault, check_samples
 
 __all__ = ["MujocoRobot"]
 

@@ -23,8 +23,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import Axis, AxisKind, Link, Machine
+from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["FLANGE", "TOUCH", "Box", "mjcf_of", "reach_of"]
 

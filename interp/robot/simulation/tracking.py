@@ -18,7 +18,7 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm as Kinematics
 from interp.robot.kinematics.solver import matrix_of
-from interp.robot.simulation.robots import Robot, RobotFault
+from interp.robot.simulation.robot import Robot, RobotFault
 
 __all__ = ["PathRecord", "Tracking"]
 
@@ -168,7 +168,7 @@ class Tracking:
 
 
 def _angles(poses: Array) -> Array:
-    """A, B, C (n, 3) in degrees of poses (n, 4, 4), as `kinematics.frames.Pose.angles`."""
+    """A, B, C (n, 3) in degrees of poses (n, 4, 4), as `interp.values.poses.Pose.angles`."""
     over = np.hypot(poses[:, 0, 0], poses[:, 1, 0])
     a = np.where(over > 1e-12, np.arctan2(poses[:, 1, 0], poses[:, 0, 0]), 0.0)
     sine, cosine = np.sin(a), np.cos(a)

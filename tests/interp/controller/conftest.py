@@ -16,8 +16,8 @@ from interp.executors import Prepared
 from interp.program.load import Limits, load
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
-from interp.robot.kinematics.frames import IDENTITY
 from interp.values.faults import Fault
+from interp.values.poses import IDENTITY
 
 SECOND = 1_000_000
 BLEND = 100_000  # µs before and after an approximated point

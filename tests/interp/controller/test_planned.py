@@ -14,7 +14,7 @@ from interp.robot.arm import Position
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.simulation.robots import RobotFault
+from interp.robot.simulation.robot import RobotFault
 from interp.tree import TreeExecutor
 
 START = (0.0, -90.0, 90.0, 0.0, 45.0, 10.0)

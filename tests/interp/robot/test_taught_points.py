@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm
 from interp.robot.kinematics.targets import solve
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"
 CELLS = ["eki_client", "gluing", "machine_tending", "milling", "palletiser", "spot_cell"]

@@ -27,7 +27,7 @@ from grammar.semantics.types import (
     Type,
 )
 from interp.values.faults import FAULTS, Fault
-from interp.values.frames import angles, inverted, rotation
+from interp.values.geometric_operator import inverted
 from interp.values.json_form import from_json, to_json
 from interp.values.operators import (
     BINARY,
@@ -509,7 +509,8 @@ def test_inverse_undoes(pose: StructureValue) -> None:
 @given(TURNS, TURNS, TURNS)
 def test_angles_have_a_range(a: float, b: float, c: float) -> None:
     """A and C lie above -180 and up to 180, B between -90 and 90; A is 0 at B = ±90 [ARI-09]."""
-    found = angles(rotation(a, b, c))
+    zero, turned = _pose("FRAME", 0, 0, 0, 0, 0, 0), _pose("FRAME", 0, 0, 0, a, b, c)
+    found: Any = _composed(zero, turned).members[3:6]
     assert -180 < found[0] <= 180
     assert -90 <= found[1] <= 90
     assert -180 < found[2] <= 180

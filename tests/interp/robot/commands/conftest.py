@@ -11,8 +11,8 @@ import pytest
 from interp.port.requests import At
 from interp.robot.api.commands import MotionCommand
 from interp.robot.arm import ArmEvent, Motion, Place, Position, Samples, Settings
-from interp.robot.kinematics.frames import IDENTITY
 from interp.values.faults import Fault
+from interp.values.poses import IDENTITY
 
 BRAKING = 10_000  # µs until the arm stands
 

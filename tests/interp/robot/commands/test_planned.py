@@ -11,10 +11,10 @@ from interp.robot.api.commands import CoreEvent, MotionCommand, OutputCommand, S
 from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import Motions
 from interp.robot.arm import Approximation, Place, Settings
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")

@@ -5,13 +5,13 @@ from collections.abc import Callable
 
 import pytest
 
-from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import (
     AxisKind,
     CartesianLimits,
     MachineDataError,
     read_machine,
 )
+from interp.values.poses import IDENTITY, Pose
 
 
 def test_lengths_and_frames(machine_text: Callable[..., str]) -> None:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import Machine, MachineDataError
 from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.values.poses import IDENTITY, Pose
 
 MakeArm = Callable[..., Arm]
 

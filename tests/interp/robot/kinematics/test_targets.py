@@ -6,7 +6,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.solver import Arm, Array
 from interp.robot.kinematics.targets import (
     Singularity,
@@ -19,6 +18,7 @@ from interp.robot.kinematics.targets import (
     turn_of,
 )
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 MakeArm = Callable[..., Arm]
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from interp.robot.kinematics.frames import Pose
 from interp.robot.path.orientation import Carried, about, angle_between, turning
+from interp.values.poses import Pose
 
 ENDS = np.array([0.0, 1.0])
 

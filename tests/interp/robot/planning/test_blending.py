@@ -11,7 +11,6 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import Approximation, Motion, Settings
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import Placement
 from interp.robot.path.axis_path import BlendedAxes
 from interp.robot.path.pose_path import Blend
@@ -19,6 +18,7 @@ from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.blending import Zone, blend_of
 from interp.robot.planning.tracks import Tracks
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 if TYPE_CHECKING:
     from interp.robot.planning.timeline import Section

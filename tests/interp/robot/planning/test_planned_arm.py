@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from interp.robot.arm import Approximation, Place
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.path.orientation import angle_between
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.values.faults import Fault
+from interp.values.poses import Pose
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.machine_data import Machine

@@ -10,15 +10,16 @@ from interp.robot.api.commands import Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import Motions
 from interp.robot.arm import Samples, Settings
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm
 from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine
+from interp.robot.simulation.factory import make_robot
 from interp.robot.simulation.mujoco_model import Box
-from interp.robot.simulation.robots import RobotFault, make_robot
+from interp.robot.simulation.robot import RobotFault
 from interp.robot.simulation.tracking import Tracking
+from interp.values.poses import Pose
 
 pytest.importorskip("mujoco")
 pytest.importorskip("ruckig")

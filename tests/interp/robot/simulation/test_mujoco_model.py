@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.frames import Pose
 from interp.robot.kinematics.machine_data import Machine, read_machine
 from interp.robot.kinematics.solver import Arm
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.mujoco_model import FLANGE, Box, mjcf_of, reach_of
+from interp.values.poses import Pose
 
 mujoco = pytest.importorskip("mujoco")
 

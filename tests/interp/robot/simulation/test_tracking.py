@@ -8,14 +8,15 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import Motion, Position, Samples, Settings
-from interp.robot.kinematics.frames import IDENTITY, Pose
 from interp.robot.kinematics.machine_data import Machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Arm
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.simulation.robots import KinematicRobot, NoRobot, RobotFault, make_robot
+from interp.robot.simulation.factory import make_robot
+from interp.robot.simulation.robot import KinematicRobot, NoRobot, RobotFault
 from interp.robot.simulation.tracking import Tracking
+from interp.values.poses import IDENTITY, Pose
 
 START = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 

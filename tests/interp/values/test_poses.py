@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from interp.robot.kinematics.frames import IDENTITY, Pose, sine_cosine
+from interp.values.poses import IDENTITY, Pose, sine_cosine
 
 angles = st.one_of(
     st.floats(-400, 400),

@@ -1,26 +1,17 @@
-"""The robots that set-points can be sent to, behind one small interface.
-
-All of them are told the same set-points at the same times, so a program has the same trace on each:
-``none`` takes no set-points at all, ``kinematic`` is where it is told to be, and ``mujoco`` is an
-arm with masses that follows as well as it can.
-"""
+"""What follows set-points: the interface of a robot, and the two that have no masses."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Samples
-from interp.robot.kinematics.machine_data import Machine
 from interp.values.faults import Fault
 
-__all__ = ["ROBOTS", "KinematicRobot", "NoRobot", "Robot", "RobotFault", "RobotName", "make_robot"]
-
-RobotName = Literal["none", "kinematic", "mujoco"]
-ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
+__all__ = ["KinematicRobot", "NoRobot", "Robot", "RobotFault", "check_samples"]
 
 
 class RobotFault(Fault):
@@ -74,7 +65,7 @@ class NoRobot:
 
 
 class KinematicRobot:
-    """Is where it is told to be; ``cycle`` is the interpolation cycle in µs."""
+    """Is always at its set-point; ``cycle`` is the interpolation cycle in µs."""
 
     chunk = 1_000_000
 
@@ -96,12 +87,3 @@ def check_samples(samples: Samples) -> None:
         raise RobotFault(
             "set_point", "a set-point is no number", int(samples.times[int(np.argmin(sound))])
         )
-
-
-def make_robot(name: RobotName, machine: Machine, cycle: int) -> Robot:
-    """A robot by its name. Raises `ImportError` for ``mujoco`` where MuJoCo is not installed."""
-    if name == "mujoco":
-        from interp.robot.simulation.mujoco import MujocoRobot
-
-        return MujocoRobot(machine)
-    return KinematicRobot(cycle) if name == "kinematic" else NoRobot()

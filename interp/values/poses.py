@@ -1,8 +1,8 @@
-"""Poses: where a frame stands in another one, and the geometric operator that joins them.
+"""Poses: the position and orientation of a frame in another one, and their composition.
 
 Lengths are millimetres and angles degrees, as KRL has them. A, B and C turn about Z, then about the
 new Y, then about the new X: ``R = Rz(A) Ry(B) Rx(C)`` [ARI-09]. With ``left @ right``, ``right`` is
-told in the frame ``left`` [ARI-08].
+given in the frame ``left`` [ARI-08].
 """
 
 from __future__ import annotations
@@ -36,9 +36,18 @@ class Pose:
         c: float = 0.0,
     ) -> Pose:
         """The pose of a FRAME: mm and degrees. Multiples of 90 degrees are exact."""
-        sa, ca = sine_cosine(a)
-        sb, cb = sine_cosine(b)
-        sc, cc = sine_cosine(c)
+        return cls.turned((x, y, z), sine_cosine(a), sine_cosine(b), sine_cosine(c))
+
+    @classmethod
+    def turned(
+        cls,
+        position: tuple[float, float, float],
+        a: tuple[float, float],
+        b: tuple[float, float],
+        c: tuple[float, float],
+    ) -> Pose:
+        """The pose of a position in mm and of three angles, each as its sine and cosine."""
+        (x, y, z), (sa, ca), (sb, cb), (sc, cc) = position, a, b, c
         return cls(
             (
                 (ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc, x),

@@ -1,0 +1,27 @@
+"""Robots by their names.
+
+All of them get the same set-points at the same times, so a program has the same trace on each:
+``none`` takes no set-points at all, ``kinematic`` is always at its set-point, and ``mujoco`` is an
+arm with masses that follows as well as it can.
+"""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+from interp.robot.kinematics.machine_data import Machine
+from interp.robot.simulation.robot import KinematicRobot, NoRobot, Robot
+
+__all__ = ["ROBOTS", "RobotName", "make_robot"]
+
+RobotName = Literal["none", "kinematic", "mujoco"]
+ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
+
+
+def make_robot(name: RobotName, machine: Machine, cycle: int) -> Robot:
+    """A robot by its name. Raises `ImportError` for ``mujoco`` where MuJoCo is not installed."""
+    if name == "mujoco":
+        from interp.robot.simulation.mujoco import MujocoRobot
+
+        return MujocoRobot(machine)
+    return KinematicRobot(cycle) if name == "kinematic" else NoRobot()
