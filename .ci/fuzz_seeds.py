@@ -14,7 +14,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import verify
 from interp.program.load import load
 from interp.values.faults import LinkError
-from support.files.discovery import decode
+from support.files.decode import decode
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Small images are damaged sooner where it matters.

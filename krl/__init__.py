@@ -1,3 +1,3 @@
-"""The door: the `krl` command. It reads arguments, calls the rooms below and prints."""
+"""The `krl` command: reads arguments, calls the packages below and prints."""
 
 __all__: list[str] = []

@@ -1,4 +1,4 @@
-"""The `krl` command: which commands there are. What each does stands in `krl.commands`."""
+"""The `krl` command: which commands there are. Each is in `krl.commands`."""
 
 from collections.abc import Sequence
 from importlib import metadata

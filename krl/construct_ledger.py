@@ -40,7 +40,7 @@ def there(path: Path) -> Path:
 
 @contextmanager
 def expected_errors() -> Iterator[None]:
-    """Turn what the rooms raise about input into what the door prints."""
+    """Turn what the packages below raise about input into `InputError`."""
     from grammar.notation.generate import GenerationError
     from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError

@@ -54,16 +54,16 @@ def record(command: str, *arguments: str | Path) -> Any:
     """
     from krl.cli import main
 
-    told, said = io.StringIO(), io.StringIO()
+    out, errors = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory(prefix="krl-") as folder:
         target = Path(folder, "record.json")
         is_check = command == "check"
         wanted = ["--format", "json"] if is_check else ["--json", str(target)]
-        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
             status = main([*command.split(), *map(str, arguments), *wanted])
         if status == 2:
-            raise CommandError(said.getvalue().strip() or "the command failed")
-        text = told.getvalue() if is_check else target.read_text(encoding="utf-8")
+            raise CommandError(errors.getvalue().strip() or "the command failed")
+        text = out.getvalue() if is_check else target.read_text(encoding="utf-8")
     return json.loads(text)
 
 

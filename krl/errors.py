@@ -1,8 +1,8 @@
 """The one place where an expected error becomes one line on stderr and an exit status.
 
 Commands return their status, or raise `InputError` with a sentence for the person at the keyboard.
-Nothing that reaches this door leaves it as a traceback. Somebody who hunts a defect in krl itself
-sets the environment variable KRL_TRACEBACK to any value and gets the traceback of it.
+No exception leaves `run` as a traceback, but for a defect in krl itself where the environment
+variable KRL_TRACEBACK is set.
 """
 
 import errno

@@ -24,7 +24,7 @@ _EXTRA_OF = {
 
 @contextmanager
 def expected_extras() -> Iterator[None]:
-    """Turn the absence of such a package into what the door prints; any other is a defect."""
+    """Turn the absence of such a package into `InputError`; any other is a defect."""
     try:
         yield
     except ModuleNotFoundError as error:

@@ -1,9 +1,8 @@
 """What a survey says in the terminal: figures, what holds back most, where the page is."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console
@@ -12,6 +11,9 @@ from rich.text import Text
 
 from krl.errors import one_line
 
+if TYPE_CHECKING:
+    from recovery.records import ClusterRecord, StartRecord, SurveyRecord
+
 __all__ = ["print_survey", "share"]
 
 _ROWS = 15
@@ -19,7 +21,7 @@ _WORDS = 12
 _SKIPPED = 5
 
 
-def print_survey(record: Mapping[str, Any], page: Path) -> None:
+def print_survey(record: "SurveyRecord", page: Path) -> None:
     """Print the figures of `record`, its first clusters, and `page`."""
     console = Console(highlight=False, markup=False, emoji=False)
     files, parsed = record["files"], record["parsed"]
@@ -57,7 +59,7 @@ def share(part: float, whole: float) -> str:
     return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
 
-def _table(clusters: list[Mapping[str, Any]]) -> Table:
+def _table(clusters: "list[ClusterRecord]") -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, expand=True)
     table.add_column("what fails", no_wrap=True, overflow="ellipsis", ratio=2)
     for heading in ("unlocks", "files", "origins", "lines"):
@@ -78,7 +80,7 @@ def _table(clusters: list[Mapping[str, Any]]) -> Table:
     return table
 
 
-def _advice(record: Mapping[str, Any]) -> str:
+def _advice(record: "SurveyRecord") -> str:
     """How far mending goes: "mend these nine and 95 % of the files parse"."""
     files = record["files"]
     for number, step in enumerate(record["greedy"], 1):
@@ -90,7 +92,7 @@ def _advice(record: Mapping[str, Any]) -> str:
     return ""
 
 
-def _story(start: Mapping[str, Any]) -> str:
+def _story(start: "StartRecord") -> str:
     """What the ledger made of the restrictive start."""
     clusters, constructs = start["clusters"], start["constructs"]
     answered = sum(cluster["answered_by"] is not None for cluster in clusters)

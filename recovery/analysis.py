@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from recovery.clustering.cause import no_judge
 from recovery.clustering.cluster import cluster
@@ -18,6 +18,7 @@ from recovery.clustering.negative_score import judge_of
 from recovery.growth.answers import answered
 from recovery.growth.growth import Steps
 from recovery.negatives.negatives import Negative
+from recovery.records import StartRecord, SurveyRecord
 from recovery.survey.result_cache import key_of
 from recovery.survey.survey import Survey
 from recovery.survey_record import record_of
@@ -35,7 +36,7 @@ def analyse(
     cache: Path | None = None,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
-) -> dict[str, Any]:
+) -> SurveyRecord:
     """The record of a survey (`recovery.survey_record`); ``negatives`` judge the proposals.
 
     ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
@@ -44,7 +45,7 @@ def analyse(
         return _worked_out(found, negatives, grammar_name, on_found, on_done)
     digest = _digest(found, negatives, grammar_name)
     with ResultStore(cache, key_of(found.grammar)) as store:
-        record = store.get_record(digest)
+        record = cast("SurveyRecord | None", store.get_record(digest))
         if record is None:
             record = _worked_out(found, negatives, grammar_name, on_found, on_done)
             store.put([(digest, record)])
@@ -56,7 +57,7 @@ _REPEATED = frozenset({"failures", "skipped", "origins", "copies", "swallowed"})
 
 
 def with_answers(
-    record: Mapping[str, Any],
+    record: SurveyRecord,
     found: Survey,
     steps: Steps,
     *,
@@ -64,7 +65,7 @@ def with_answers(
     cache: Path | None = None,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
-) -> dict[str, Any]:
+) -> StartRecord:
     """The record of the restrictive start as part of another: what the ledger made of it.
 
     ``record`` is that of ``found``, the survey of the start. Each cluster gets ``answered_by``, and
@@ -79,7 +80,8 @@ def with_answers(
         on_found=on_found,
         on_done=on_done,
     )
-    return {key: value for key, value in record.items() if key not in _REPEATED} | answers
+    kept = {key: value for key, value in record.items() if key not in _REPEATED}
+    return cast("StartRecord", kept | answers)
 
 
 def _worked_out(
@@ -88,7 +90,7 @@ def _worked_out(
     grammar_name: str,
     on_found: Progress,
     on_done: Progress,
-) -> dict[str, Any]:
+) -> SurveyRecord:
     began = time.perf_counter()
     judge = judge_of(found.grammar, negatives) if negatives else no_judge
     clusters = cluster(found, judge=judge, on_found=on_found, on_done=on_done)

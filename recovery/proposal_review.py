@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
-from typing import Any
 
 from grammar.notation.edits import AddToken, apply, describe, to_data
 from grammar.parser.ambiguity import is_ambiguous
@@ -13,9 +12,11 @@ from grammar.parser.shortest_paths import Paths
 from recovery.clustering.cause import Proposal
 from recovery.clustering.cluster import Cluster, Clusters
 from recovery.clustering.edit_trial import edited
+from recovery.records import ProposalRecord
 from recovery.survey.survey import Survey, SurveyedFile
 from recovery.survey.unreserved_keywords import Suspect, suspects
-from support.files.discovery import Skipped, decode, read
+from support.files.decode import decode
+from support.files.discovery import Skipped, read
 
 __all__ = ["Reviewer"]
 
@@ -43,7 +44,7 @@ class Reviewer:
         self._paths = Paths(self.recognizer.network)
         self._parsed: list[_Program] | None = None
 
-    def records(self, cluster: Cluster) -> list[dict[str, Any]]:
+    def records(self, cluster: Cluster) -> list[ProposalRecord]:
         """The proposals of a cluster as plain data, the best first."""
         return [
             self._record(proposal, files)
@@ -54,7 +55,7 @@ class Reviewer:
         """A recogniser of the grammar with the proposal."""
         return edited(self.recognizer, proposal.edits)
 
-    def _record(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> dict[str, Any]:
+    def _record(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> ProposalRecord:
         grammar = self.found.grammar
         last = proposal.edits[-1]
         return {

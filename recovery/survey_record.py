@@ -7,13 +7,21 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import asdict
-from typing import Any
 
 from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, Member
 from recovery.proposal_review import Reviewer
+from recovery.records import (
+    ClusterRecord,
+    ExampleRecord,
+    FailureRecord,
+    FilesRecord,
+    LineRecord,
+    OriginRecord,
+    ReproducerRecord,
+    SurveyRecord,
+)
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import Survey, SurveyedFile
 
@@ -30,7 +38,7 @@ def record_of(
     clusters: Clusters,
     *,
     grammar_name: str,
-) -> dict[str, Any]:
+) -> SurveyRecord:
     """Everything a survey found, as plain data.
 
     Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
@@ -56,7 +64,10 @@ def record_of(
         "origins": _origins(files),
         "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
-        "swallowed": [asdict(suspect) for suspect in reviewer.swallowed()],
+        "swallowed": [
+            {"word": one.word, "files": one.files, "origins": one.origins}
+            for one in reviewer.swallowed()
+        ],
         "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
         "failures": _failures(found, clusters, recognizer),
     }
@@ -70,7 +81,7 @@ def _bytes(files: Iterable[SurveyedFile]) -> int:
     return sum(f.size * len(f.places) for f in files)
 
 
-def _origins(files: Iterable[SurveyedFile]) -> list[dict[str, Any]]:
+def _origins(files: Iterable[SurveyedFile]) -> list[OriginRecord]:
     counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     for file in files:
         for _, origin in file.places:
@@ -81,7 +92,7 @@ def _origins(files: Iterable[SurveyedFile]) -> list[dict[str, Any]]:
     ]
 
 
-def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[dict[str, Any]]:
+def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[FailureRecord]:
     contexts, names = clusters.contexts, recognizer.lexer.names
     offenders = [form.kinds[form.index] for form in found.forms]
     kinds = ["unknown character" if kind == ERROR else names[kind] for kind in offenders]
@@ -103,7 +114,7 @@ def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list
     ]
 
 
-def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any]:
+def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> ClusterRecord:
     files = cluster.files
     example = cluster.example
     return {
@@ -128,16 +139,24 @@ def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str
     }
 
 
-def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> dict[str, Any] | None:
+def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> ReproducerRecord | None:
     if cluster.line.is_enormous:
         return None
     best = next((p for p in cluster.proposals if p.mended), None)
     mended = reviewer.wider(best) if best is not None else None
     found = reducer.reduce(cluster.line, cluster.example.failed.words, mended=mended)
-    return None if found is None else asdict(found)
+    if found is None:
+        return None
+    return {
+        "text": found.text,
+        "line": found.line,
+        "column": found.column,
+        "tokens": found.tokens,
+        "beyond": found.beyond,
+    }
 
 
-def _example(member: Member) -> dict[str, Any]:
+def _example(member: Member) -> ExampleRecord:
     failed = member.failed
     return {
         "path": member.file.path,
@@ -159,7 +178,7 @@ def _examples(cluster: Cluster) -> list[Member]:
     return list(by_file.values())[:_EXAMPLES]
 
 
-def _files_by_origin(cluster: Cluster) -> list[dict[str, Any]]:
+def _files_by_origin(cluster: Cluster) -> list[FilesRecord]:
     places: dict[str, dict[str, int]] = defaultdict(dict)
     for member in cluster.members:
         for path, origin in member.file.places:
@@ -167,7 +186,7 @@ def _files_by_origin(cluster: Cluster) -> list[dict[str, Any]]:
     out = []
     for origin in sorted(places, key=lambda o: (-len(places[o]), o)):
         listed = list(places[origin].items())
-        entry: dict[str, Any] = {
+        entry: FilesRecord = {
             "origin": origin,
             "files": [{"path": path, "line": line} for path, line in listed[:_FILES_NAMED]],
         }
@@ -177,7 +196,7 @@ def _files_by_origin(cluster: Cluster) -> list[dict[str, Any]]:
     return out
 
 
-def _surroundings(member: Member) -> list[dict[str, Any]]:
+def _surroundings(member: Member) -> list[LineRecord]:
     """The numbered lines around a failure."""
     lines, line = member.file.lines(), member.failed.line
     first, last = max(1, line - _CONTEXT_LINES), min(len(lines), line + _CONTEXT_LINES)

@@ -26,7 +26,7 @@ Json = dict[str, Any]
 def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
     """Write the page of a run to the file ``target`` and return its path.
 
-    ``record`` is what `interp.session` tells of a run; every field may be absent. Times are µs,
+    ``record`` is what `interp.run_record` makes of a run; every field may be absent. Times are µs,
     lengths mm, angles degrees, speeds of the tool m/s. The same record gives the same bytes, and
     the page appears whole or not at all.
 

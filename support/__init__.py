@@ -1,3 +1,1 @@
-"""What every package needs and nothing here is about KRL: files, processes, measurements."""
-
-__all__: list[str] = []
+"""What every package needs and is not about KRL: files, processes, measurements."""

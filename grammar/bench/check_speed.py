@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from grammar.check.batch import Wishes, checkup
+from grammar.check.batch import CheckOptions, check_paths
 from grammar.check.context import Context
 from grammar.check.framework import CHECKS
 from grammar.generation.cells.writing import write_cells
@@ -26,10 +26,11 @@ from grammar.semantics.resolve import resolve
 from grammar.semantics.symbol_table import table_of
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
-from support.files.discovery import Found, IngestError, decode, discover, read
+from support.files.decode import decode
+from support.files.discovery import Found, IngestError, discover, read
 from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
-from support.parallel.gc_pause import uncollected
+from support.parallel.gc_pause import gc_paused
 
 __all__ = ["measure_check", "steps"]
 
@@ -112,7 +113,7 @@ def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
 def _timed(roots: Sequence[Path], cache: Path | None = None) -> dict[str, Any]:
     """A check as `krl check` makes it."""
     began = time.perf_counter()
-    found = checkup(roots, Wishes(), jobs=1, cache=cache)
+    found = check_paths(roots, CheckOptions(), jobs=1, cache=cache)
     seconds = time.perf_counter() - began
     peak = peak_memory()
     return {
@@ -163,7 +164,7 @@ class _Clock:
 
 def _phased(roots: Sequence[Path]) -> dict[str, float]:
     """Seconds of each phase; all trees are kept at once, which a check of large corpora avoids."""
-    with uncollected(0):
+    with gc_paused(0):
         return _phases(roots)
 
 

@@ -1,4 +1,4 @@
-"""The checkup: every file below some roots checked, each as part of its project.
+"""The check of folders and archives: every file checked as part of its project.
 
 Files are grouped to projects by where they lie, before any is read (`grammar.semantics.link`).
 Projects are checked one after the other in parallel processes, a large one by all of them
@@ -19,8 +19,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grammar.check.framework import check_project
-from grammar.check.project_check import Content, Looked, Wishes, check_part, check_whole, read_part
-from grammar.check.result_cache import Outcome, read_outcome, state_of, written_outcome
+from grammar.check.project_check import (
+    CheckOptions,
+    Content,
+    FileResult,
+    check_part,
+    check_whole,
+    read_part,
+)
+from grammar.check.result_cache import ProjectResult, read_result, result_record, state_of
 from grammar.check.suppression_comments import silenced
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.link import File, link
@@ -30,22 +37,22 @@ from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 from support.parallel.sticky_pool import StickyPool
 
-__all__ = ["Checkup", "Wishes", "checkup"]
+__all__ = ["CheckOptions", "CheckReport", "check_paths"]
 
 # Starting a process takes as long as checking so many bytes.
 _WORTH_A_PROCESS = 1_000_000
-# A project of so many bytes is dealt out to all processes.
+# A project of so many bytes is shared by all processes.
 _LARGE = 400_000
 # So many bytes wait for their turn, so that memory stays flat.
 _MOST_WAITING = 48_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Checkup:
-    """What was found, in order, and in what.
+class CheckReport:
+    """Findings in order, and what was checked.
 
     ``lines`` are source lines by path and number. ``files`` were checked, of ``bytes`` in all, in
-    ``projects``; ``unchanged`` of the files were known from before. ``skipped`` is what is no KRL.
+    ``projects``; of ``unchanged`` files the results were kept. ``skipped`` is what is no KRL.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -57,21 +64,21 @@ class Checkup:
     unchanged: int
 
 
-def checkup(
+def check_paths(
     roots: Sequence[Path],
-    wishes: Wishes,
+    options: CheckOptions,
     *,
     jobs: int | None = None,
     cache: Path | None = None,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
-) -> Checkup:
+) -> CheckReport:
     """Check everything below ``roots``.
 
     ``jobs`` is the number of processes, by default one a core, or one where there is little to do.
     ``cache`` is the folder where findings are kept for the next time; without one nothing is kept.
-    ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
-    more have been dealt with.
+    ``on_found`` is given the number of candidates once it is known, ``on_done`` how many
+    more are done.
 
     Raises `support.files.discovery.IngestError` where there is nothing to check.
     """
@@ -82,16 +89,16 @@ def checkup(
     on_done(len(skipped))
     size = sum(candidate.size for candidate in found)
     wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
-    outcomes = []
+    results = []
     with _store(cache) as store, StickyPool(wanted) as pool:
-        for outcome in _run(_projects(found), pool, store, wishes):
-            outcomes.append(outcome)
-            on_done(outcome.files + len(outcome.skipped))
-    return _together(outcomes, skipped)
+        for result in _run(_projects(found), pool, store, options):
+            results.append(result)
+            on_done(result.files + len(result.skipped))
+    return _together(results, skipped)
 
 
 def _store(cache: Path | None) -> AbstractContextManager[ResultStore | None]:
-    return nullcontext() if cache is None else ResultStore(cache, "checkup")
+    return nullcontext() if cache is None else ResultStore(cache, "check")
 
 
 def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
@@ -104,25 +111,25 @@ def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
         yield [by_path[module.path].popleft() for module in project.modules]
 
 
-def _together(outcomes: Sequence[Outcome], skipped: Sequence[Skipped]) -> Checkup:
-    # what could be a program and was not looked at is no small matter
+def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
+    # a file that could be a program is a finding, not only skipped
     start = Region(1, 1, 1, 1)
     large = {
         one: diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
     }
     left_out = [one for one in skipped if one not in large]
-    left_out += [one for outcome in outcomes for one in outcome.skipped]
+    left_out += [one for result in results for one in result.skipped]
     lines: dict[tuple[str, int], str] = {}
-    for outcome in outcomes:
-        lines |= outcome.lines
-    return Checkup(
-        tuple(in_order([*large.values(), *(one for all_ in outcomes for one in all_.diagnostics)])),
+    for result in results:
+        lines |= result.lines
+    return CheckReport(
+        tuple(in_order([*large.values(), *(one for all_ in results for one in all_.diagnostics)])),
         lines,
         tuple(sorted(left_out, key=lambda one: one.path)),
-        sum(outcome.files for outcome in outcomes),
-        sum(outcome.bytes for outcome in outcomes),
-        len(outcomes),
-        sum(outcome.files for outcome in outcomes if outcome.is_kept),
+        sum(result.files for result in results),
+        sum(result.bytes for result in results),
+        len(results),
+        sum(result.files for result in results if result.is_kept),
     )
 
 
@@ -134,10 +141,10 @@ def _is_large(skipped: Skipped) -> bool:
 
 
 class _Project:
-    """A project that is being checked: ``result`` waits for what its processes found."""
+    """A project that is being checked."""
 
-    def __init__(self, members: Sequence[Found], wishes: Wishes) -> None:
-        self.wishes = wishes
+    def __init__(self, members: Sequence[Found], options: CheckOptions) -> None:
+        self.options = options
         self.contents: list[Content] = []
         self.unread: list[Diagnostic] = []
         for found in members:
@@ -153,32 +160,32 @@ class _Project:
             )
         ).hexdigest()
         self.size = sum(len(content.data) for content in self.contents)
-        self.state = state_of(self.contents, wishes)
-        self._whole: Future[list[Looked]] | None = None
-        self._parts: list[Future[dict[int, Looked]]] = []
+        self.state = state_of(self.contents, options)
+        self._whole: Future[list[FileResult]] | None = None
+        self._parts: list[Future[dict[int, FileResult]]] = []
 
     def start(self, number: int, pool: StickyPool) -> None:
         """Have the project checked; with several processes this waits until it has been read."""
         if pool.count == 1 or self.size < _LARGE:
             process = pool.least_loaded(self.size)
-            self._whole = pool.submit(process, check_whole, self.contents, self.wishes)
+            self._whole = pool.submit(process, check_whole, self.contents, self.options)
             return
         reading = [
-            pool.submit(process, read_part, number, share, self.wishes)
+            pool.submit(process, read_part, number, share, self.options)
             for process, share in enumerate(self._shares(pool.count))
         ]
-        looked: dict[int, Looked] = {}
+        looked: dict[int, FileResult] = {}
         for part in reading:
             looked |= part.result()
         places = [(content.path, content.origin) for content in self.contents]
         self._read = looked
         self._parts = [
-            pool.submit(process, check_part, number, places, looked, self.wishes)
+            pool.submit(process, check_part, number, places, looked, self.options)
             for process in range(pool.count)
         ]
 
     def _shares(self, count: int) -> list[dict[int, Content]]:
-        """The files dealt out, the largest first, so that all shares are about the same."""
+        """The files in shares of about the same size."""
         shares: list[dict[int, Content]] = [{} for _ in range(count)]
         sizes = [0] * count
         by_size = sorted(enumerate(self.contents), key=lambda item: -len(item[1].data))
@@ -188,7 +195,7 @@ class _Project:
             shares[smallest][index] = content
         return [dict(sorted(share.items())) for share in shares]
 
-    def outcome(self) -> Outcome:
+    def result(self) -> ProjectResult:
         """What was found; waits for it."""
         if self._whole is not None:
             looked = self._whole.result()
@@ -212,40 +219,43 @@ class _Project:
             size += len(content.data)
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
-            found += silenced(content.path, its, one.comments, self.wishes.sought)
+            found += silenced(content.path, its, one.comments, self.options.wanted_codes)
         files = len(self.contents) + len(self.unread) - len(skipped)
-        return Outcome(tuple(in_order(found)), lines, tuple(skipped), files, size, False)
+        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), files, size, False)
 
 
 def _run(
-    projects: Iterator[list[Found]], pool: StickyPool, store: ResultStore | None, wishes: Wishes
-) -> Iterator[Outcome]:
-    """The outcomes of projects, in their order; only so many wait for their turn."""
-    waiting: deque[_Project | Outcome] = deque()
+    projects: Iterator[list[Found]],
+    pool: StickyPool,
+    store: ResultStore | None,
+    options: CheckOptions,
+) -> Iterator[ProjectResult]:
+    """The results of projects, in their order; only so many wait for their turn."""
+    waiting: deque[_Project | ProjectResult] = deque()
     size = 0
 
-    def first() -> Outcome:
+    def first() -> ProjectResult:
         nonlocal size
         project = waiting.popleft()
-        if isinstance(project, Outcome):
+        if isinstance(project, ProjectResult):
             return project
         size -= project.size
-        outcome = project.outcome()
+        result = project.result()
         if store is not None:
-            store.put([(project.place, written_outcome(outcome, project.state))])
-        return outcome
+            store.put([(project.place, result_record(result, project.state))])
+        return result
 
     for number, members in enumerate(projects):
-        project = _Project(members, wishes)
+        project = _Project(members, options)
         record = store.get_record(project.place) if store is not None else None
-        known = None if record is None else read_outcome(record, project.state)
+        known = None if record is None else read_result(record, project.state)
         if known is not None:
             waiting.append(known)
         else:
             project.start(number, pool)
             waiting.append(project)
             size += project.size
-        while waiting and (size > _MOST_WAITING or isinstance(waiting[0], Outcome)):
+        while waiting and (size > _MOST_WAITING or isinstance(waiting[0], ProjectResult)):
             yield first()
     while waiting:
         yield first()

@@ -1,8 +1,8 @@
 """The check of one project in one or several processes: reading its files, then checking them.
 
 A file is checked against the tables of all files of its project, and against no trees but its own.
-So the files can be dealt out: each process reads its share and keeps the trees, the tables go to
-all, and each process checks its share.
+So files can be shared by processes: each reads its share and keeps the trees, the tables are sent
+to all, and each checks its share.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.framework import Findings, check_module
 from grammar.check.suppression_comments import Silencer, silencers
-from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.diagnostics.diagnostic import Region, diagnose, in_order
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.predefined import System
@@ -25,9 +25,17 @@ from grammar.syntax import ast
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 from support.files.decode import decode
-from support.parallel.gc_pause import uncollected
+from support.parallel.gc_pause import gc_paused
 
-__all__ = ["LARGEST", "Content", "Looked", "Wishes", "check_part", "check_whole", "read_part"]
+__all__ = [
+    "LARGEST",
+    "CheckOptions",
+    "Content",
+    "FileResult",
+    "check_part",
+    "check_whole",
+    "read_part",
+]
 
 #: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
 LARGEST = 24_000_000
@@ -40,14 +48,14 @@ _NOTHING = Findings((), ())
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """What to look for besides errors: nothing but syntax, or what stops the robot too."""
+class CheckOptions:
+    """What to look for: syntax alone, or also what stops the advance run."""
 
     syntax_only: bool = False
     stops: bool = False
 
     @property
-    def sought(self) -> tuple[str, ...]:
+    def wanted_codes(self) -> tuple[str, ...]:
         """The prefixes of the codes that are wanted; see `grammar.check.suppression_comments`."""
         if self.syntax_only:
             return ("KRL0",)
@@ -64,8 +72,8 @@ class Content:
 
 
 @dataclass(frozen=True, slots=True)
-class Looked:
-    """What came of one file.
+class FileResult:
+    """The result of one file.
 
     ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
     by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
@@ -93,54 +101,56 @@ class _Tree:
 _KEPT: dict[int, dict[int, _Tree]] = {}
 
 
-def check_whole(contents: Sequence[Content], wishes: Wishes) -> list[Looked]:
+def check_whole(contents: Sequence[Content], options: CheckOptions) -> list[FileResult]:
     """Check all files of a project in this process."""
     project = -1
-    looked = read_part(project, dict(enumerate(contents)), wishes)
-    checked = check_part(project, [(c.path, c.origin) for c in contents], looked, wishes)
+    looked = read_part(project, dict(enumerate(contents)), options)
+    checked = check_part(project, [(c.path, c.origin) for c in contents], looked, options)
     return [checked.get(index) or looked[index] for index in range(len(contents))]
 
 
-def read_part(project: int, part: Mapping[int, Content], wishes: Wishes) -> dict[int, Looked]:
+def read_part(
+    project: int, part: Mapping[int, Content], options: CheckOptions
+) -> dict[int, FileResult]:
     """Read a share of the files of a project, and keep their trees for `check_part`."""
     kept = _KEPT[project] = {}
     looked = {}
     size = 0
     for index, content in part.items():
-        with uncollected(len(content.data)):
-            looked[index], tree = _read(content, wishes)
+        with gc_paused(len(content.data)):
+            looked[index], tree = _read(content, options)
         if tree is not None:
             size += len(content.data)
             kept[index] = tree if size <= _MOST_KEPT else replace(tree, syntax=None)
     return looked
 
 
-def _read(content: Content, wishes: Wishes) -> tuple[Looked, _Tree | None]:
+def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
     path = content.path
     if len(content.data) > LARGEST:
         message = f"larger than {LARGEST // 1_000_000} MB, so it was not checked"
         large = diagnose("too-large", path, Region(1, 1, 1, 1), message)
-        return Looked(Findings((large,), ())), None
+        return FileResult(Findings((large,), ())), None
     decoded = decode(content.data)
     if isinstance(decoded, str):
-        return Looked(skipped=decoded), None
+        return FileResult(skipped=decoded), None
     source = Source(decoded.text, path)
-    if wishes.syntax_only and not builder().failures.find(source.text):
-        return Looked(comments=silencers(source)), None
+    if options.syntax_only and not builder().failures.find(source.text):
+        return FileResult(comments=silencers(source)), None
     tree = builder().read(source.text, path)
     if not isinstance(tree, ast.Module):
         return _failed(tree, source), None
     comments = silencers(source)
-    if wishes.syntax_only:
-        return Looked(comments=comments), None
+    if options.syntax_only:
+        return FileResult(comments=comments), None
     table = table_of(tree)
-    return Looked(table=table, comments=comments), _Tree(tree, table, source, comments)
+    return FileResult(table=table, comments=comments), _Tree(tree, table, source, comments)
 
 
-def _failed(failures: list[SyntaxFailure], source: Source) -> Looked:
+def _failed(failures: list[SyntaxFailure], source: Source) -> FileResult:
     found = tuple(syntax_findings(failures, source))
     lines = _lines(source, (one.region.line for one in found))
-    return Looked(
+    return FileResult(
         Findings(found, ()), lines=lines, comments=silencers(source), words=words_of(source.text)
     )
 
@@ -148,9 +158,9 @@ def _failed(failures: list[SyntaxFailure], source: Source) -> Looked:
 def check_part(
     project: int,
     places: Sequence[tuple[str, str]],
-    looked: Mapping[int, Looked],
-    wishes: Wishes,
-) -> dict[int, Looked]:
+    looked: Mapping[int, FileResult],
+    options: CheckOptions,
+) -> dict[int, FileResult]:
     """Check those files of a project that `read_part` kept here.
 
     ``places`` are path and origin of all its files, in order, and ``looked`` what reading them
@@ -165,7 +175,7 @@ def check_part(
         if known.skipped is None:
             table = tree.table if tree else known.table
             files.append(File(path, None, origin, table, known.words))
-    # modules are told by their tables, which are the same objects
+    # modules are identified by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}
     for linked in link(files).projects:
@@ -174,21 +184,21 @@ def check_part(
                 index, tree = own[id(module.table)]
                 syntax = tree.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
-                with uncollected(len(tree.source.text)):
-                    checked[index] = _looked(_checked(linked, whole, tree.source, wishes), tree)
+                with gc_paused(len(tree.source.text)):
+                    checked[index] = _looked(_checked(linked, whole, tree.source, options), tree)
     return checked
 
 
 def _again(source: Source) -> ast.Module:
-    with uncollected(len(source.text)):
+    with gc_paused(len(source.text)):
         syntax = builder().read(source.text, source.path)
     assert isinstance(syntax, ast.Module), "it could be read before"
     return syntax
 
 
-def _checked(project: Project, module: Module, source: Source, wishes: Wishes) -> Findings:
+def _checked(project: Project, module: Module, source: Source, options: CheckOptions) -> Findings:
     done = check_module(project, module, source)
-    if not wishes.stops:
+    if not options.stops:
         return done.findings
     context = Context(
         project,
@@ -204,10 +214,10 @@ def _checked(project: Project, module: Module, source: Source, wishes: Wishes) -
     return Findings(tuple(found), done.findings.references)
 
 
-def _looked(findings: Findings, tree: _Tree) -> Looked:
-    told: list[Diagnostic] = list(findings.diagnostics)
-    numbers = {one.region.line for one in told} | {one.region.line for one in findings.references}
-    return Looked(findings, lines=_lines(tree.source, numbers), comments=tree.comments)
+def _looked(findings: Findings, tree: _Tree) -> FileResult:
+    numbers = {one.region.line for one in findings.diagnostics}
+    numbers |= {one.region.line for one in findings.references}
+    return FileResult(findings, lines=_lines(tree.source, numbers), comments=tree.comments)
 
 
 def _lines(source: Source, numbers: Iterable[int]) -> dict[int, str]:

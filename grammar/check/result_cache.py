@@ -1,7 +1,7 @@
 """What checking a project gave, as a record that can be kept and read back.
 
-Read back is only what the same files, code, tables and wishes gave, and whatever cannot be read is
-worked out again.
+A record counts only for the same files, code, tables and options; where it cannot be read, the
+project is checked again.
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
 from typing import Any
 
-from grammar.check.project_check import Content, Wishes
+from grammar.check.project_check import CheckOptions, Content
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from support.files.code_digest import code_digest
-from support.files.discovery import Skipped, digest
+from support.files.decode import digest
+from support.files.discovery import Skipped
 
-__all__ = ["Outcome", "read_outcome", "state_of", "written_outcome"]
+__all__ = ["ProjectResult", "read_result", "result_record", "state_of"]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ProjectResult:
     """What was found in a project, in order, with source lines by path and number.
 
     ``files`` were checked, of ``bytes`` in all; ``is_kept``: it was known from before.
@@ -34,33 +35,33 @@ class Outcome:
     is_kept: bool
 
 
-def state_of(contents: Sequence[Content], wishes: Wishes) -> str:
-    """What an outcome depends on: all files of the project, our code and tables, the wishes."""
-    state = hashlib.sha256(f"{code_digest('support', 'grammar')} {wishes}".encode())
+def state_of(contents: Sequence[Content], options: CheckOptions) -> str:
+    """What a result depends on: all files of the project, our code and tables, the options."""
+    state = hashlib.sha256(f"{code_digest('support', 'grammar')} {options}".encode())
     for content in contents:
         line = f"\n{digest(content.data)} {content.origin}\t{content.path}"
         state.update(line.encode("utf-8", "surrogatepass"))
     return state.hexdigest()
 
 
-def written_outcome(outcome: Outcome, state: str) -> dict[str, Any]:
-    """The record of an outcome that belongs to a state."""
+def result_record(result: ProjectResult, state: str) -> dict[str, object]:
+    """The record of a result that belongs to a state."""
     return {
         "state": state,
-        "diagnostics": [_written(one) for one in outcome.diagnostics],
-        "lines": [[path, number, line] for (path, number), line in outcome.lines.items()],
-        "skipped": [[one.path, one.reason, one.origin] for one in outcome.skipped],
-        "files": outcome.files,
-        "bytes": outcome.bytes,
+        "diagnostics": [_written(one) for one in result.diagnostics],
+        "lines": [[path, number, line] for (path, number), line in result.lines.items()],
+        "skipped": [[one.path, one.reason, one.origin] for one in result.skipped],
+        "files": result.files,
+        "bytes": result.bytes,
     }
 
 
-def read_outcome(record: Mapping[str, Any], state: str) -> Outcome | None:
-    """The outcome of a record; ``None`` where it belongs to another state or is damaged."""
+def read_result(record: Mapping[str, Any], state: str) -> ProjectResult | None:
+    """The result of a record; ``None`` where it belongs to another state or is damaged."""
     if record.get("state") != state:
         return None
     try:
-        return Outcome(
+        return ProjectResult(
             tuple(_read(values) for values in record["diagnostics"]),
             {(path, number): line for path, number, line in record["lines"]},
             tuple(Skipped(*values) for values in record["skipped"]),

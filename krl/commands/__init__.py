@@ -1,3 +1,3 @@
-"""One module a command. Each imports the rooms it needs inside the command, to start quickly."""
+"""One module a command. Each imports what it needs inside the command, to start quickly."""
 
 __all__: list[str] = []

@@ -21,7 +21,7 @@ from krl.progress import progress_bar
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
-    from grammar.check.batch import Checkup
+    from grammar.check.batch import CheckReport
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
@@ -81,7 +81,7 @@ def check(
     Exit status 1 where there are errors or warnings; notes alone leave it 0. A comment
     '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file.
     """
-    from grammar.check.batch import Wishes, checkup
+    from grammar.check.batch import CheckOptions, check_paths
     from grammar.diagnostics.suppression import Selection
     from support.files.discovery import IngestError
 
@@ -90,12 +90,12 @@ def check(
         selection = Selection.of(select or (), ignore or ())
     except ValueError as error:
         raise InputError(str(error)) from error
-    wishes = Wishes(syntax_only, stops or _asks_for_stops(selection))
+    options = CheckOptions(syntax_only, stops or _asks_for_stops(selection))
     folder = None if no_cache else _usable(cache, _users_cache())
     try:
         with progress_bar("checking") as bar:
-            found = checkup(
-                paths, wishes, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
+            found = check_paths(
+                paths, options, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
             )
     except IngestError as error:
         raise InputError(str(error)) from error
@@ -148,7 +148,9 @@ def _usable(wanted: Path | None, default: Path | None) -> Path | None:
 # -- the findings ----------------------------------------------------------------------------------
 
 
-def _write(kept: "list[Diagnostic]", found: "Checkup", format_: Format, out: Path | None) -> None:
+def _write(
+    kept: "list[Diagnostic]", found: "CheckReport", format_: Format, out: Path | None
+) -> None:
     if format_ is Format.TEXT and out is None:
         _print_text(kept, found.lines)
         return
@@ -205,7 +207,7 @@ def _coloured(line: str) -> Text:
     return text
 
 
-def _sum_up(kept: "Iterable[Diagnostic]", found: "Checkup") -> None:
+def _sum_up(kept: "Iterable[Diagnostic]", found: "CheckReport") -> None:
     """What was checked and found, on one line of stderr, and what was left out."""
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.rendering import summary

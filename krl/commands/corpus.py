@@ -63,7 +63,7 @@ def fetch(
     The files belong to other people. Exit status 1 when some could not be had.
     """
     from krl.progress import progress_bar
-    from recovery.corpus import public as room
+    from recovery.corpus import public
 
     sources = _sources()
     if shutil.which("git") is None:
@@ -78,7 +78,7 @@ def fetch(
     )
     wanted = sum(len(source.files) for source in sources)
     with progress_bar("fetching", wanted) as advance:
-        results = [room.fetch(source, out, mirror, advance) for source in sources]
+        results = [public.fetch(source, out, mirror, advance) for source in sources]
     rows = []
     for result in results:
         share = f"{result.written + result.kept} of {_files(len(result.source.files))}"

@@ -69,7 +69,8 @@ def format_programs(
 def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     """Format one file, and say on one line what is not as it should be."""
     from grammar.syntax.formatter import LayoutDefect, layouter
-    from support.files.discovery import Skipped, decode, read
+    from support.files.decode import decode
+    from support.files.discovery import Skipped, read
 
     data = found if isinstance(found, Skipped) else read(found)
     source = data.reason if isinstance(data, Skipped) else decode(data)

@@ -1,10 +1,10 @@
 """`krl growth`: what each construct of the ledger brought, over a corpus."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich import box
@@ -18,6 +18,9 @@ from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_o
 from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
 from krl.survey_summary import share
+
+if TYPE_CHECKING:
+    from recovery.records import GrowthRecord, StepRecord
 
 __all__ = ["growth"]
 
@@ -73,7 +76,7 @@ def growth(
     return FINE
 
 
-def _print(record: Mapping[str, Any], page: Path) -> None:
+def _print(record: "GrowthRecord", page: Path) -> None:
     """Print the first, the last and the biggest steps, and what remains."""
     console = Console(highlight=False, markup=False, emoji=False)
     steps = record["steps"]
@@ -102,7 +105,7 @@ def _print(record: Mapping[str, Any], page: Path) -> None:
     console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
 
 
-def _table(steps: Sequence[Mapping[str, Any]]) -> Table:
+def _table(steps: "Sequence[StepRecord]") -> Table:
     """The first step, the last and those that restored most, in their order."""
     biggest = sorted(steps[1:], key=lambda step: -step["restored"])[:_BIGGEST]
     shown = {0, len(steps) - 1} | {

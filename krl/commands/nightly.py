@@ -94,8 +94,8 @@ def nightly(
     runs = [one for one in read_history(history) if one.get("date") != name]
     last = known_before(runs)
     run = nightly_record(name, made, went)
-    judged = "" if last is None else str(last["of"].get("conform", ""))
-    before = _record(out / judged, "conform") if judged else None
+    compared = "" if last is None else str(last["of"].get("conform", ""))
+    before = _record(out / compared, "conform") if compared else None
     told = changes(last, run, before, made.get("conform"))
     append_run(history, run)
     write_json({**run, "changes": told}, folder / "night.json")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from grammar.notation.model import Grammar
     from recovery.growth.growth import Steps
     from recovery.negatives.negatives import Negative
+    from recovery.records import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
 
 __all__ = ["recover"]
@@ -110,12 +111,12 @@ class _Surveyor:
         self.jobs = jobs
         self.scheduler = scheduler
 
-    def record(self, grammar: "Grammar", name: str) -> dict[str, Any]:
+    def record(self, grammar: "Grammar", name: str) -> "SurveyRecord":
         """The record of the survey under a grammar."""
         found = self._survey(grammar, "surveying")
         return self._analysed(found, name, "finding causes")
 
-    def start(self, grammar: "Grammar", steps: "Steps") -> dict[str, Any]:
+    def start(self, grammar: "Grammar", steps: "Steps") -> "StartRecord":
         """The same under the restrictive start, with what the constructs answered."""
         from recovery.analysis import with_answers
 
@@ -146,7 +147,7 @@ class _Surveyor:
                 on_done=bar,
             )
 
-    def _analysed(self, found: "Survey", name: str, label: str) -> dict[str, Any]:
+    def _analysed(self, found: "Survey", name: str, label: str) -> "SurveyRecord":
         from recovery.analysis import analyse
 
         with progress_bar(label) as bar:

@@ -12,7 +12,8 @@ from recovery.bench.assessment import Material, covering
 from recovery.bench.mutation import Mutant, combined, mutants
 from recovery.bench.resampling import readable
 from recovery.negatives.negatives import Negative
-from support.files.discovery import Skipped, decode, discover, read
+from support.files.decode import decode
+from support.files.discovery import Skipped, discover, read
 
 __all__ = ["choose", "material_for"]
 

@@ -24,7 +24,8 @@ from grammar.parser.lazy_automaton import Core
 from grammar.parser.recognizer import Recognizer
 from recovery.bench.resampling import readable, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
-from support.files.discovery import Found, IngestError, Skipped, decode, digest, discover, read
+from support.files.decode import decode, digest
+from support.files.discovery import Found, IngestError, Skipped, discover, read
 from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
 

@@ -18,7 +18,7 @@ from recovery.clustering.regression import Readable, nothing_readable
 from recovery.clustering.search import Search
 from recovery.proposals.candidates import Line
 from recovery.tuning import CAUSES_PER_GROUP, HEAVY_GROUPS, TRIAL_GARBAGE
-from support.parallel.gc_pause import uncollected
+from support.parallel.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 
 __all__ = ["find_causes"]
@@ -45,10 +45,10 @@ def find_causes(
     for place, group in enumerate(groups):
         search.thorough = place < HEAVY_GROUPS
         is_open = not search.open.isdisjoint(group)
-        with uncollected(TRIAL_GARBAGE if is_open else 0):
+        with gc_paused(TRIAL_GARBAGE if is_open else 0):
             causes += _of_group(search, group)
         on_done(1)
-    with uncollected(TRIAL_GARBAGE):
+    with gc_paused(TRIAL_GARBAGE):
         causes = sought_together(search, causes)
     return joined(search, causes)
 

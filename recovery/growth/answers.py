@@ -8,20 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from grammar.notation.model import Grammar
 from recovery.growth.growth import Steps
 from recovery.growth.timeline import Content, Timeline, read_through
 from recovery.ledger.construct_record import construct_record
+from recovery.records import ClusterRecord, ConstructRecord
 from recovery.survey.survey import Survey
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["answered"]
+__all__ = ["Answers", "answered"]
+
+
+class Answers(TypedDict):
+    """The clusters of a start, and the constructs that answered them."""
+
+    clusters: list[ClusterRecord]
+    constructs: list[ConstructRecord]
 
 
 def answered(
-    clusters: Sequence[Mapping[str, Any]],
+    clusters: Sequence[ClusterRecord],
     found: Survey,
     steps: Steps,
     *,
@@ -29,7 +37,7 @@ def answered(
     cache: Path | None = None,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
-) -> dict[str, Any]:
+) -> Answers:
     """Clusters with their answers, and the constructs that gave them.
 
     ``clusters`` are those of the record of ``found``, the survey of the start. Returns them under
@@ -47,7 +55,7 @@ def answered(
         contents, grammars, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
     )
     by_path = {line.content.path: line for line in read}
-    told = []
+    told: list[ClusterRecord] = []
     answers: set[int] = set()
     for cluster in clusters:
         number = _answer(_lines(cluster), by_path, len(steps))
@@ -60,11 +68,11 @@ def answered(
     }
 
 
-def _record(grammars: Sequence[Grammar], steps: Steps, number: int) -> dict[str, Any]:
+def _record(grammars: Sequence[Grammar], steps: Steps, number: int) -> ConstructRecord:
     return construct_record(steps[number - 1][0], grammars[number - 1], grammars[number])
 
 
-def _lines(cluster: Mapping[str, Any]) -> list[tuple[str, int]]:
+def _lines(cluster: ClusterRecord) -> list[tuple[str, int]]:
     """Path and number of the lines that stand for a cluster."""
     return [(e["path"], e["line"]) for e in (cluster["example"], *cluster["examples"])]
 

@@ -12,7 +12,7 @@ import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from grammar.notation.model import Grammar
 from recovery.growth.remaining import ambiguous_lines, remaining
@@ -21,6 +21,7 @@ from recovery.ledger.construct import Construct
 from recovery.ledger.construct_record import START_RECORD, construct_record
 from recovery.ledger.lookahead import decisions, share_decided
 from recovery.ledger.metrics import MEANINGS, metrics
+from recovery.records import GrowthRecord, SkippedRecord, StepRecord
 from recovery.survey.result_cache import key_of
 from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
@@ -43,7 +44,7 @@ def growth(
     cache: Path | None = None,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
-) -> dict[str, Any]:
+) -> GrowthRecord:
     """The record of the growth from ``start`` over ``steps`` on the corpus below ``roots``.
 
     Files and bytes include copies, lines do not. ``jobs``, ``cache`` and the progress are those of
@@ -62,7 +63,7 @@ def growth(
     else:
         digest = _digest(read, skipped, start, steps)
         with ResultStore(cache, key_of(start)) as store:
-            kept = store.get_record(digest)
+            kept = cast("GrowthRecord | None", store.get_record(digest))
             record = kept or _record(read, skipped, start, steps)
             if kept is None:
                 store.put([(digest, record)])
@@ -85,12 +86,13 @@ def _digest(
 
 def _record(
     read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: Steps
-) -> dict[str, Any]:
+) -> GrowthRecord:
     files = [line for line in read if not line.reason]
     last = steps[-1][1] if steps else start
     choices = decisions(last)
     failing = [f.content for f in files if not f.parses(len(steps))]
     parsed = [f.content for f in files if f.parses(len(steps))]
+    left = remaining(failing, last)
     return {
         "grammar_sha256": last.sha256,
         "files": sum(len(f.content.places) for f in files),
@@ -106,7 +108,8 @@ def _record(
             "others": [choice.in_words for choice in choices if choice.tokens > 2],
         },
         "ambiguous": ambiguous_lines(parsed, last),
-        **remaining(failing, last),
+        "remaining": left["remaining"],
+        "remaining_files": left["remaining_files"],
     }
 
 
@@ -114,7 +117,7 @@ def _bytes(contents: Iterable[Content]) -> int:
     return sum(c.size * len(c.places) for c in contents)
 
 
-def _skipped(skipped: Sequence[Skipped], read: Sequence[Timeline]) -> list[dict[str, str]]:
+def _skipped(skipped: Sequence[Skipped], read: Sequence[Timeline]) -> list[SkippedRecord]:
     """Everything that was not read, and why, by path."""
     rows = [(entry.path, entry.reason, entry.origin) for entry in skipped]
     rows += [
@@ -126,11 +129,9 @@ def _skipped(skipped: Sequence[Skipped], read: Sequence[Timeline]) -> list[dict[
 # ---------------------------------------------------------------------------------- the steps
 
 
-def _steps(files: Sequence[Timeline], start: Grammar, steps: Steps) -> Iterator[dict[str, Any]]:
-    total = {
-        "files": sum(len(f.content.places) for f in files),
-        "bytes": _bytes(f.content for f in files),
-    }
+def _steps(files: Sequence[Timeline], start: Grammar, steps: Steps) -> Iterator[StepRecord]:
+    total = sum(len(f.content.places) for f in files)
+    size = _bytes(f.content for f in files)
     failing = _failing_lines(files, len(steps) + 1)
     fails = [(f.content, f.whenever) for f in files]
     parsed_before: set[str] | None = None
@@ -144,7 +145,8 @@ def _steps(files: Sequence[Timeline], start: Grammar, steps: Steps) -> Iterator[
         about = construct and construct_record(construct, before, grammar)
         yield {
             **(about or START_RECORD),
-            **total,
+            "files": total,
+            "bytes": size,
             "parsed": len(places),
             "parsed_bytes": _bytes(parsed),
             "restored": len(restored),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from grammar.notation.model import Grammar
 from grammar.parser.ambiguity import is_ambiguous
@@ -14,17 +14,31 @@ from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.timeline import Content
 from recovery.negatives.language_facts import violation
+from recovery.records import (
+    AmbiguousLineRecord,
+    AmbiguousRecord,
+    RemainingFileRecord,
+    RemainingLineRecord,
+)
 from recovery.survey.failing_line import failures_of, source_lines
-from support.files.discovery import Skipped, decode, digest, read
+from support.files.decode import decode, digest
+from support.files.discovery import Skipped, read
 
-__all__ = ["ambiguous_lines", "remaining"]
+__all__ = ["Remaining", "ambiguous_lines", "remaining"]
 
 _REASONS = Path(__file__).with_name("remaining.tsv")
 _EXAMPLES = 20
 _LONGEST_LINE = 1_000
 
 
-def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
+class Remaining(TypedDict):
+    """What does not parse at the end of the growth."""
+
+    remaining: list[RemainingLineRecord]
+    remaining_files: list[RemainingFileRecord]
+
+
+def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
     """The files that do not parse (``remaining_files``) and their failing lines (``remaining``).
 
     ``fact`` of a file is a fact that no KRL program breaks (`recovery.negatives.language_facts`)
@@ -34,8 +48,8 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
     broken fact. Both are empty where nothing is known.
     """
     finder = FailureFinder(Recognizer(grammar))
-    lines: list[dict[str, Any]] = []
-    files: list[dict[str, Any]] = []
+    lines: list[RemainingLineRecord] = []
+    files: list[RemainingFileRecord] = []
     for content, text in _texts(contents):
         failures = failures_of(finder, text, {})
         broken = violation(text)
@@ -77,7 +91,7 @@ def _reasons() -> Mapping[str, tuple[str, str]]:
     return {digest: (kind, reason) for digest, kind, _, _, reason in rows}
 
 
-def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> dict[str, Any]:
+def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousRecord:
     """How many lines of files that parse have two readings, and the first of them as examples.
 
     Each line is looked at in its place. ``lines`` counts them, each content once, ``of`` says how
@@ -86,7 +100,7 @@ def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> dict[str, 
     recognizer = Recognizer(grammar)
     reader = LineReader(recognizer)
     known: dict[tuple[Spot, int], bool] = {}
-    examples: list[dict[str, Any]] = []
+    examples: list[AmbiguousLineRecord] = []
     count = total = 0
     for content, text in _texts(contents):
         spot = reader.spot(recognizer.start)

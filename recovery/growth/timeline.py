@@ -23,7 +23,8 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.inclusion import fixed_texts_added, occurs
 from recovery.survey.result_cache import key_of
-from support.files.discovery import Found, Skipped, Source, decode, digest, discover, read
+from support.files.decode import Source, decode, digest
+from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 from support.parallel.progress import Progress, no_progress

@@ -17,7 +17,8 @@ from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, lines
 from recovery.survey.survey import Survey, survey
-from support.files.discovery import Found, Skipped, decode, discover, read
+from support.files.decode import decode
+from support.files.discovery import Found, Skipped, discover, read
 
 __all__ = ["Corpora", "Standing"]
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import fields
-from typing import Any
 
 from grammar.notation.edits import apply, describe
 from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence
+from recovery.records import ConstructRecord
 
 __all__ = ["START_RECORD", "construct_record"]
 
 #: The restrictive start as a step of the growth, with the same fields.
-START_RECORD: dict[str, Any] = {
+START_RECORD: ConstructRecord = {
     "number": 0,
     "id": "preliminary",
     "title": "The restrictive start",
@@ -28,7 +28,7 @@ START_RECORD: dict[str, Any] = {
 }
 
 
-def construct_record(construct: Construct, before: Grammar, after: Grammar) -> dict[str, Any]:
+def construct_record(construct: Construct, before: Grammar, after: Grammar) -> ConstructRecord:
     """The fields of a construct that makes ``after`` of ``before``; they are those of the ledger.
 
     ``edits`` has a line for each typed edit, ``diff`` what they do to the text of the grammar.
@@ -55,6 +55,6 @@ def construct_record(construct: Construct, before: Grammar, after: Grammar) -> d
     }
 
 
-def _plain(evidence: Evidence) -> dict[str, Any]:
+def _plain(evidence: Evidence) -> dict[str, object]:
     values = {field.name: getattr(evidence, field.name) for field in fields(evidence)}
     return {key: list(v) if isinstance(v, tuple) else v for key, v in values.items()}

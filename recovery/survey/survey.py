@@ -22,7 +22,8 @@ from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.failing_line import Failed, failures_of, source_lines
 from recovery.survey.result_cache import Kept, keep, key_of, recall
-from support.files.discovery import Found, Skipped, decode, digest, discover, read
+from support.files.decode import decode, digest
+from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress

@@ -1,1 +1,1 @@
-"""Files of strangers read within limits, and our own files written whole or not at all."""
+"""Files: untrusted input read within limits, results kept, output written whole or not at all."""

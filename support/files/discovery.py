@@ -15,18 +15,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
 from support.files import archives
-from support.files.archives import ArchiveError, close_archives, is_archive
-from support.files.decode import Source, decode, digest
+from support.files.archives import ArchiveError, is_archive
 from support.files.untrusted import open_file
 
 __all__ = [
     "Found",
     "IngestError",
     "Skipped",
-    "Source",
-    "close_archives",
-    "decode",
-    "digest",
     "discover",
     "read",
 ]

@@ -70,9 +70,10 @@ class ResultStore:
             row = self._base.execute(
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
             ).fetchone()
-            return None if row is None else json.loads(zlib.decompress(row[0]))
+            value: object = None if row is None else json.loads(zlib.decompress(row[0]))
         except (*_DAMAGE, zlib.error, ValueError, TypeError, RecursionError):
             return None
+        return value
 
     def get_record(self, digest: str) -> dict[str, Any] | None:
         """The value kept under a digest where it is an object of JSON, else ``None``."""

@@ -1,7 +1,7 @@
-"""Small files that other people wrote: opened without waiting, read with limits on size and depth.
+"""Small files from outside: opened without waiting, read with limits on size and depth.
 
-KRL itself comes in through `support.files.discovery`. This is for what stands beside it: grammars,
-constructs, profiles, scripts, recordings.
+KRL itself comes in through `support.files.discovery`. This is for grammars,
+constructs, profiles, scripts and recordings.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class DocumentError(ValueError):
 def open_file(file: Path) -> io.FileIO:
     """Open a regular file for reading; raises OSError, also for folders, pipes and devices.
 
-    Never waits: opening a pipe nobody writes to would.
+    Never waits, as opening a pipe without a writer would.
     """
     flags = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
     stream = io.FileIO(os.open(file, flags), "rb")
@@ -81,14 +81,15 @@ def toml_of(text: str) -> dict[str, Any]:
         raise DocumentError(f"not TOML: {error}") from None
 
 
-def json_of(text: str) -> Any:
+def json_of(text: str) -> object:
     """The value of a JSON text, its numbers finite; raises `DocumentError`."""
     try:
-        return json.loads(text, parse_float=_finite, parse_constant=_finite)
+        value: object = json.loads(text, parse_float=_finite, parse_constant=_finite)
     except RecursionError:
         raise DocumentError("not JSON: nested too deeply") from None
     except ValueError as error:
         raise DocumentError(f"not JSON: {error}") from None
+    return value
 
 
 def _finite(written: str) -> float:

@@ -1,4 +1,4 @@
-"""Work that makes many objects and little garbage, undisturbed by the search for garbage.
+"""The garbage collector paused during work that makes many objects and little garbage.
 
 A syntax tree of a megabyte is half a million objects, none of them garbage before the whole tree
 is: going through them again and again takes 40 % of the time of a check.
@@ -10,17 +10,17 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["uncollected"]
+__all__ = ["gc_paused"]
 
-# Bytes of source after which garbage is looked for all the same, so that memory stays flat.
+# Bytes of source after which garbage is collected all the same, so that memory stays flat.
 _OFTEN = 8_000_000
 
 _since = [0]
 
 
 @contextmanager
-def uncollected(size: int) -> Iterator[None]:
-    """No garbage is looked for while the block runs; ``size`` are the bytes it deals with."""
+def gc_paused(size: int) -> Iterator[None]:
+    """Collect no garbage while the block runs; ``size`` is the bytes of source it works on."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:

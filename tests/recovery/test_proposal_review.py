@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -17,6 +16,7 @@ from recovery.clustering.cluster import Cluster, Clusters, cluster
 from recovery.clustering.negative_score import judge_of
 from recovery.negatives.negatives import Negative
 from recovery.proposal_review import Reviewer
+from recovery.records import ProposalRecord
 from recovery.survey.survey import Survey, survey
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -82,7 +82,7 @@ class Reviewed:
         self.reviewer = Reviewer(self.found, self.clusters)
         self.records = [(c, self.reviewer.records(c)) for c in self.clusters.ranked]
 
-    def proposals(self) -> list[dict[str, Any]]:
+    def proposals(self) -> list[ProposalRecord]:
         """What is told of all proposals, cluster by cluster."""
         return [record for _, records in self.records for record in records]
 
@@ -91,7 +91,7 @@ class Reviewed:
         again = survey([self.root], grammar, jobs=1)
         return {path for f in again.files if not f.failures for path, _ in f.places}
 
-    def of(self, found: Cluster, *edits: Edit) -> dict[str, Any]:
+    def of(self, found: Cluster, *edits: Edit) -> ProposalRecord:
         """What the reviewer says of edits of our own, proposed for a cluster."""
         ours = replace(found.proposals[0], edits=edits)
         alone = replace(found, proposals=(ours,), restores=found.restores[:1])
@@ -113,7 +113,7 @@ def blocks(tmp_path_factory: pytest.TempPathFactory) -> Reviewed:
     return Reviewed(tmp_path_factory.mktemp("blocks"), BLOCKS)
 
 
-def grammar_of(record: dict[str, Any]) -> Grammar:
+def grammar_of(record: ProposalRecord) -> Grammar:
     """The grammar a proposal makes, read from its text."""
     return read(apply(PRELIMINARY, [from_data(edit) for edit in record["edits"]]).text)
 

@@ -5,7 +5,6 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -13,6 +12,7 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import cluster
+from recovery.records import SurveyRecord
 from recovery.survey.survey import Survey, survey, survey_texts
 from recovery.survey_record import record_of
 
@@ -43,7 +43,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Survey:
 
 
 @pytest.fixture(scope="module")
-def record(found: Survey) -> dict[str, Any]:
+def record(found: Survey) -> SurveyRecord:
     return record_of(found, cluster(found), grammar_name="grammar/some.g4")
 
 
@@ -91,12 +91,12 @@ OF_AN_EXAMPLE = {"path": str, "line": int, "text": str}
 OF_A_PROPOSAL = {"edit": str, "restores": int, "accepts_negatives": int, "ambiguities": int}
 
 
-def has(data: dict[str, Any], fields: Mapping[str, type]) -> None:
+def has(data: Mapping[str, object], fields: Mapping[str, type]) -> None:
     """Each of the fields is there and of its type, to the letter."""
     assert fields == {name: type(data[name]) for name in fields if name in data}
 
 
-def test_every_field_of_the_contract_is_there(record: dict[str, Any]) -> None:
+def test_every_field_of_the_contract_is_there(record: SurveyRecord) -> None:
     """What programs outside rely on has its name and its type."""
     has(record, OF_A_SURVEY)
     assert record["skipped"]
@@ -115,12 +115,12 @@ def test_every_field_of_the_contract_is_there(record: dict[str, Any]) -> None:
     assert any(entry["proposals"] for entry in record["clusters"])
 
 
-def test_the_record_is_plain_json(record: dict[str, Any]) -> None:
+def test_the_record_is_plain_json(record: SurveyRecord) -> None:
     """Written and read again it is the same: no tuple, no number key, no NaN."""
     assert record == json.loads(json.dumps(record, allow_nan=False))
 
 
-def test_no_text_could_break_a_line_or_a_page(record: dict[str, Any]) -> None:
+def test_no_text_could_break_a_line_or_a_page(record: SurveyRecord) -> None:
     """Names and titles are printable, whatever the files hold."""
     for entry in record["clusters"]:
         assert entry["title"].isprintable()
@@ -130,7 +130,7 @@ def test_no_text_could_break_a_line_or_a_page(record: dict[str, Any]) -> None:
 # ------------------------------------------------------------------------------ the figures
 
 
-def test_files_and_bytes_count_copies(record: dict[str, Any]) -> None:
+def test_files_and_bytes_count_copies(record: SurveyRecord) -> None:
     """Files, parsed files and their bytes are those on the disk, copies included."""
     krl = {name: data for name, data in FILES.items() if not name.endswith("junk.dat")}
     fine = {name for name in krl if "fine" in name}
@@ -141,7 +141,7 @@ def test_files_and_bytes_count_copies(record: dict[str, Any]) -> None:
     assert "grammar/some.g4" == record["grammar"]
 
 
-def test_copies_and_skipped_files_are_named(record: dict[str, Any]) -> None:
+def test_copies_and_skipped_files_are_named(record: SurveyRecord) -> None:
     """Every file of the disk is a file, a copy of one, or skipped."""
     copies = {short(c["path"]): short(c["same_as"]) for c in record["copies"]}
     assert {
@@ -152,13 +152,13 @@ def test_copies_and_skipped_files_are_named(record: dict[str, Any]) -> None:
     assert ["south/junk.dat"] == [short(s["path"]) for s in record["skipped"]]
 
 
-def test_origins_add_up(record: dict[str, Any]) -> None:
+def test_origins_add_up(record: SurveyRecord) -> None:
     """Each origin's files are its parsed and failed ones, and all together the survey's."""
     origins = {o["name"]: (o["files"], o["parsed"], o["failed"]) for o in record["origins"]}
     assert {"north": (4, 1, 3), "south": (4, 1, 3), "west": (2, 0, 2)} == origins
 
 
-def test_clusters_count_their_failures(record: dict[str, Any]) -> None:
+def test_clusters_count_their_failures(record: SurveyRecord) -> None:
     """A cluster has as many failures as name it, in as many files and origins as its files lie."""
     places: dict[str, list[str]] = defaultdict(list)
     for failure in record["failures"]:
@@ -177,13 +177,13 @@ def test_clusters_count_their_failures(record: dict[str, Any]) -> None:
     assert named.keys() == {entry["id"] for entry in record["clusters"]}
 
 
-def test_what_follows_is_marked(record: dict[str, Any]) -> None:
+def test_what_follows_is_marked(record: SurveyRecord) -> None:
     """Lines of a block that was not understood follow, and no others."""
     follows = {(short(f["path"]), f["line"]) for f in record["failures"] if f["follows"]}
     assert {("south/switch.src", 3), ("south/switch.src", 5)} == follows
 
 
-def test_the_order_of_mending_leads_to_all_files(record: dict[str, Any]) -> None:
+def test_the_order_of_mending_leads_to_all_files(record: SurveyRecord) -> None:
     """Each step names a cluster, and the last lets every file parse."""
     steps = [step["cluster"] for step in record["greedy"]]
     counts = [step["parsed"] for step in record["greedy"]]
@@ -195,7 +195,7 @@ def test_the_order_of_mending_leads_to_all_files(record: dict[str, Any]) -> None
 # ----------------------------------------------------------------------------- the failures
 
 
-def test_failures_quote_the_file(record: dict[str, Any]) -> None:
+def test_failures_quote_the_file(record: SurveyRecord) -> None:
     """Line, column and text of each failure are those of the file."""
     for failure in record["failures"]:
         data = FILES[short(failure["path"])].decode("cp1252")
@@ -204,7 +204,7 @@ def test_failures_quote_the_file(record: dict[str, Any]) -> None:
         assert line[failure["column"] - 1 :].startswith(failure["token"].strip("\r\n"))
 
 
-def test_expected_is_what_could_have_come(record: dict[str, Any]) -> None:
+def test_expected_is_what_could_have_come(record: SurveyRecord) -> None:
     """For the first failure of a file the expected tokens are exactly those the grammar allows."""
     lexer = RECOGNIZER.lexer
     first = {failure["path"]: failure for failure in reversed(record["failures"])}
@@ -219,7 +219,7 @@ def test_expected_is_what_could_have_come(record: dict[str, Any]) -> None:
         )
 
 
-def test_the_rule_is_the_one_at_work(record: dict[str, Any]) -> None:
+def test_the_rule_is_the_one_at_work(record: SurveyRecord) -> None:
     """A failing line names the rule of the grammar that could not go on."""
     rules = {(short(f["path"]), f["line"]): f["rule"] for f in record["failures"]}
     assert "forStatement" == rules["north/step1.src", 2]
@@ -229,7 +229,7 @@ def test_the_rule_is_the_one_at_work(record: dict[str, Any]) -> None:
 # ----------------------------------------------------------------------------- the clusters
 
 
-def test_the_example_is_a_failure_of_the_cluster(record: dict[str, Any]) -> None:
+def test_the_example_is_a_failure_of_the_cluster(record: SurveyRecord) -> None:
     """The example stands in a file, at its line, among the lines around it."""
     for entry in record["clusters"]:
         example = entry["example"]
@@ -243,7 +243,7 @@ def test_the_example_is_a_failure_of_the_cluster(record: dict[str, Any]) -> None
         assert entry["token"] == example["token"]
 
 
-def test_further_examples_are_of_other_places(record: dict[str, Any]) -> None:
+def test_further_examples_are_of_other_places(record: SurveyRecord) -> None:
     """No example is shown twice."""
     for entry in record["clusters"]:
         shown = [(e["path"], e["line"], e["column"]) for e in entry["examples"]]
@@ -252,10 +252,11 @@ def test_further_examples_are_of_other_places(record: dict[str, Any]) -> None:
         assert len(set(shown)) == len(shown)
 
 
-def test_the_reproducer_fails_as_it_says(record: dict[str, Any]) -> None:
+def test_the_reproducer_fails_as_it_says(record: SurveyRecord) -> None:
     """Read under the grammar, the reproducer fails at its line and column."""
     for entry in record["clusters"]:
         small = entry["reproducer"]
+        assert small is not None
         (file,) = survey_texts([("small.src", small["text"])], PRELIMINARY).files
         assert (small["line"], small["column"]) == (
             file.failures[0].line,
@@ -311,7 +312,7 @@ def test_monstrous_lines_have_a_record(line: str) -> None:
     assert 1 == len(record["clusters"])
 
 
-def test_the_same_survey_has_the_same_record(found: Survey, record: dict[str, Any]) -> None:
+def test_the_same_survey_has_the_same_record(found: Survey, record: SurveyRecord) -> None:
     """Only the time may differ."""
     again = record_of(replace(found, seconds=0.0), cluster(found), grammar_name="grammar/some.g4")
     assert {**record, "seconds": 0.0} == again

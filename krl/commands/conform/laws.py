@@ -1,4 +1,4 @@
-"""`krl conform --metamorphic N`: programs changed in ways that nobody may notice."""
+"""`krl conform --metamorphic N`: programs changed in ways that must not change what they do."""
 
 import os
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ def check_laws(
     jobs: int | None,
     scheduler: str | None,
 ) -> int:
-    """Try every law, tell how each stands, and write the record; 1 where one was broken."""
+    """Try every law, report each, and write the record; returns 1 where one was broken."""
     from conformance.metamorphic import laws, record_of, try_laws
 
     seed = 1

@@ -94,6 +94,8 @@ def propose(
 
     try:
         record = json_of(read_bytes(survey).decode("utf-8"))
+        if not isinstance(record, dict):
+            raise TypeError("a survey is an object")
         typer.echo(one_line(f"wrote {write(record, cluster, number, out).as_posix()}"))
     except FileNotFoundError as error:
         raise InputError(f"{survey}: no such survey; run krl recover first") from error

@@ -1,4 +1,4 @@
-"""The checkup: files of projects checked in processes, kept, and left out."""
+"""Checks of whole folders: files of projects checked in processes, kept, and left out."""
 
 import zipfile
 from pathlib import Path
@@ -7,8 +7,8 @@ import pytest
 
 from grammar.check import batch as module
 from grammar.check import project_check
-from grammar.check.batch import Checkup, checkup
-from grammar.check.project_check import Wishes
+from grammar.check.batch import CheckReport, check_paths
+from grammar.check.project_check import CheckOptions
 from grammar.diagnostics.diagnostic import Diagnostic
 from support.files.discovery import IngestError
 
@@ -25,7 +25,7 @@ def lay(root: Path, **files: str) -> Path:
     return root
 
 
-def codes(found: Checkup) -> list[tuple[str, int, str]]:
+def codes(found: CheckReport) -> list[tuple[str, int, str]]:
     return [
         (one.path.rpartition("/")[2], one.region.line, one.code)
         for one in found.diagnostics
@@ -33,8 +33,8 @@ def codes(found: Checkup) -> list[tuple[str, int, str]]:
     ]
 
 
-def check(root: Path, wishes: Wishes = Wishes(), **options: object) -> Checkup:  # noqa: B008 - frozen
-    return checkup([root], wishes, **{"jobs": 1, **options})  # type: ignore[arg-type]
+def check(root: Path, wanted: CheckOptions = CheckOptions(), **options: object) -> CheckReport:  # noqa: B008 - frozen
+    return check_paths([root], wanted, **{"jobs": 1, **options})  # type: ignore[arg-type]
 
 
 def test_files_of_a_folder_are_checked_together(tmp_path: Path) -> None:
@@ -104,12 +104,12 @@ def test_unchanged_projects_are_not_checked_again(
 def test_other_wishes_are_other_findings(tmp_path: Path) -> None:
     """What was kept for one wish is no answer to another."""
     root = lay(tmp_path / "root", A__src="DEF A()\nHALT\nEXIT\nEND\n")
-    for wishes, expected in (
-        (Wishes(), ["KRL401"]),
-        (Wishes(stops=True), ["KRL601", "KRL401"]),
-        (Wishes(syntax_only=True), []),
+    for wanted, expected in (
+        (CheckOptions(), ["KRL401"]),
+        (CheckOptions(stops=True), ["KRL601", "KRL401"]),
+        (CheckOptions(syntax_only=True), []),
     ):
-        assert expected == [code for _, _, code in codes(check(root, wishes, cache=tmp_path))]
+        assert expected == [code for _, _, code in codes(check(root, wanted, cache=tmp_path))]
 
 
 @pytest.mark.parametrize("damage", [b"", b"junk", b"SQLite format 3\0junk"])
@@ -143,7 +143,7 @@ def test_syntax_failures_are_told_and_the_rest_is_checked(tmp_path: Path) -> Non
     """A file that cannot be read does not keep others from being checked."""
     root = lay(tmp_path, A__src="DEF A()\nIF 1\nEND\n", B__src="DEF B()\nEXIT\nEND\n")
     assert [("A.src", 2, "KRL001"), ("B.src", 2, "KRL401")] == codes(check(root))
-    only_syntax = check(root, Wishes(syntax_only=True))
+    only_syntax = check(root, CheckOptions(syntax_only=True))
     assert [("A.src", 2, "KRL001")] == codes(only_syntax)
 
 

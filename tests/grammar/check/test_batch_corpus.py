@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from grammar.check.batch import Wishes, checkup
+from grammar.check.batch import CheckOptions, check_paths
 from grammar.generation.cells.writing import write_cells
 from grammar.notation.generate import GRAMMAR
 
@@ -12,7 +12,7 @@ KNOWN = {("paper_example.src", "KRL503")}
 
 
 def graver(root: Path) -> set[tuple[str, str]]:
-    found = checkup([root], Wishes(stops=True), jobs=1).diagnostics
+    found = check_paths([root], CheckOptions(stops=True), jobs=1).diagnostics
     return {(one.path.rpartition("/")[2], one.code) for one in found if one.severity != "note"}
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import pytest
 
@@ -13,6 +13,7 @@ from recovery.analysis import analyse, with_answers
 from recovery.growth.answers import answered
 from recovery.ledger.construct import Construct
 from recovery.ledger.ledger import replay
+from recovery.records import ClusterRecord
 from recovery.survey.survey import Survey, survey
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -48,11 +49,11 @@ def found(tmp_path: Path) -> Survey:
     return survey([tmp_path], START, jobs=1)
 
 
-def cluster(found: Survey, *places: tuple[str, int]) -> dict[str, Any]:
+def cluster(found: Survey, *places: tuple[str, int]) -> ClusterRecord:
     """A cluster with lines of these files as its examples."""
     paths = {Path(file.path).name: file.path for file in found.files}
     first, *others = [{"path": paths[name], "line": line} for name, line in places]
-    return {"title": "A", "example": first, "examples": others}
+    return cast("ClusterRecord", {"title": "A", "example": first, "examples": others})
 
 
 def answers(found: Survey, *clusters: Sequence[tuple[str, int]]) -> list[str | None]:

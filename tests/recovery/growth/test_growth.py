@@ -13,6 +13,7 @@ from recovery.growth.growth import growth
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.ledger import replay
 from recovery.ledger.metrics import metrics
+from recovery.records import GrowthRecord
 from support.files.discovery import IngestError
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -76,8 +77,9 @@ def test_the_steps_counted_by_hand(corpus: Path) -> None:
         (1, "0001-step", 3, 2, 1),
         (2, "0002-halt", 4, 1, 0),
     ]
-    keys = ("number", "id", "parsed", "restored", "broken")
-    assert expected == [tuple(step[key] for key in keys) for step in steps]
+    assert expected == [
+        (s["number"], s["id"], s["parsed"], s["restored"], s["broken"]) for s in steps
+    ]
     assert ["copies/step.src", "step.src"] == names(steps[1]["restored_files"])
     assert ["name.src"] == names(steps[1]["broken_files"])
     assert ["two.src"] == names(steps[2]["restored_files"])
@@ -150,7 +152,7 @@ def test_a_ledger_without_constructs_has_one_step(corpus: Path) -> None:
 def test_the_record_is_kept(corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is worked out a second time, but for a construct that tells something else."""
 
-    def settled(record: dict[str, Any]) -> dict[str, Any]:
+    def settled(record: GrowthRecord) -> dict[str, Any]:
         return {key: value for key, value in record.items() if key != "seconds"}
 
     cache = tmp_path / "cache"

@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from support.files import archives
-from support.files.discovery import Found, IngestError, Skipped, close_archives, discover, read
+from support.files.archives import close_archives
+from support.files.discovery import Found, IngestError, Skipped, discover, read
 
 A = b"DEF A()\nEND\n"
 B = b"DEF B()\nEND\n"

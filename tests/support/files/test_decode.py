@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from support.files.discovery import Source, decode, digest
+from support.files.decode import Source, decode, digest
 
 PROGRAM = "&ACCESS RVP\r\nDEF CELL1 ( )\r\n;FOLD INI\r\n  $OUT[1]=TRUE\r\n;ENDFOLD\r\nEND\r\n"
 QUICK = settings(max_examples=60, deadline=None)
