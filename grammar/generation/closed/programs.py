@@ -113,6 +113,7 @@ class _Programs:
         self.size = size
         self.risk = choices.pick((3, 6, 12)) if choices.chance(size.risky) else 0
         self.names = _Numbered()
+        self.has_channel = choices.chance(15)
 
     # ----------------------------------------------------------------------- files
 
@@ -130,7 +131,7 @@ class _Programs:
             data += [f"SIGNAL {name} {means}" for name, _, means, _ in _SIGNALS]
             for name, type_, _, is_writable in _SIGNALS:
                 own.add(Variable(name, type_, is_writable=is_writable, is_local=False))
-        if choices.chance(15):
+        if self.has_channel:
             data.append("CHANNEL :SER_1 :SER_1 $PSER_1")
         if choices.chance(25) and files:  # of another data list, under a name of its own [ADV-05]
             own.add(Variable("THEIRS", INT, is_local=False))
@@ -210,7 +211,7 @@ class _Programs:
         variables = self._declare(code, [])
         code.passes.append("COUNT")  # of the data list; no other routine counts with it
         self._begin(code, variables, _MOST_FIRST_VALUES)
-        if self.choices.chance(10):
+        if self.has_channel:
             channel(code)
         statements(code)
         if self.size.routines > 1:
