@@ -149,10 +149,6 @@ def _index(_draft: Draft, parts: Sequence[Part]) -> Value:
     return separated(parts[1:-1])
 
 
-def _call(draft: Draft, parts: Sequence[Part]) -> Value:
-    return draft.over(ast.Call, parts, parts[0].value, value_of(parts, "arguments"))
-
-
 def _arguments(_draft: Draft, parts: Sequence[Part]) -> Value:
     return separated(parts) if parts else ()
 
@@ -178,7 +174,6 @@ EXPRESSION_RULES: Mapping[str, Rule] = {
     "type": _type,
     "predefinedType": _type,
     "positionType": _position_type,
-    "call": _call,
     "arguments": _arguments,
     "argument": _argument,
     "reference": literal,

@@ -3,12 +3,14 @@
 One function a rule, or one for several that are alike. Each gets what the rule consists of, in the
 order of the text, and says which node that is (`grammar.syntax.node_plans`). Those of expressions
 stand in `grammar.syntax.expression_rules`; rules that span lines are built in
-`grammar.syntax.build`. A rule that is new to the grammar needs an entry in one of the three.
+`grammar.syntax.build`. A rule that is new to the grammar needs an entry in one of the three, unless
+it is named after its node, as ``waitFor`` would be after `WaitFor`, and has the fields in order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
@@ -75,10 +77,6 @@ def _importation(draft: Draft, parts: Sequence[Part]) -> Value:
     )
 
 
-def _declarator(draft: Draft, parts: Sequence[Part]) -> Value:
-    return draft.over(ast.Declarator, parts, parts[0].value, value_of(parts, "index"), None)
-
-
 def _initialised_declarator(draft: Draft, parts: Sequence[Part]) -> Value:
     if len(parts) == 1:
         return parts[0].value
@@ -98,36 +96,6 @@ def _statement(draft: Draft, parts: Sequence[Part]) -> Value:
     if only.symbol == "call":
         return draft.over(ast.CallStatement, parts, only.value)
     return only.value
-
-
-def _assignment(draft: Draft, parts: Sequence[Part]) -> Value:
-    return draft.over(ast.Assignment, parts, parts[0].value, parts[2].value)
-
-
-def _lone(kind: type[ast.Node]) -> Rule:
-    """A statement of one keyword."""
-
-    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
-        return draft.over(kind, parts)
-
-    return rule
-
-
-def _with_last(kind: type[ast.Node]) -> Rule:
-    """A statement of a keyword and what follows it."""
-
-    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
-        return draft.over(kind, parts, parts[-1].value)
-
-    return rule
-
-
-def _label(draft: Draft, parts: Sequence[Part]) -> Value:
-    return draft.over(ast.Label, parts, parts[0].value)
-
-
-def _return(draft: Draft, parts: Sequence[Part]) -> Value:
-    return draft.over(ast.Return, parts, value_of(parts, "expression"))
 
 
 def _wait(draft: Draft, parts: Sequence[Part]) -> Value:
@@ -187,11 +155,6 @@ def _motion(draft: Draft, parts: Sequence[Part]) -> Value:
     )
 
 
-def _emily_motion(draft: Draft, parts: Sequence[Part]) -> Value:
-    device, action = values_of(parts, "emilyName")
-    return draft.over(ast.EmilyMotion, parts, device, action, value_of(parts, "expression"))
-
-
 def _spline_item(draft: Draft, parts: Sequence[Part]) -> Value:
     keyword, *rest = parts
     if not rest:
@@ -235,7 +198,25 @@ CHAINS = frozenset(
     "frame literal constant argument caseValue initialValue definition".split()
 )
 
+
+def _in_order(kind: type[ast.Node]) -> Rule:
+    """A rule that has the fields of its node in their order; those at the end may be left out."""
+    count = len(fields(kind)) - 1
+
+    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
+        values = [part.value for part in parts if part.symbol[0].islower()]
+        return draft.over(kind, parts, *values, *[None] * (count - len(values)))
+
+    return rule
+
+
+def _rule_name(kind: type[ast.Node]) -> str:
+    return kind.__name__[0].lower() + kind.__name__[1:]
+
+
+#: Rules that are named after a node need no entry where `_in_order` makes it.
 RULES: Mapping[str, Rule] = {
+    **{_rule_name(kind): _in_order(kind) for kind in ast.TEMPLATES},
     **EXPRESSION_RULES,
     "parameters": _all("parameter"),
     "parameter": _parameter,
@@ -251,33 +232,21 @@ RULES: Mapping[str, Rule] = {
     "externalParameter": _external_parameter,
     "channel": _channel,
     "importation": _importation,
-    "declarator": _declarator,
     "initialisedDeclarator": _initialised_declarator,
     "initialValue": _only,
     "simpleStatement": _statement,
-    "assignment": _assignment,
     "caseValue": _only,
-    "exit": _lone(ast.Exit),
-    "goto": _with_last(ast.Goto),
-    "label": _label,
-    "halt": _lone(ast.Halt),
-    "continue": _lone(ast.Continue),
-    "onErrorProceed": _lone(ast.OnErrorProceed),
-    "confirm": _with_last(ast.Confirm),
     "wait": _wait,
     "cyclicSignal": _cyclic_signal,
-    "return": _return,
     "motion": _motion,
     "approximation": _all("criterion"),
     "criterion": _symbol,
     "splineMotion": _motion,
-    "emilyMotion": _emily_motion,
     "with": _all("assignment"),
     "splineItem": _spline_item,
     "interrupt": _interrupt,
     "interruptAction": _statement,
     "brake": _brake,
-    "resume": _lone(ast.Resume),
     "trigger": _trigger,
     "place": _place,
     "triggerAction": _statement,
