@@ -1,7 +1,7 @@
-"""What could have stood at a failure, in words: forty tokens are told as "a value".
+"""What could have stood at a failure, in words: forty tokens become "a value".
 
 The expected set of the recogniser is exact and long. What people call by one word gets that word;
-what is left is listed.
+what is left is listed. Which words begin what follows from the grammar.
 """
 
 from __future__ import annotations
@@ -9,52 +9,54 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cache
 
-__all__ = ["NAMES", "STATEMENTS", "in_words"]
+from grammar.syntax.build import builder
 
-_TYPES = "INT REAL BOOL CHAR".split()
-_POSITION_TYPES = "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
-#: Tokens that are names: NAME, and keywords that mean something in one place only.
-NAMES = frozenset(
-    "NAME DELAY DISTANCE SEC IN OUT IS STEP ENABLE DISABLE F FF PRIO PATH ONSTART MINIMUM MAXIMUM "
-    "CA START PART STOP FLT".split()
-) | frozenset(_POSITION_TYPES)
-_VALUES = NAMES | frozenset(
-    "INTEGER REAL_NUMBER BIT_STRING STRING ENUM_CONSTANT TRUE FALSE ( { + - NOT B_NOT".split()
-)
-_OPERATORS = frozenset("+ - * / : == <> < > AT_MOST AT_LEAST AND OR EXOR B_AND B_OR B_EXOR".split())
-_CRITERIA = frozenset("C_PTP C_DIS C_ORI C_VEL".split())
-_DECLARATIONS = frozenset(
-    "DECL GLOBAL ENUM STRUC SIGNAL EXT EXTP EXTFCT EXTFCTP CHANNEL IMPORT CONST".split()
-) | frozenset(_TYPES)
-#: The words that open a statement of a routine.
-STATEMENTS = frozenset(
-    "ANIN ANOUT ASYPTP BRAKE CIRC CIRC_REL CONFIRM CONTINUE DIGIN EXIT FOR GOTO HALT IF INTERRUPT "
-    "LIN LIN_REL LOOP MOVE_EMI ON_ERROR_PROCEED PTP PTP_REL PTP_SPLINE REPEAT RESUME RETURN SCIRC "
-    "SCIRC_REL SLIN SLIN_REL SPL SPLINE SPL_REL SPTP SPTP_REL SWITCH TRIGGER WAIT WHILE".split()
-)
-#: Which words tell that a group is meant, what belongs to it, and what it is called, in the order
-#: in which they are tried.
-_GROUPS: tuple[tuple[frozenset[str], frozenset[str], str], ...] = (
-    (frozenset({"NAME", "THEN", "ENDIF", "LIN"}), frozenset(), "a name"),
-    (
-        frozenset({"LIN", "HALT"}),
-        STATEMENTS | _DECLARATIONS | NAMES | {"NEWLINE"},
-        "a statement",
-    ),
-    (
-        frozenset({"STRUC", "SIGNAL", "DECL"}),
-        _DECLARATIONS | NAMES | {"NEWLINE"},
-        "a declaration",
-    ),
-    (frozenset({"INTEGER", "NAME"}), _VALUES, "a value"),
-    (frozenset({"INTEGER", "STRING"}), _VALUES, "a constant"),
-    (frozenset({"NAME", "(", "{"}), NAMES | {"(", "{"}, "a position"),
-    (frozenset({"INT", "NAME"}), frozenset(_TYPES) | NAMES, "a type"),
-    (frozenset({"INT"}), frozenset(_TYPES) | frozenset(_POSITION_TYPES), "a predefined type"),
-    (frozenset({"NAME"}), NAMES, "a name"),
-    (frozenset({"*", "=="}), _OPERATORS, "an operator"),
-    (_CRITERIA, _CRITERIA, "an approximation such as C_DIS"),
-)
+__all__ = ["in_words", "names", "statements"]
+
+_Words = frozenset[str]
+
+
+@cache
+def _first(rule: str) -> _Words:
+    """What a rule of the grammar can begin with, as expected sets have it."""
+    recognizer = builder().parser.recognizer
+    network, display = recognizer.network, recognizer.lexer.display
+    return frozenset(display[kind] for kind in network.reach(network.entry[rule]).first)
+
+
+def names() -> _Words:
+    """NAME, and keywords that mean something in one place only."""
+    return _first("name")
+
+
+def statements() -> _Words:
+    """The words that open a statement of a routine and no declaration."""
+    return _first("statement") - _first("declaration") - names()
+
+
+@cache
+def _groups() -> tuple[tuple[_Words, _Words, str], ...]:
+    """Which words say that a group is meant, what belongs to it, and its name, in this order."""
+    criteria = _first("approximation")
+    declarations = (_first("declaration") | _first("initialisation")) - names() | {"CONST"}
+    line = names() | {"NEWLINE"}
+    groups: tuple[tuple[str, Iterable[str], str], ...] = (
+        ("NAME THEN ENDIF LIN", (), "a name"),
+        ("LIN HALT", statements() | declarations | line, "a statement"),
+        ("STRUC SIGNAL DECL", declarations | line, "a declaration"),
+        ("INTEGER NAME", _first("expression"), "a value"),
+        ("INTEGER STRING", _first("expression"), "a constant"),
+        ("NAME ( {", names() | {"(", "{"}, "a position"),
+        ("INT NAME", _first("type"), "a type"),
+        ("INT", _first("predefinedType"), "a predefined type"),
+        ("NAME", names(), "a name"),
+        ("* ==", _OPERATORS, "an operator"),
+        (" ".join(criteria), criteria, "an approximation such as C_DIS"),
+    )
+    return tuple((frozenset(signs.split()), frozenset(of), word) for signs, of, word in groups)
+
+
+_OPERATORS = "+ - * / : == <> < > AT_MOST AT_LEAST AND OR EXOR B_AND B_OR B_EXOR".split()
 _WORDS = {
     "NEWLINE": "the end of the line",
     "EOF": "the end of the file",
@@ -77,7 +79,7 @@ def in_words(expected: tuple[str, ...]) -> str:
     left = dict.fromkeys(expected)
     left.pop("HEADER", None)
     words = []
-    for signs, members, word in _GROUPS:
+    for signs, members, word in _groups():
         if signs <= left.keys():
             left = {t: None for t in left if not _is_member(t, members)}
             words.append(word)

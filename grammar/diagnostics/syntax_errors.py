@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.error_site import Site
-from grammar.diagnostics.expected_tokens import NAMES, STATEMENTS, in_words
+from grammar.diagnostics.expected_tokens import in_words, names, statements
 from grammar.diagnostics.open_blocks import Opened, innermost, lead, open_blocks
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
@@ -295,7 +295,7 @@ def _declarations(site: Site) -> _Mistake | None:
             message = f"DECL is missing before {site.tokens[0][0]}"
             fix = Fix("write DECL before it", here, "DECL ")
             return _Mistake(message, fix, slug="decl-missing")
-    is_instruction = lead(site.code) in STATEMENTS or text == "("
+    is_instruction = lead(site.code) in statements() or text == "("
     if is_data and is_instruction and rule in ("dataList", "initialisation"):
         message = f"{site.tokens[0][0]} in a data list"
         return _Mistake(message, slug="misplaced-instruction", region=site.region(0))
@@ -321,11 +321,11 @@ def _names(site: Site) -> _Mistake | None:
 
 
 def _opens_statement(site: Site) -> bool:
-    if site.text in STATEMENTS:
+    if site.text in statements():
         return True
     if not _BEGINNING.match(site.text) or _is_keyword(site.text):
         return False
-    return site.text not in NAMES and "=" in site.words[site.place :]
+    return site.text not in names() and "=" in site.words[site.place :]
 
 
 def _is_name(site: Site, place: int) -> bool:
@@ -343,7 +343,7 @@ def _is_keyword(word: str) -> bool:
         return False
     lexer = builder().parser.recognizer.lexer
     kind = lexer.kinds[word]
-    return lexer.is_keyword(kind) and lexer.names[kind] not in NAMES
+    return lexer.is_keyword(kind) and lexer.names[kind] not in names()
 
 
 #: In this order: the first that knows the mistake tells it.

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 from typing import Any, get_args, get_type_hints
 
 import pytest
-from grammar.generation.programs.programs import seeded
 
 from grammar.check import declarations, expressions, statements
+from grammar.generation.closed.programs import seeded
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.sentences import Sentences, Speller
@@ -113,7 +113,7 @@ TABLES: dict[str, tuple[Kinds, Callable[[], Kinds]]] = {
         EXPRESSIONS,
         lambda: {*compiled_expressions._VALUES, *PLACES},
     ),
-    "grammar.generation.programs": (EXECUTED | EXPRESSIONS | DEFINITIONS, generated),
+    "grammar.generation.closed": (EXECUTED | EXPRESSIONS | DEFINITIONS, generated),
 }
 
 
