@@ -35,7 +35,7 @@ growth: $(BASE)
 	@$(BIN)/krl growth $(ARGS)
 
 test: $(DEV)
-	@$(BIN)/python -m pytest -n auto $(ARGS)
+	@$(BIN)/python -m pytest -n auto --dist loadfile $(ARGS)
 
 check: $(DEV)
 	@$(BIN)/ruff check --quiet --output-format concise

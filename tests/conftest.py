@@ -8,9 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import settings
 
 if TYPE_CHECKING:
     from selenium import webdriver
+
+# Where a test does not say how many examples it needs. More have found nothing more here.
+settings.register_profile("suite", max_examples=50)
+settings.load_profile("suite")
 
 _FLAGS = (
     "--headless=new",
@@ -31,7 +36,7 @@ def small_grammar() -> str:
     return (Path(__file__).parent / "small.g4").read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
     """A headless chromium with an empty profile; without one the test is skipped."""
     from selenium import webdriver

@@ -32,11 +32,15 @@ _DEEP = 96
 # So many frames in a row that only pass a return on are kept. One would do; these are so many that
 # for anything that a person writes the stack tells every rule at work.
 _LONGEST_RUN = 8
+# Deeper stacks are not interned, so that they go when the text does that nested so deep. No program
+# comes near; a hostile file would leave hundreds of megabytes behind for good.
+_DEEPEST_INTERNED = 10_000
 
 
 class Stack:
     """An interned list of positions to return to; two stacks are equal when identical.
 
+    Those deeper than `_DEEPEST_INTERNED` are not interned: equal ones may differ there.
     From the positions ``passing`` there is no way on but to return once more. ``run`` counts those
     on top of the stack.
     """
@@ -58,7 +62,9 @@ class Stack:
         found = self.above.get(position)
         if found is None:
             known = self._already(position) if self.run >= _LONGEST_RUN else None
-            found = self.above[position] = known or Stack(position, self, self.passing)
+            found = known or Stack(position, self, self.passing)
+            if self.depth < _DEEPEST_INTERNED:
+                self.above[position] = found
         return found
 
     def _already(self, position: int) -> Stack | None:

@@ -5,6 +5,9 @@ import os
 import subprocess
 import sys
 import zipfile
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -33,11 +36,15 @@ def lay(root: Path, **files: bytes) -> Path:
     return root
 
 
+def several_causes(root: Path) -> Path:
+    """Two causes in four files, one file that is fine, and one that is no KRL."""
+    steps = {f"step{n}": STEP % word for n, word in enumerate((b"2", b"K", b"LONG"))}
+    return lay(root, **steps, back=RETURN, fine=FINE, junk=bytes(range(256)) * 9)
+
+
 @pytest.fixture
 def corpus(tmp_path: Path) -> Path:
-    """Three causes in four files, one file that is fine, and one that is no KRL."""
-    steps = {f"step{n}": STEP % word for n, word in enumerate((b"2", b"K", b"LONG"))}
-    return lay(tmp_path / "corpus", **steps, back=RETURN, fine=FINE, junk=bytes(range(256)) * 9)
+    return several_causes(tmp_path / "corpus")
 
 
 def recover(*arguments: str | Path, grammar: Path = PRELIMINARY) -> int:
@@ -60,13 +67,44 @@ def tree(root: Path) -> dict[str, bytes]:
     return {str(p.relative_to(root)): p.read_bytes() for p in root.rglob("*") if p.is_file()}
 
 
+@dataclass(frozen=True)
+class Surveyed:
+    """A survey in ``root``: its status, what reached the terminal, and what was there before."""
+
+    root: Path
+    status: int
+    said: str
+    before: dict[str, bytes]
+
+    @property
+    def out(self) -> Path:
+        """The output folder."""
+        return self.root / "new" / "out"
+
+
+@pytest.fixture(scope="module")
+def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Surveyed:
+    """One survey of a corpus; its record goes into a file that was there, too."""
+    root = tmp_path_factory.mktemp("surveyed")
+    corpus = several_causes(root / "corpus")
+    (root / "record.json").write_text("x" * 100_000, encoding="utf-8")
+    before = tree(root)
+    with redirect_stdout(StringIO()) as said, pytest.MonkeyPatch.context() as patched:
+        patched.chdir(tmp_path_factory.mktemp("elsewhere"))  # where no negatives lie
+        patched.setenv("XDG_CACHE_HOME", str(root / "cache"))
+        patched.setenv("LOCALAPPDATA", str(root / "cache"))
+        status = recover(corpus, "--out", root / "new" / "out", "--json", root / "record.json")
+    return Surveyed(root, status, said.getvalue(), before)
+
+
 # -------------------------------------------------------------------------------- statuses
 
 
-def test_failures_are_what_a_survey_is_for(corpus: Path, tmp_path: Path) -> None:
+def test_failures_are_what_a_survey_is_for(surveyed: Surveyed, tmp_path: Path) -> None:
     """A completed survey is fine, whatever it found; `--strict` makes failures findings."""
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    assert 1 == recover(corpus, "--out", tmp_path / "out", "--strict")
+    assert 0 == surveyed.status
+    root = lay(tmp_path / "corpus", back=RETURN)
+    assert 1 == recover(root, "--out", tmp_path / "out", "--strict")
 
 
 def test_strict_is_content_where_every_file_parses(tmp_path: Path) -> None:
@@ -122,12 +160,13 @@ def test_wrong_input_is_one_clear_line(
     assert [] == list(elsewhere.iterdir())
 
 
-def test_bad_files_among_good_ones_are_skipped(corpus: Path, tmp_path: Path) -> None:
+def test_bad_files_among_good_ones_are_skipped(tmp_path: Path) -> None:
     """Binary junk and a truncated archive cost nothing but themselves, and are named."""
+    corpus = lay(tmp_path / "corpus", fine=FINE, junk=bytes(range(256)) * 9)
     (corpus / "cut.zip").write_bytes(b"PK\x03\x04 and no more")
     assert 0 == recover(corpus, "--out", tmp_path / "out")
     data = record(tmp_path / "out")
-    assert 5 == data["files"]
+    assert 1 == data["files"]
     assert {"cut.zip", "junk.src"} == {s["path"].split("/")[-1] for s in data["skipped"]}
     assert all(s["reason"] for s in data["skipped"])
 
@@ -135,21 +174,18 @@ def test_bad_files_among_good_ones_are_skipped(corpus: Path, tmp_path: Path) -> 
 # ---------------------------------------------------------------------------- what it writes
 
 
-def test_page_and_record_are_written_to_the_output_folder(corpus: Path, tmp_path: Path) -> None:
+def test_page_and_record_are_written_to_the_output_folder(surveyed: Surveyed) -> None:
     """The page is one file with its clusters in it, the record is JSON, and neither is a part."""
-    out = tmp_path / "new" / "out"
-    assert 0 == recover(corpus, "--out", out)
-    page = (out / "index.html").read_text("utf-8")
-    data = record(out)
+    page = (surveyed.out / "index.html").read_text("utf-8")
+    data = record(surveyed.out)
     assert 2 == len(data["clusters"])
     assert all(entry["id"] in page for entry in data["clusters"])
-    assert [] == list(out.rglob(".part-*"))
+    assert [] == list(surveyed.root.rglob(".part-*"))
 
 
-def test_the_record_says_what_was_surveyed(corpus: Path, tmp_path: Path) -> None:
+def test_the_record_says_what_was_surveyed(surveyed: Surveyed) -> None:
     """Counts, causes and the grammar are those of the corpus named."""
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    data = record(tmp_path / "out")
+    data = record(surveyed.out)
     assert PRELIMINARY.as_posix() == data["grammar"]
     assert (5, 1, 1) == (data["files"], data["parsed"], len(data["skipped"]))
     assert [("FOR … STEP", 3), ("RETURN … INTEGER", 1)] == [
@@ -157,30 +193,24 @@ def test_the_record_says_what_was_surveyed(corpus: Path, tmp_path: Path) -> None
     ]
 
 
-def test_json_is_the_record_too(corpus: Path, tmp_path: Path) -> None:
-    """`--json` writes the same record where it is wanted, into folders made for it."""
-    target = tmp_path / "a" / "b" / "record.json"
-    assert 0 == recover(corpus, "--out", tmp_path / "out", "--json", target)
-    assert record(tmp_path / "out") == json.loads(target.read_text("utf-8"))
+def test_json_is_the_record_too(surveyed: Surveyed) -> None:
+    """`--json` writes the same record where it is wanted, and replaces what was there whole."""
+    target = surveyed.root / "record.json"
+    assert record(surveyed.out) == json.loads(target.read_text("utf-8"))
+
+
+def test_json_makes_its_folders(tmp_path: Path) -> None:
+    """Nothing but the record is left in them."""
+    root, target = lay(tmp_path / "corpus", fine=FINE), tmp_path / "a" / "b" / "record.json"
+    assert 0 == recover(root, "--out", tmp_path / "out", "--json", target)
     assert ["record.json"] == [p.name for p in target.parent.iterdir()]
 
 
-def test_json_replaces_what_was_there(corpus: Path, tmp_path: Path) -> None:
-    """An older record is replaced whole."""
-    target = tmp_path / "record.json"
-    target.write_text("x" * 100_000, encoding="utf-8")
-    assert 0 == recover(corpus, "--out", tmp_path / "out", "--json", target)
-    assert record(tmp_path / "out") == json.loads(target.read_text("utf-8"))
-
-
-def test_nothing_is_written_but_to_the_output_folder(
-    corpus: Path, tmp_path: Path, elsewhere: Path
-) -> None:
+def test_nothing_is_written_but_where_it_was_asked_for(surveyed: Surveyed, elsewhere: Path) -> None:
     """The corpus, the working directory and all around them stay as they were."""
-    before = tree(tmp_path)
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    after = tree(tmp_path)
-    assert before == {name: data for name, data in after.items() if not name.startswith("out")}
+    asked = ("new", "cache", "record.json")
+    after = {name: data for name, data in tree(surveyed.root).items() if not name.startswith(asked)}
+    assert {n: d for n, d in surveyed.before.items() if n != "record.json"} == after
     assert [] == list(elsewhere.iterdir())
 
 
@@ -209,12 +239,10 @@ def test_a_second_survey_sees_what_has_changed(corpus: Path, tmp_path: Path) -> 
 # ------------------------------------------------------------------------------- the options
 
 
-def test_jobs_make_no_difference(corpus: Path, tmp_path: Path) -> None:
+def test_jobs_make_no_difference(surveyed: Surveyed, tmp_path: Path) -> None:
     """Two processes find what one finds."""
-    for jobs in ("1", "2"):
-        out = str(tmp_path / jobs)
-        assert 0 == recover(corpus, "--out", out, "--jobs", jobs)
-    assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
+    assert 0 == recover(surveyed.root / "corpus", "--out", tmp_path, "--jobs", "2")
+    assert settled(record(surveyed.out)) == settled(record(tmp_path))
 
 
 def test_files_folders_and_archives_can_be_named_together(corpus: Path, tmp_path: Path) -> None:
@@ -253,8 +281,9 @@ def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
     assert [{0}, {1}] == accepted
 
 
-def test_the_working_directory_makes_no_difference(corpus: Path, tmp_path: Path) -> None:
+def test_the_working_directory_makes_no_difference(tmp_path: Path) -> None:
     """As a process of its own, from any folder, absolute paths are all it needs."""
+    corpus = lay(tmp_path / "corpus", back=RETURN)
     outs = [tmp_path / "one", tmp_path / "two"]
     for out, folder in zip(outs, (tmp_path, corpus), strict=True):
         options = ["--out", str(out), "--jobs", "1", "--grammar", str(PRELIMINARY)]
@@ -268,8 +297,9 @@ def test_the_working_directory_makes_no_difference(corpus: Path, tmp_path: Path)
     assert settled(record(outs[0])) == settled(record(outs[1]))
 
 
-def test_the_default_grammar_is_found_from_anywhere(corpus: Path, tmp_path: Path) -> None:
+def test_the_default_grammar_is_found_from_anywhere(tmp_path: Path) -> None:
     """Without `--grammar` the grammar in force is read, wherever one stands."""
+    corpus = lay(tmp_path / "corpus", fine=FINE)
     assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"])
     assert "grammar/KRL.g4" == record(tmp_path / "out")["grammar"]
 
@@ -285,18 +315,14 @@ def test_the_default_corpus_is_that_of_the_folder(elsewhere: Path) -> None:
 # ------------------------------------------------------------------------------ the terminal
 
 
-def test_the_terminal_shows_the_figures_and_the_first_causes(
-    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_terminal_shows_the_figures_and_the_first_causes(surveyed: Surveyed) -> None:
     """Files, share that parses, each cluster with its identity, and where the page is."""
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    said, complaint = capsys.readouterr()
-    assert "" == complaint
+    said = surveyed.said
     assert said.startswith("5 files, ")
     assert "parsed 1 (20.0 % of files" in said
     assert "skipped 1" in said
-    assert all(entry["id"] in said for entry in record(tmp_path / "out")["clusters"])
-    assert said.endswith(f"Page: {tmp_path / 'out' / 'index.html'}\n")
+    assert all(entry["id"] in said for entry in record(surveyed.out)["clusters"])
+    assert said.endswith(f"Page: {surveyed.out / 'index.html'}\n")
 
 
 def test_a_corpus_that_parses_is_told_so(
@@ -349,9 +375,10 @@ def test_names_cannot_steer_the_terminal(
 
 
 def test_an_output_folder_may_be_called_anything(
-    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Brackets and colons in a name are no markup."""
+    corpus = lay(tmp_path / "corpus", fine=FINE)
     out = tmp_path / "[bold]out[-b] :smile:"
     if os.name == "nt":
         out = tmp_path / "[bold]out[-b]"

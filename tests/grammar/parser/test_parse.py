@@ -1,5 +1,6 @@
 """Parse trees: what they consist of, where, and which one where there are several."""
 
+import gc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from random import Random
@@ -21,6 +22,7 @@ from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser import parse as parsing
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.failures import FailureFinder
+from grammar.parser.lazy_automaton import Stack
 from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
@@ -418,6 +420,20 @@ def test_deep_nesting_is_parsed(parser: Parser, text: str, rule: str, depth: int
         todo += [child for child in outline.children if not isinstance(child, int)]
     assert depth == found
     assert sum(1 for _ in tree.root.walk()) > depth
+
+
+def test_nesting_beyond_measure_leaves_little_behind(recognizer: Recognizer) -> None:
+    """The frames of a hostile text go with its tree: a process that reads many does not grow."""
+    parser = Parser(recognizer)
+    before = stacks()
+    parsed(parser, f"DEF A()\nB={'(' * 9_000}1{')' * 9_000}\nEND\n")
+    assert stacks() - before < 20_000
+
+
+def stacks() -> int:
+    """How many stacks of an automaton there are in this process."""
+    gc.collect()
+    return sum(isinstance(one, Stack) for one in gc.get_objects())
 
 
 def test_right_recursion_leaves_little_to_remember(recognizer: Recognizer) -> None:

@@ -1,8 +1,10 @@
 """Motions planned in batches, as in the paper, and what that costs."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
+from interp.controller import Profile
 from interp.robot.api.batch import BatchCore
 
 Go = Callable[..., Any]
@@ -19,8 +21,9 @@ def test_batch_waits_for_its_last_motion(go: Go) -> None:
     """A batch goes when a motion comes that is not approximated; all its blends are there."""
     body = "PTP {A1 1} C_PTP\nWHILE NOT $FLAG[1]\nENDWHILE\nPTP {A1 2}\n"
     script = "t=1.5 FLAG[1]=TRUE"
-    ahead = go(program(body), script)
-    batch = go(program(body), script, core=BatchCore)
+    profile = replace(Profile.load(), requests=2)  # of the loop in each cycle
+    ahead = go(program(body), script, profile=profile)
+    batch = go(program(body), script, profile=profile, core=BatchCore)
     assert [0.0, 1.0, 2.0] == ahead.times("motion_start")
     assert [0.0, 1.5, 2.5] == batch.times("motion_start")
     assert [2.0] == ahead.times("blend_apex")

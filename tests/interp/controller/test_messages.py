@@ -90,27 +90,9 @@ def test_message_may_stop_the_advance_run(go: Go) -> None:
         assert [time] == ran.times("message", number=17)
 
 
-def test_error_is_raised_and_cleared(go: Go) -> None:
-    """ERR_RAISE gives a fault of that number; ON_ERROR_PROCEED takes it [FCT-07, TYP-13]."""
-    declarations = "DECL ERROR_T E\nINT N\n"
-    body = "E.NUMBER=1447\n{}ERR_RAISE(E)\nN=$ERR.NUMBER\nERR_CLEAR($ERR)\nN=$ERR.NUMBER\n"
-    assert [1447] == go(program(body.format(""), declarations)).messages()
-    taken = go(program(body.format("ON_ERROR_PROCEED\n"), declarations))
-    assert [1447, 0] == [
-        one.fields["value"] for one in taken.told("assign") if one.fields["name"] == "N"
-    ]
-
-
 def test_no_error_is_raised_from_none(go: Go) -> None:
     """ERR_RAISE of an error with the number 0 does nothing."""
     assert "end" == go(program("ERR_RAISE($ERR)\n")).outcome.ending
-
-
-def test_error_of_what_was_never_set(go: Go) -> None:
-    """Behind a read of what was never set $ERR.NUMBER is 1422, as programs expect [TYP-13]."""
-    body = "ON_ERROR_PROCEED\nM=N\nM=$ERR.NUMBER\n"
-    told = go(program(body, "INT N,M\n")).told("assign")
-    assert [1422] == [one.fields["value"] for one in told if one.fields["name"] == "M"]
 
 
 def test_what_is_not_simulated(go: Go) -> None:
@@ -138,19 +120,6 @@ def test_robot_is_stopped(go: Go) -> None:
         + "DEF HOLD()\nBOOL B\nB=ROB_STOP(#RAMP_DOWN)\nWAIT SEC 0.48\nROB_STOP_RELEASE()\nEND\n"
     )
     assert [1.48] == go(text, "t=0.504 IN[1]=TRUE").times("motion_end")
-
-
-@pytest.mark.parametrize(("kind", "number"), [("RAMP_DOWN", 81), ("PATH_MAINTAINING", 82)])
-def test_submit_stops_the_robot(go: Go, kind: str, number: int) -> None:
-    """A submit program stops the arm, with a message of its own; no override frees it [SUB-06]."""
-    text = program("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n")
-    beside = (
-        f"DEF BESIDE()\nBOOL B\nWAIT SEC 0.48\nB=ROB_STOP(#{kind})\n$OV_PRO=50\n$OV_PRO=100\n"
-        "WAIT SEC 0.36\nROB_STOP_RELEASE()\nLOOP\nWAIT SEC 1\nENDLOOP\nEND\n"
-    )
-    ran = go(text, submit="BESIDE", files={"beside.sub": beside})
-    assert [number] == ran.messages()
-    assert [1.36] == ran.times("motion_end")
 
 
 @pytest.mark.parametrize("body", ["", "I=1\n", "WAIT SEC 0.1\n"])

@@ -92,36 +92,6 @@ def test_output_behind_the_start() -> None:
     assert "end" == ran.outcome.ending
 
 
-SEARCH = program(
-    "INTERRUPT DECL 10 WHEN $IN[1] DO FOUND()\nINTERRUPT ON 10\nSEARCH()\nINTERRUPT OFF 10\n"
-    "R=$POS_ACT.Y\nLIN {Y 100,Z 700}\n",
-    "DEF SEARCH()\n$VEL.CP=0.1\nLIN {Y -100}\nWAIT SEC 0\nEND\nDEF FOUND()\nBRAKE\nRESUME\nEND\n",
-)
-
-
-def test_search() -> None:
-    """BRAKE stops on the path, RESUME forgets the rest; the next motion starts there [INT-10]."""
-    ran = Ran(SEARCH, "t=1.5 IN[1]=TRUE")
-    assert [] == ran.times("motion_end", motion=3)
-    assert ran.times("resume") == ran.times("motion_start", motion=4)
-    y = ran.controller.variables.read(("$POS_RET", "Y"))
-    assert -100 < y < 100
-    assert pytest.approx(y, abs=1e-3) == ran.last("R")
-    assert pytest.approx(500, abs=1e-3) == ran.controller.variables.read(("$POS_RET", "X"))
-    assert pytest.approx(100, abs=1e-3) == ran.controller.variables.read(("$POS_ACT", "Y"))
-
-
-def test_brake_and_go_on() -> None:
-    """Without RESUME the arm goes on to where it was going, whatever the routine did [INT-09]."""
-    text = SEARCH.replace("RESUME\n", "LIN {Z 650}\n")
-    ran = Ran(text, "t=1.5 IN[1]=TRUE")
-    assert [3, 4, 5, 6] == [
-        one.fields["motion"] for one in ran.events if one.kind == "motion_start"
-    ][2:]
-    assert 1 == len(ran.times("motion_end", motion=3))
-    assert pytest.approx(-100, abs=1e-3) == ran.last("R")
-
-
 def test_positions_of_a_motion() -> None:
     """$POS_BACK is where the running motion began, $POS_FOR where it goes [MOT-18]."""
     ran = Ran(program("LIN {Y -100}\nWAIT SEC 0\nCONTINUE\nR=$POS_BACK.Y\nQ=$POS_FOR.Y\n"))

@@ -52,19 +52,6 @@ def test_value_of_the_main_run(go: Go) -> None:
     assert 0.5 == ran.value("$VEL_C", "CP")
 
 
-def test_trigger_in_a_block(go: Go) -> None:
-    """A trigger of a block belongs to the segment behind it [TRG-04, SPL-07]."""
-    ran = go(
-        program(
-            "SPLINE\nSPL {X 1}\nTRIGGER WHEN PATH=-200 DELAY=0 DO $OUT[1]=TRUE\nSPL {X 2}\n"
-            "ENDSPLINE\n"
-        )
-    )
-    places = [part.places for part in planned(ran)[1].parts]
-    assert (0, 1) == tuple(len(one) for one in places)
-    assert [(1.8, 1, True)] == ran.outputs()
-
-
 def test_place_from_the_start(go: Go) -> None:
     """ONSTART counts a PATH from the start of its segment [SPL-07]."""
     ran = go(
@@ -90,17 +77,6 @@ def test_ranges(go: Go) -> None:
         *(first.keyword, first.edge, first.value, first.on_start),
     )
     assert ["END"] == [one.edge for one in block.ranges]
-
-
-def test_conditional_stop(go: Go) -> None:
-    """STOP WHEN PATH stops while its condition holds; being late is message 3230 [SPL-06]."""
-    text = program("SPLINE\nSPL {X 1}\nSTOP WHEN PATH=-500 IF $IN[1]\nSPL {X 2}\nENDSPLINE\n")
-    free = go(text)
-    assert ([2.0], []) == (free.times("motion_end")[1:], free.messages())
-    held = go(text, "t=1.2 IN[1]=TRUE\nt=1.7 IN[1]=FALSE")
-    assert [3230] == held.messages()
-    assert ["brake", "proceed"] == held.arm.calls
-    assert [2.204] == held.times("motion_end")[1:]  # 1.5 to 1.704, the next tick
 
 
 @pytest.mark.parametrize(

@@ -29,16 +29,6 @@ def test_shares_data(go: Go) -> None:
     assert {"robot", "submit"} == {one.task for one in ran.events}
 
 
-def test_runs_beside_motions(go: Go) -> None:
-    """It runs while the robot's program waits for the arm, and sets outputs [SUB-01, SUB-05]."""
-    files = sub("WAIT SEC 0.5\n$OUT[1]=TRUE\nWAIT FOR FALSE\n")
-    text = "DEF main()\nPTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nWAIT SEC 0\nEND\n"
-    ran = go(text, files=files, submit="SPS")
-    assert [(0.504, 1, True)] == ran.outputs()
-    assert ["submit"] == [one.task for one in ran.told("out")]
-    assert [1.0] == ran.times("end")
-
-
 @pytest.mark.parametrize(("every", "passes"), [(1, 10), (4, 4)])
 def test_slices(go: Go, every: int, passes: int) -> None:
     """It computes in slices: so many requests every so many cycles [SUB-03]."""
@@ -47,26 +37,6 @@ def test_slices(go: Go, every: int, passes: int) -> None:
     text = "DEF main()\nINT I\nWAIT SEC 0.1\nI=COUNT\nEND\n"
     ran = go(text, files=files, submit="SPS", profile=profile)
     assert passes == ran.last("I")
-
-
-def test_no_motions(go: Go) -> None:
-    """It cannot move the robot; the robot's program goes on [SUB-05]."""
-    files = sub("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n")
-    ran = go("DEF main()\nWAIT SEC 0.5\nEND\n", files=files, submit="SPS")
-    assert ["submit_motion"] == [one.fields["slug"] for one in ran.told("fault")]
-    assert ("end", [0.504]) == (ran.outcome.ending, ran.times("end"))
-
-
-def test_no_triggers(go: Go) -> None:
-    """Triggers are not allowed in it: message 1409 [SUB-06, TRG-09]."""
-    files = sub("TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE\n")
-    assert [1409] == go("DEF main()\nWAIT SEC 0.1\nEND\n", files=files, submit="SPS").messages()
-
-
-def test_no_workspaces(go: Go) -> None:
-    """Workspaces are not shared from it: message 2825 [SUB-06]."""
-    files = sub("$FLAG[1]=WSPACETAKE(1,0)\n")
-    assert [2825] == go("DEF main()\nWAIT SEC 0.1\nEND\n", files=files, submit="SPS").messages()
 
 
 def test_state(go: Go) -> None:
@@ -78,16 +48,6 @@ def test_state(go: Go) -> None:
     assert [True, True] == [
         one.fields["value"] for one in ran.told("assign") if one.task == "robot"
     ]
-
-
-def test_has_its_own_interrupts(go: Go) -> None:
-    """It has interrupts of its own, which do not run in the robot's program [SUB-10, INT-17]."""
-    files = sub("INTERRUPT DECL 10 WHEN $IN[1] DO SEEN()\nINTERRUPT ON 10\nWAIT FOR FALSE\n")
-    files["sps.sub"] += "DEF SEEN()\nCOUNT=7\nEND\n"
-    text = "DEF main()\nINT I\nWAIT SEC 1\nI=COUNT\nEND\n"
-    ran = go(text, "t=0.5 IN[1]=TRUE", files=files, submit="SPS")
-    assert 7 == ran.last("I")
-    assert ["submit"] == [one.task for one in ran.told("interrupt_enter")]
 
 
 def test_is_not_stopped_by_halt(go: Go) -> None:

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from interp.program.load import Limits
 
 Go = Callable[..., Any]
@@ -12,30 +10,6 @@ Go = Callable[..., Any]
 
 def program(body: str) -> str:
     return f"DEF main()\nINT I\nBOOL B\nREAL X\n{body}END\n"
-
-
-def test_start(go: Go) -> None:
-    """At the start timers are 0, stopped, and their flags FALSE [TIM-02]."""
-    ran = go(program("I=$TIMER[64]\nB=$TIMER_STOP[64]\nX=1\nB=$TIMER_FLAG[64]\n"))
-    values = [one.fields["value"] for one in ran.told("assign")]
-    assert [0, True, 1.0, False] == values
-
-
-def test_running(go: Go) -> None:
-    """A timer counts ms while it is not stopped, in steps of the cycle [TIM-01, TIM-05]."""
-    text = program(
-        "$TIMER_STOP[1]=FALSE\nWAIT SEC 0.1\nI=$TIMER[1]\n$TIMER_STOP[1]=TRUE\nWAIT SEC 0.1\n"
-        "X=$TIMER[1]\n"
-    )
-    ran = go(text)
-    assert (108, 108.0) == (ran.last("I"), ran.last("X"))
-
-
-@pytest.mark.parametrize(("preset", "end"), [(-50, 0.06), (-48, 0.048), (-1000, 1.008)])
-def test_countdown(go: Go, preset: int, end: float) -> None:
-    """Preset to a negative value, the flag turns TRUE when it reaches zero [TIM-03, TIM-04]."""
-    ran = go(program(f"$TIMER[2]={preset}\n$TIMER_STOP[2]=FALSE\nWAIT FOR $TIMER_FLAG[2]\n"))
-    assert [end] == ran.times("end")
 
 
 def test_limits(go: Go) -> None:
@@ -52,22 +26,6 @@ def test_flag_is_written(go: Go) -> None:
     )
     told = go(program(body)).told("assign")
     assert [True, False, True] == [one.fields["value"] for one in told if one.fields["name"] == "B"]
-
-
-@pytest.mark.parametrize(
-    ("seconds", "end"),
-    [("0", 0.0), ("-1", 0.0), ("0.001", 0.012), ("0.012", 0.012), ("0.5", 0.504)],
-)
-def test_wait_seconds(go: Go, seconds: str, end: float) -> None:
-    """WAIT SEC lasts to the first cycle behind its time; zero is no wait [TIM-06, CTL-12]."""
-    assert [end] == go(program(f"WAIT SEC {seconds}\n")).times("end")
-
-
-def test_wait_for(go: Go) -> None:
-    """WAIT FOR goes on in the cycle in which its condition is TRUE [CTL-12]."""
-    ran = go(program("WAIT FOR $IN[3]\nWAIT FOR $IN[3]\n"), "t=0.1 IN[3]=TRUE")
-    assert [0.108] == ran.times("end")
-    assert [0.0] == ran.times("wait")
 
 
 def test_date(go: Go) -> None:

@@ -132,7 +132,7 @@ def _changes(size: int) -> st.SearchStrategy[list[tuple[int, int]]]:
 
 
 @settings(
-    max_examples=300,
+    max_examples=120,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

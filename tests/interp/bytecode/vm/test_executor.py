@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grammar.semantics.types import CHAR, INT, REAL, Array, Member, Structure
+from grammar.semantics.types import INT, REAL, Array, Member, Structure
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
@@ -77,48 +77,6 @@ def failed(requests: list[Any]) -> str:
 # ------------------------------------------------------------------------------- computing
 
 
-def test_loop_counts_to_its_limit(run: Runner) -> None:
-    """A FOR loop adds its step until the counter is beyond the limit, where it stays [CTL-05]."""
-    body = """
-  PUSH_INT 0
-  STORE_LOCAL SUM
-  PUSH_INT 9
-  STORE_LOCAL I
-  PUSH_INT 1
-  STORE_LOCAL LAST
-L:
-  LINE 3 N
-  LOAD_LOCAL SUM
-  LOAD_LOCAL I
-  ADD_INT
-  STORE_LOCAL SUM
-N:
-  LINE 4 END
-  FOR_LOCAL I LAST -3 L
-  LOAD_LOCAL SUM
-  ASK SHOW
-  LOAD_LOCAL I
-  ASK SHOW
-"""
-    text = HEAD + routine(body, "local I INT\nlocal LAST INT\nlocal SUM INT")
-    assert [9 + 6 + 3, 0] == shown(run(text))
-
-
-def test_counter_in_a_data_list(run: Runner) -> None:
-    """The counter of a loop may be in a data list."""
-    body = """
-  PUSH_INT 3
-  STORE_LOCAL LAST
-L:
-  LINE 4 END
-  LOAD_DATA M.I
-  ASK SHOW
-  FOR_DATA M.I LAST 2 L
-"""
-    text = HEAD + "data M.I INT = 1\n" + routine(body, "local LAST INT")
-    assert [1, 3] == shown(run(text))
-
-
 def test_counter_overflows(run: Runner) -> None:
     """Beyond the largest INT a counter does not wrap [ARI-12]."""
     body = "LINE 3 END\nFOR_DATA M.I I 1 END"
@@ -130,177 +88,7 @@ def test_counter_overflows(run: Runner) -> None:
     assert "overflow" == failed(run(text))
 
 
-def test_recursion_has_frames_of_its_own(run: Runner) -> None:
-    """Each call has its own cells: fib 10 is 55."""
-    text = (
-        HEAD
-        + routine("PUSH_INT 10\nCALL FIB\nASK SHOW")
-        + """
-code FIB routine "main.src" 8
-  in N INT
-  result INT
-begin
-  LINE 9 L2
-  LOAD_LOCAL N
-  PUSH_INT 2
-  UNLESS_LT_INT L2
-  LOAD_LOCAL N
-  RETURN_VALUE
-L2:
-  LINE 12 END
-  LOAD_LOCAL N
-  ADD_CONSTANT -1
-  CALL FIB
-  LOAD_LOCAL N
-  ADD_CONSTANT -2
-  CALL FIB
-  ADD_INT
-  RETURN_VALUE
-END:
-  FAIL no_result
-end
-"""
-    )
-    assert [55] == shown(run(text))
-
-
-def test_reals_are_singles(run: Runner) -> None:
-    """Every result is rounded to single, and a REAL to the nearest INT [TYP-02, ARI-03]."""
-    body = """
-  PUSH_REAL 0.1
-  PUSH_REAL 0.2
-  ADD_REAL
-  ASK SHOW_REAL
-  PUSH_INT 16777217
-  INT_TO_REAL
-  ASK SHOW_REAL
-  PUSH_REAL -7.5
-  REAL_TO_INT
-  ASK SHOW
-"""
-    assert [0.30000001192092896, 16777216.0, -8] == shown(run(HEAD + routine(body)))
-
-
-def test_enumerations_and_letters_choose(run: Runner) -> None:
-    """CASE takes the constant that is on the stack, and drops it only then."""
-    text = (
-        HEAD
-        + "enum E ONE TWO THREE\n"
-        + routine(
-            """
-  PUSH_ENUM E TWO
-  CASE 0 A
-  CASE 1 B
-  DROP
-A:
-  FAIL domain
-B:
-  PUSH_CHAR "x"
-  CASE 121 A
-  CHAR_TO_INT
-  ASK SHOW
-"""
-        )
-    )
-    assert [120] == shown(run(text))
-
-
 # ------------------------------------------------------------------------------- references
-
-
-def test_out_parameter_changes_the_variable(run: Runner) -> None:
-    """A reference leads to the caller's cell, through as many calls as there are [SCO-06]."""
-    text = HEAD + routine(
-        "PUSH_INT 1\nSTORE_LOCAL X\nREF_LOCAL X INT\nCALL OUTER\nLOAD_LOCAL X\nASK SHOW",
-        "local X INT",
-    )
-    text += routine("LOAD_REF R\nCALL INNER", name="OUTER", head="ref R INT")
-    text += routine(
-        "LOAD_REF R\nLOAD_REF R\nLOAD\nADD_CONSTANT 41\nSTORE", name="INNER", head="ref R INT"
-    )
-    assert [42] == shown(run(text))
-
-
-def test_in_parameter_is_a_copy(run: Runner) -> None:
-    """A structure passed :IN is copied with the parts that have no value."""
-    text = HEAD + routine(
-        """
-  PUSH_REAL 1.5
-  STORE_LOCAL P.Y
-  REF_LOCAL P POINT
-  CALL SUB
-  REF_LOCAL P POINT
-  ASK SHOW_POINT
-""",
-        "local P POINT",
-    )
-    text += routine(
-        "PUSH_REAL 2.5\nSTORE_LOCAL P.Y\nREF_LOCAL P POINT\nASK SHOW_POINT",
-        name="SUB",
-        head="in P POINT",
-    )
-    inner, outer = shown(run(text))
-    assert ([None, 2.5], [None, 1.5]) == (inner.members, outer.members)
-
-
-def test_argument_left_out_has_no_value(run: Runner) -> None:
-    """What is left out in a call has no value in the routine [SCO-13]."""
-    text = HEAD + routine("PUSH_NOTHING\nCALL SUB")
-    text += routine("LOAD_LOCAL I\nASK SHOW", name="SUB", head="in I INT")
-    assert "uninitialised" == failed(run(text))
-
-
-def test_array_without_sizes_knows_them(run: Runner) -> None:
-    """A view has the sizes of the array that was handed over, and checks indices by them."""
-    text = HEAD + routine(
-        """
-  PUSH_INT 7
-  STORE_LOCAL A[2,3]
-  REF_LOCAL A INT[2,3]
-  VIEW INT[2,3]
-  PUSH_INT {0}
-  PUSH_INT 3
-  CALL AT
-  ASK SHOW
-""",
-        "local A INT[2,3]",
-    )
-    text += """
-code AT routine "main.src" 20
-  view A INT[,]
-  in I INT
-  in J INT
-  result INT
-begin
-  LINE 21 END
-  LOAD_LOCAL I
-  LOAD_LOCAL J
-  INDEX_VIEW A
-  LOAD
-  RETURN_VALUE
-END:
-  FAIL no_result
-end
-"""
-    assert [7] == shown(run(text.format(2)))
-    assert "index" == failed(run(text.format(3)))
-    assert "index" == failed(run(text.format(0)))
-
-
-@pytest.mark.parametrize("index", [0, 5, -1, 2147483647])
-@pytest.mark.parametrize(
-    "access",
-    [
-        "ELEMENT_LOCAL A INT[4]\nDROP",
-        "INDEX_LOCAL A INT[4]\nPUSH_INT 1\nSTORE",
-        "ELEMENT_DATA M.A INT[4]\nDROP",
-        "INDEX_DATA M.A INT[4]\nPUSH_INT 1\nSTORE",
-    ],
-)
-def test_index_outside_the_array_faults(run: Runner, index: int, access: str) -> None:
-    """Indices count from 1 to the size [TYP-09]."""
-    text = HEAD + "data M.A INT[4]\n" + routine(f"PUSH_INT {index}\n{access}", "local A INT[4]")
-    assert "index" == failed(run(text))
 
 
 def test_rows_are_views(run: Runner) -> None:
@@ -373,39 +161,6 @@ def test_copy_of_a_view(run: Runner) -> None:
     assert "stack" == failed(run(text.format(3)))
 
 
-def test_text_is_cut_and_padded(run: Runner) -> None:
-    """What does not fit is cut off, the rest has no value; STRADD joins [TYP-11, FCT-06]."""
-    text = HEAD.replace(
-        "ask SHOW ",
-        'text LONG "abcdef"\ntext SHORT "xy"\n'
-        'builtin ADD STRADD view:CHAR[]= "z" -> INT\nask SHOW ',
-        1,
-    ) + routine(
-        """
-  REF_LOCAL T CHAR[4]
-  VIEW CHAR[4]
-  SET_TEXT LONG
-  REF_LOCAL T CHAR[4]
-  VIEW CHAR[4]
-  ASK SHOW_TEXT
-  REF_LOCAL T CHAR[4]
-  VIEW CHAR[4]
-  SET_TEXT SHORT
-  REF_LOCAL T CHAR[4]
-  VIEW CHAR[4]
-  BUILTIN ADD
-  ASK SHOW
-  REF_LOCAL T CHAR[4]
-  VIEW CHAR[4]
-  ASK SHOW_TEXT
-""",
-        "local T CHAR[4]",
-    )
-    long, length, short = shown(run(text))
-    assert (list("abcd"), 3, ["x", "y", "z", None]) == (list(long), length, list(short))
-    assert Array(CHAR, (4,)) == long.type
-
-
 @pytest.mark.parametrize(
     ("target", "source", "expected"),
     [("A", "B", [5, 6]), ("B", "A", [1, 2, 3]), ("C", "A", [1, 2, 3, None])],
@@ -449,32 +204,6 @@ def test_arrays_of_more_dimensions_need_equal_sizes(run: Runner) -> None:
     )
     assert [6] == shown(run(text.format(2)))
     assert "inadmissible" == failed(run(text.format(3)))
-
-
-def test_positions_take_what_both_have(run: Runner) -> None:
-    """A position of another type of its family gives what both have; the rest has no value."""
-    text = HEAD + "data M.F FRAME = 1.0 2.0 3.0 10.0 20.0 30.0\ndata M.P POS = 9.0 @6 5 6\n"
-    text += routine(
-        "REF_DATA M.P POS\nREF_DATA M.F FRAME\nFILL_POSE POS FRAME\nREF_DATA M.P POS\nASK SHOW_POS"
-    )
-    assert [1.0, 2.0, 3.0, 10.0, 20.0, 30.0, None, None] == shown(run(text))[0].members
-
-
-def test_poses_are_composed(run: Runner) -> None:
-    """The right pose keeps its type, Status and Turn [ARI-08]."""
-    text = HEAD + "data M.F FRAME = 1.0 2.0 3.0 90.0 0.0 0.0\n"
-    text += "data M.P POS = 1.0 0.0 0.0 0.0 0.0 0.0 2 10\n" + routine(
-        """
-  REF_LOCAL R POS
-  REF_DATA M.F FRAME
-  REF_DATA M.P POS
-  COMPOSE FRAME POS
-  REF_LOCAL R POS
-  ASK SHOW_POS
-""",
-        "local R POS",
-    )
-    assert [1.0, 3.0, 3.0, 90.0, 0.0, 0.0, 2, 10] == shown(run(text))[0].members
 
 
 # ------------------------------------------------------------------------------- requests
@@ -552,29 +281,6 @@ def test_end_is_where_the_last_statement_was(run: Runner) -> None:
     assert [End(At("main.src", 2, 0))] == run(HEAD + routine(""))
 
 
-def test_error_is_taken_by_the_statement_behind_on_error_proceed(run: Runner) -> None:
-    """A fault of the next statement is noted in $ERR, and the routine goes on behind it."""
-    body = """
-  PROCEED
-  LINE 3 L4
-  LOAD_LOCAL X
-  ASK SHOW
-L4:
-  LINE 4 L5
-  PUSH_INT 4
-  ASK SHOW
-L5:
-  LINE 5 END
-  LOAD_LOCAL X
-  ASK SHOW
-"""
-    requests = run(HEAD + routine(body, "local X INT"))
-    assert Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1422) == requests[0]
-    assert 4 == requests[1].value
-    assert "uninitialised" == failed(requests)
-    assert 5 == requests[-1].at.line
-
-
 def test_on_error_proceed_takes_faults_of_replies(run: Runner) -> None:
     """What the world answers with is a fault of the statement that asked [TYP-13]."""
     body = "PROCEED\nLINE 3 L\nPUSH_INT 1\nASK READ\nASK SHOW\nL:\nLINE 4 END\nPUSH_INT 4\nASK SHOW"
@@ -583,17 +289,6 @@ def test_on_error_proceed_takes_faults_of_replies(run: Runner) -> None:
         requests[1],
         requests[2].value,
     ]
-
-
-def test_on_error_proceed_holds_for_one_statement(run: Runner) -> None:
-    """A statement of a routine that is called is a next statement too."""
-    body = "PROCEED\nLINE 3 END\nCALL SUB"
-    text = (
-        HEAD
-        + routine(body)
-        + routine("", name="SUB").replace("END:", "L:\nLINE 5 END\nFAIL domain\nEND:")
-    )
-    assert "domain" == failed(run(text))
 
 
 # ------------------------------------------------------------------------------- limits
