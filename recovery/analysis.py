@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
-from recovery.clustering.cause import no_judge
+from recovery.clustering.cause import no_negatives
 from recovery.clustering.cluster import cluster
-from recovery.clustering.negative_score import judge_of
+from recovery.clustering.negative_score import negative_counter
 from recovery.growth.answers import answered
-from recovery.growth.growth import Steps
+from recovery.growth.growth import LedgerSteps
 from recovery.negatives.negatives import Negative
 from recovery.records import StartRecord, SurveyRecord
 from recovery.survey.result_cache import key_of
@@ -37,7 +37,7 @@ def analyse(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> SurveyRecord:
-    """The record of a survey (`recovery.survey_record`); ``negatives`` judge the proposals.
+    """The record of a survey (`recovery.survey_record`); proposals are tried on ``negatives``.
 
     ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
     """
@@ -59,7 +59,7 @@ _REPEATED = frozenset({"failures", "skipped", "origins", "copies", "swallowed"})
 def with_answers(
     record: SurveyRecord,
     found: Survey,
-    steps: Steps,
+    steps: LedgerSteps,
     *,
     jobs: int | None = None,
     cache: Path | None = None,
@@ -92,8 +92,8 @@ def _worked_out(
     on_done: Progress,
 ) -> SurveyRecord:
     began = time.perf_counter()
-    judge = judge_of(found.grammar, negatives) if negatives else no_judge
-    clusters = cluster(found, judge=judge, on_found=on_found, on_done=on_done)
+    count_negatives = negative_counter(found.grammar, negatives) if negatives else no_negatives
+    clusters = cluster(found, count_negatives=count_negatives, on_found=on_found, on_done=on_done)
     record = record_of(found, clusters, grammar_name=grammar_name)
     return {**record, "analysis_seconds": round(time.perf_counter() - began, 3)}
 

@@ -1,4 +1,4 @@
-"""Proposals as people review them: the edit, what it brings and costs, the difference it makes."""
+"""Review of proposals: the edit, what it brings and costs, the difference it makes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recovery.clustering.cluster import Cluster, Clusters
 from recovery.clustering.edit_trial import edited
 from recovery.records import ProposalRecord
 from recovery.survey.survey import Survey, SurveyedFile
-from recovery.survey.unreserved_keywords import Suspect, suspects
+from recovery.survey.unreserved_keywords import UnreservedKeyword, unreserved_keywords
 from support.files.decode import decode
 from support.files.discovery import Skipped, read
 
@@ -35,7 +35,7 @@ class _Program:
 
 
 class Reviewer:
-    """Works out what a proposal costs: programs it breaks, second readings it brings."""
+    """Works out what a proposal costs: programs it breaks, second readings it adds."""
 
     def __init__(self, found: Survey, clusters: Clusters) -> None:
         self.found = found
@@ -118,10 +118,10 @@ class Reviewer:
             if any(word in program.folded for word in words) and not wider.accepts(program.text)
         )
 
-    def swallowed(self) -> list[Suspect]:
+    def unreserved_keywords(self) -> list[UnreservedKeyword]:
         """Words of the programs that parse which may be keywords the grammar lacks."""
         programs = ((p.origin, p.text) for p in self._programs())
-        return suspects(programs, self.recognizer.lexer)
+        return unreserved_keywords(programs, self.recognizer.lexer)
 
     def _programs(self) -> Sequence[_Program]:
         """The programs that parse."""

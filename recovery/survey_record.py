@@ -66,7 +66,7 @@ def record_of(
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
         "swallowed": [
             {"word": one.word, "files": one.files, "origins": one.origins}
-            for one in reviewer.swallowed()
+            for one in reviewer.unreserved_keywords()
         ],
         "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
         "failures": _failures(found, clusters, recognizer),

@@ -17,7 +17,7 @@ from krl.survey_summary import print_survey
 
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar
-    from recovery.growth.growth import Steps
+    from recovery.growth.growth import LedgerSteps
     from recovery.negatives.negatives import Negative
     from recovery.records import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
@@ -116,7 +116,7 @@ class _Surveyor:
         found = self._survey(grammar, "surveying")
         return self._analysed(found, name, "finding causes")
 
-    def start(self, grammar: "Grammar", steps: "Steps") -> "StartRecord":
+    def start(self, grammar: "Grammar", steps: "LedgerSteps") -> "StartRecord":
         """The same under the restrictive start, with what the constructs answered."""
         from recovery.analysis import with_answers
 

@@ -24,19 +24,19 @@ from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.bench.mutation import Mutant
-from recovery.clustering.cause import Judge
+from recovery.clustering.cause import NegativeCounter
 from recovery.clustering.cluster import Clusters, cluster
-from recovery.clustering.edit_merging import together
+from recovery.clustering.edit_merging import combined_edits
 from recovery.clustering.edit_trial import edited
-from recovery.clustering.negative_score import judge_of
+from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import survey_texts
-from recovery.survey.unreserved_keywords import suspects
+from recovery.survey.unreserved_keywords import unreserved_keywords
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Material", "Verdict", "assess", "covering", "examine", "figures"]
+__all__ = ["Assessment", "BenchMaterial", "assess", "assess_all", "covering", "figures"]
 
 _CLUSTERS_LOOKED_AT = 5
 _PROPOSALS_LOOKED_AT = 5
@@ -46,7 +46,7 @@ _TEXTS_COMPARED = 60
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Assessment:
     """How the tool did on one mutant; see `assess` for what each field means."""
 
     mutant: Mutant
@@ -61,7 +61,7 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True)
-class Material:
+class BenchMaterial:
     """What mutants are assessed on.
 
     ``shown`` are programs (path, text) the tool sees, ``held_out`` texts it does not; all are read
@@ -79,9 +79,9 @@ def assess(
     whole: Grammar,
     shown: Sequence[tuple[str, str]],
     held_out: Sequence[str],
-    judge: Callable[[Grammar], Judge],
+    count_negatives: Callable[[Grammar], NegativeCounter],
     negatives: Callable[[Recognizer], int],
-) -> Verdict:
+) -> Assessment:
     """Survey ``shown`` (path, text) under the mutant and see how the tool does.
 
     - detected: some program that ``whole`` reads fails, or the lost keyword is suspected
@@ -93,21 +93,23 @@ def assess(
       all clusters do so together; else the clusters are gone through in the order of the page, of
       each the proposal is taken (the first of equals among five) after which most of the failing
       texts can be read, of a cluster none whose lines can be read already, and the rank is that
-      of the deepest proposal taken: so far down a person has to look in each cluster.
-    - false_accepts: negatives the best proposal lets in that ``whole`` rejects.
+      of the deepest proposal taken: so far down one has to look in each cluster.
+    - false_accepts: negatives the best proposal accepts that ``whole`` rejects.
     - seconds: of processor time, for the survey and the search.
     """
     began = time.process_time()
     found = survey_texts(shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
-        swallowed = suspects((("", text) for _, text in shown), lexer_of(mutant.grammar))
-        noticed = any(s.word in mutant.keywords for s in swallowed)
+        words = unreserved_keywords((("", text) for _, text in shown), lexer_of(mutant.grammar))
+        noticed = any(s.word in mutant.keywords for s in words)
         seconds = time.process_time() - began
-        return Verdict(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
+        return Assessment(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
     texts_of = dict(shown)
     clusters = cluster(
-        found, judge=judge(mutant.grammar), text_of=lambda file: texts_of[file.digest]
+        found,
+        count_negatives=count_negatives(mutant.grammar),
+        text_of=lambda file: texts_of[file.digest],
     )
     seconds = time.process_time() - began
     base = Recognizer(mutant.grammar)
@@ -120,7 +122,7 @@ def assess(
             tokens.append(reproducer.beyond)
     texts = [text for _, text in shown] + list(held_out)
     best = edited(base, ordered[0]) if ordered else None
-    return Verdict(
+    return Assessment(
         mutant,
         True,
         _rank(ordered, lambda edits: _names(edits, mutant, whole)),
@@ -136,7 +138,7 @@ def assess(
 
 
 def _proposals(clusters: Clusters) -> Iterator[tuple[Edit, ...]]:
-    """Proposals in the order a person meets them on the page."""
+    """Proposals in the order of the page."""
     for entry in clusters.ranked[:_CLUSTERS_LOOKED_AT]:
         for proposal in entry.proposals:
             yield proposal.edits
@@ -169,7 +171,7 @@ def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
     """Whether an edit is where something was taken out: same rule, same place in it.
 
     A taken alternative comes back as an alternative of that rule; a taken part between the
-    elements it stood between.
+    elements it was between.
     """
     edit = edits[-1]
     for removed in mutant.edits:
@@ -197,7 +199,7 @@ def _adjacent(here: Address, there: Address) -> bool:
 
 
 def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str]) -> int | None:
-    """How far down a person has to look in each cluster; see `assess`."""
+    """How far down one has to look in each cluster; see `assess`."""
     best = [entry.proposals[0].edits for entry in clusters.ranked if entry.proposals]
     if _reads_all(_with_all(base, best), texts):
         return 1
@@ -230,7 +232,7 @@ def _with_all(base: Recognizer, several: Sequence[Sequence[Edit]]) -> Recognizer
     """A recogniser with the edits of all, but for those that do not fit the ones before."""
     found, edits = base, tuple[Edit, ...]()
     for some in several:
-        more = together(edits, some)
+        more = combined_edits(edits, some)
         wider = edited(base, more)
         if wider is not None:
             found, edits = wider, more
@@ -259,17 +261,17 @@ def covering(grammar: Grammar) -> list[str]:
     return sorted(text for text in texts if recognizer.accepts(text))
 
 
-def examine(
-    material: Material,
+def assess_all(
+    material: BenchMaterial,
     chosen: Sequence[Mutant],
     *,
     jobs: int = 1,
     on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """Assess mutants in ``jobs`` processes and gather the figures; see `assess`."""
-    verdicts: list[Verdict] = []
+    verdicts: list[Assessment] = []
     if jobs == 1:
-        examiner = _Examiner(material)
+        examiner = _Assessor(material)
         for mutant in chosen:
             verdicts.append(examiner(mutant))
             on_done(1)
@@ -289,37 +291,37 @@ def examine(
     }
 
 
-class _Examiner:
+class _Assessor:
     """Assesses mutants of one grammar."""
 
-    def __init__(self, material: Material) -> None:
+    def __init__(self, material: BenchMaterial) -> None:
         self.material = material
         self.rejected = NegativeSet(material.negatives).rejected_by(Recognizer(material.grammar))
 
-    def __call__(self, mutant: Mutant) -> Verdict:
+    def __call__(self, mutant: Mutant) -> Assessment:
         material = self.material
         return assess(
             mutant,
             material.grammar,
             material.shown,
             material.held_out,
-            lambda damaged: judge_of(damaged, material.negatives),
+            lambda damaged: negative_counter(damaged, material.negatives),
             lambda recognizer: len(self.rejected.accepted(recognizer)),
         )
 
 
-_examiners: list[_Examiner] = []  # of a worker process
+_examiners: list[_Assessor] = []  # of a worker process
 
 
-def _prepare(material: Material) -> None:
-    _examiners[:] = [_Examiner(material)]
+def _prepare(material: BenchMaterial) -> None:
+    _examiners[:] = [_Assessor(material)]
 
 
-def _examine(mutant: Mutant) -> Verdict:
+def _examine(mutant: Mutant) -> Assessment:
     return _examiners[0](mutant)
 
 
-def _missed(verdict: Verdict, whole: Grammar) -> dict[str, Any]:
+def _missed(verdict: Assessment, whole: Grammar) -> dict[str, Any]:
     return {
         "mutant": verdict.mutant.title(whole),
         "detected": verdict.detected,
@@ -330,7 +332,7 @@ def _missed(verdict: Verdict, whole: Grammar) -> dict[str, Any]:
     }
 
 
-def figures(verdicts: Sequence[Verdict], negative_count: int) -> dict[str, Any]:
+def figures(verdicts: Sequence[Assessment], negative_count: int) -> dict[str, Any]:
     """The figures of a set of verdicts."""
     total = len(verdicts)
     seen = [v for v in verdicts if v.detected]

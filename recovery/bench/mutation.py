@@ -45,7 +45,7 @@ class Mutant:
         )
 
     def title(self, whole: Grammar) -> str:
-        """What was taken out, for a person."""
+        """What was taken out, in readable words."""
         return f"{self.kind}: " + "; ".join(describe(whole, e) for e in self.edits[:2])
 
 

@@ -23,13 +23,13 @@ from grammar.parser.recognizer import Recognizer, State
 
 __all__ = ["Template", "Written", "readable", "spread", "templates", "write_corpus"]
 
-# What may hold digits or words that are no numbers and no names stands first, and stays as it is.
+# What may hold digits or words that are no numbers and no names comes first, and stays as it is.
 _PIECE = re.compile(
     r"""[;&][^\r\n]* | "[^"\r\n]*"? | '[^'\r\n]*'? | [$\#]\w+
       | (?P<name>[A-Za-z_][\w$]*) | (?P<number>[0-9]+)""",
     re.VERBOSE,
 )
-# In a template, characters that no text uses stand for what differs from copy to copy.
+# In a template, characters that no text uses mark what differs from copy to copy.
 _DIGIT = 0xE000  # to 0xE009
 _SUFFIX = 0xE00A
 _TO_PLACES = {ord("0") + digit: _DIGIT + digit for digit in range(10)}
@@ -81,7 +81,7 @@ def templates(texts: Iterable[str], lexer: Lexer) -> Iterator[Template]:
 def readable(texts: Iterable[str], recognizer: Recognizer) -> Iterator[str]:
     """Each text made a program, where that can be done.
 
-    In place of a line that cannot be read stands the last line of the corpus that could be read in
+    A line that cannot be read is replaced by the last line of the corpus that could be read in
     the same state, led back to it, and was about as long; where there is none, nothing.
     """
     fitting: dict[State, dict[int, str]] = defaultdict(dict)

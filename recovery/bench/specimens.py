@@ -8,19 +8,19 @@ from pathlib import Path
 
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.assessment import Material, covering
+from recovery.bench.assessment import BenchMaterial, covering
 from recovery.bench.mutation import Mutant, combined, mutants
 from recovery.bench.resampling import readable
 from recovery.negatives.negatives import Negative
 from support.files.decode import decode
 from support.files.discovery import Skipped, discover, read
 
-__all__ = ["choose", "material_for"]
+__all__ = ["choose_mutants", "material_for"]
 
 
 def material_for(
     grammar: Grammar, roots: Sequence[Path], negatives: Sequence[Negative], seed: int
-) -> Material:
+) -> BenchMaterial:
     """Programs below ``roots``, half of them shown to the tool and half held out.
 
     Where the grammar cannot read a line, a line of the corpus that it can read in that place takes
@@ -37,7 +37,7 @@ def material_for(
     programs = list(readable(texts, Recognizer(grammar)))
     random.Random(seed).shuffle(programs)
     shown = [*programs[::2], *covering(grammar)]
-    return Material(
+    return BenchMaterial(
         grammar,
         tuple((f"program {number}", text) for number, text in enumerate(shown, 1)),
         tuple(programs[1::2]),
@@ -45,7 +45,7 @@ def material_for(
     )
 
 
-def choose(grammar: Grammar, singles: int, multiple: int, seed: int) -> list[Mutant]:
+def choose_mutants(grammar: Grammar, singles: int, multiple: int, seed: int) -> list[Mutant]:
     """All single mutants, or ``singles`` of them drawn, and ``multiple`` with several parts out."""
     every = list(mutants(grammar))
     drawn = every

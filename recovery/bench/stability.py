@@ -1,6 +1,6 @@
-"""Is the ranking the same every time? The search asked again and again, under other conditions.
+"""Stability of the ranking: the search repeated under other conditions.
 
-What a person is shown must not hang on the order of a set or on which process came first. So the
+The ranking must not depend on the order of a set or on which process came first. So the
 same damaged grammars are searched in several runs, each in new processes, with another seed for the
 hashes of Python, one process and two by turns, and the rankings are compared.
 """
@@ -12,10 +12,10 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from recovery.bench.assessment import Material
+from recovery.bench.assessment import BenchMaterial
 from recovery.bench.mutation import Mutant
 from recovery.clustering.cluster import Clusters, cluster
-from recovery.clustering.negative_score import judge_of
+from recovery.clustering.negative_score import negative_counter
 from recovery.survey.survey import survey_texts
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
@@ -35,7 +35,7 @@ def same_ranking(runs: Sequence[Sequence[str]]) -> float | None:
 
 
 def rankings(
-    material: Material, chosen: Sequence[Mutant], runs: int, on_done: Progress = no_progress
+    material: BenchMaterial, chosen: Sequence[Mutant], runs: int, on_done: Progress = no_progress
 ) -> list[list[str]]:
     """For each run, a digest of the ranking of each mutant.
 
@@ -67,10 +67,10 @@ def _hash_seed(seed: int) -> Iterator[None]:
             os.environ[_SEED] = before
 
 
-_materials: list[Material] = []  # of a worker process
+_materials: list[BenchMaterial] = []  # of a worker process
 
 
-def _prepare(material: Material) -> None:
+def _prepare(material: BenchMaterial) -> None:
     _materials[:] = [material]
 
 
@@ -79,12 +79,12 @@ def _ranking(mutant: Mutant) -> str:
     texts = dict(material.shown)
     clusters = cluster(
         survey_texts(material.shown, mutant.grammar),
-        judge=judge_of(mutant.grammar, material.negatives),
+        count_negatives=negative_counter(mutant.grammar, material.negatives),
         text_of=lambda file: texts[file.digest],
     )
     return _digest(clusters)
 
 
 def _digest(clusters: Clusters) -> str:
-    told = [(c.id, c.title, [p.edits for p in c.proposals]) for c in clusters.ranked]
-    return hashlib.sha256(repr(told).encode()).hexdigest()
+    ranking = [(c.id, c.title, [p.edits for p in c.proposals]) for c in clusters.ranked]
+    return hashlib.sha256(repr(ranking).encode()).hexdigest()

@@ -340,7 +340,7 @@ def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:
         "seconds": seconds,
         "bytes_per_s": size / seconds,
         "peak_mb": None if peak is None else peak / MB,
-        # whoever holds them: the automaton is the survey's own affair
+        # wherever they are: the automaton is internal to the survey
         "cores": sum(isinstance(each, Core) for each in gc.get_objects()),
     }
 

@@ -7,14 +7,16 @@ from dataclasses import dataclass
 
 from grammar.notation.edits import Edit
 
-__all__ = ["Cause", "Judge", "Proposal", "no_judge"]
+__all__ = ["Cause", "NegativeCounter", "Proposal", "no_negatives"]
 
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """An edit that was tried: the lines it mends, lets be read further, and what it costs.
+    """An edit that was tried.
 
-    ``accepts_negatives`` counts programs that must stay rejected and no longer would be.
+    ``mended`` are the lines that can be read with it, ``advanced`` those that fail further on;
+    ``breadth`` says how much it accepts besides, and ``accepts_negatives`` counts programs that
+    must stay rejected and no longer would be.
     """
 
     edits: tuple[Edit, ...]
@@ -32,11 +34,11 @@ class Cause:
     proposals: tuple[Proposal, ...]
 
 
-#: How many negatives an edit would let in.
-Judge = Callable[[Sequence[Edit]], int]
+#: How many negatives the grammar would accept with the edits.
+NegativeCounter = Callable[[Sequence[Edit]], int]
 
 
-def no_judge(edits: Sequence[Edit]) -> int:
-    """Where there are no negatives nothing speaks against an edit."""
+def no_negatives(edits: Sequence[Edit]) -> int:
+    """Count none, where there are no negatives."""
     del edits
     return 0

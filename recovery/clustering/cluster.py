@@ -1,4 +1,4 @@
-"""Clusters: failures grouped by cause, ranked by what they hold back."""
+"""Clusters: failures grouped by cause, ranked by the files they keep from parsing."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from functools import partial
 
 from grammar.parser.failures import Context, FailureFinder
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, Judge, Proposal, no_judge
+from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import find_causes
-from recovery.clustering.file_trial import FailingFile, WholeFiles
-from recovery.clustering.regression import Readable
-from recovery.proposals.candidates import Line
-from recovery.survey.signature import Shape, Shaper
-from recovery.survey.survey import Failed, Survey, SurveyedFile
+from recovery.clustering.file_trial import FailingFile, FileTrial
+from recovery.clustering.regression import ParsedFiles
+from recovery.proposals.edit_site import LinePattern
+from recovery.survey.failing_line import FailingLine
+from recovery.survey.signature import Signature, SignatureBuilder
+from recovery.survey.survey import Survey, SurveyedFile
 from support.parallel.progress import Progress, no_progress
 
 __all__ = ["Cluster", "Clusters", "Member", "cluster"]
@@ -27,7 +28,7 @@ class Member:
     """A failure and the file it is in."""
 
     file: SurveyedFile
-    failed: Failed
+    failed: FailingLine
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +36,14 @@ class Cluster:
     """Failures with one cause.
 
     ``unlocks``: files that would parse if only it were mended. ``line`` is the failing line that
-    stands for it and ``example`` a failure of that line; ``restores`` has for each of the
+    represents it and ``example`` a failure of that line; ``restores`` has for each of the
     ``proposals`` the files in which it mends every line that fails by itself.
     """
 
     id: str
     title: str
     context: Context
-    line: Line
+    line: LinePattern
     example: Member
     members: tuple[Member, ...]
     unlocks: int
@@ -67,7 +68,7 @@ class Clusters:
     ranked: tuple[Cluster, ...]
     order: tuple[tuple[Cluster, int], ...]
     cluster_of: dict[tuple[str, int], str]
-    lines: tuple[Line, ...]
+    lines: tuple[LinePattern, ...]
     contexts: tuple[Context, ...]
 
 
@@ -79,29 +80,29 @@ def text_on_disk(file: SurveyedFile) -> str:
 def cluster(
     found: Survey,
     *,
-    judge: Judge = no_judge,
+    count_negatives: NegativeCounter = no_negatives,
     text_of: Callable[[SurveyedFile], str] = text_on_disk,
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> Clusters:
     """Group the failures of a survey by cause.
 
-    ``judge`` counts the negatives an edit lets in; ``text_of`` gives the text of a file again;
-    ``on_found`` and ``on_done`` report progress.
+    ``count_negatives`` counts the negatives that an edit accepts; ``text_of`` gives the text of a
+    file again; ``on_found`` and ``on_done`` report progress.
     """
-    groups = _Lines(found)
+    groups = _FailingLines(found)
     causes: Sequence[Cause] = ()
     if groups.lines:
-        on_found(len(groups.by_shape))
+        on_found(len(groups.by_signature))
         causes = find_causes(
             groups.recognizer,
             groups.lines,
             groups.weights,
-            groups.by_shape,
-            judge,
+            groups.by_signature,
+            count_negatives,
             on_done,
-            WholeFiles(groups.recognizer, groups.failing(found, text_of)),
-            Readable(
+            FileTrial(groups.recognizer, groups.failing(found, text_of)),
+            ParsedFiles(
                 ((f.size, partial(text_of, f)) for f in found.files if not f.failures),
                 {word for line in groups.lines for _, word in line.keywords},
             ),
@@ -110,7 +111,7 @@ def cluster(
     return _assembled(found, groups, causes, cause_of)
 
 
-class _Lines:
+class _FailingLines:
     """The failing lines of a survey: distinct ones, and where each occurs."""
 
     def __init__(self, found: Survey) -> None:
@@ -123,33 +124,35 @@ class _Lines:
             for index, failed in enumerate(file.failures)
             if not failed.follows
         ]
-        self.shaper = Shaper(
+        self.signature_builder = SignatureBuilder(
             self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
         )
-        numbers: dict[Line, int] = {}
-        shapes: list[Shape] = []
+        numbers: dict[LinePattern, int] = {}
+        signatures: list[Signature] = []
         self.line_of: dict[tuple[str, int], int] = {}
         self.specimens: list[Member] = []  # of each line the shortest
         files: dict[int, dict[str, int]] = defaultdict(dict)
         for file, index, failed in direct:
             form = found.forms[failed.form]
-            line = Line(form, self.shaper.keywords(failed, form))
+            line = LinePattern(form, self.signature_builder.keywords(failed, form))
             number = numbers.setdefault(line, len(numbers))
-            if number == len(shapes):
-                shapes.append(self.shaper.shape(failed, form, self.contexts[failed.form]))
+            if number == len(signatures):
+                signatures.append(
+                    self.signature_builder.signature(failed, form, self.contexts[failed.form])
+                )
                 self.specimens.append(Member(file, failed))
             elif len(failed.source) < len(self.specimens[number].failed.source):
                 self.specimens[number] = Member(file, failed)
             self.line_of[file.digest, index] = number
             files[number][file.digest] = len(file.places)
         self.lines = tuple(numbers)
-        self.shapes = shapes
-        self.weights = [sum(files[n].values()) for n in range(len(shapes))]
-        by_shape: dict[Shape, list[int]] = defaultdict(list)
-        for number, shape in enumerate(shapes):
-            by_shape[shape].append(number)
-        self.by_shape = sorted(
-            by_shape.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
+        self.signatures = signatures
+        self.weights = [sum(files[n].values()) for n in range(len(signatures))]
+        by_signature: dict[Signature, list[int]] = defaultdict(list)
+        for number, signature in enumerate(signatures):
+            by_signature[signature].append(number)
+        self.by_signature = sorted(
+            by_signature.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
         )
 
     def failing(
@@ -172,7 +175,7 @@ class _Lines:
 
 
 def _assembled(
-    found: Survey, groups: _Lines, causes: Sequence[Cause], cause_of: dict[int, int]
+    found: Survey, groups: _FailingLines, causes: Sequence[Cause], cause_of: dict[int, int]
 ) -> Clusters:
     members: dict[int, list[Member]] = defaultdict(list)
     needs: list[tuple[SurveyedFile, frozenset[int], frozenset[int]]] = []
@@ -194,7 +197,7 @@ def _assembled(
     for file, _, wanted in needs:
         if len(wanted) == 1:
             alone[next(iter(wanted))] += len(file.places)
-    titles = _titles([_heaviest(cause, groups) for cause in causes], groups.shapes)
+    titles = _titles([_heaviest(cause, groups) for cause in causes], groups.signatures)
     clusters = [
         _cluster(cause, titles[number], members[number], alone[number], groups, needs)
         for number, cause in enumerate(causes)
@@ -210,8 +213,8 @@ def _assembled(
     )
 
 
-def _heaviest(cause: Cause, groups: _Lines) -> int:
-    """The line that stands for a cause: the heaviest of those that its best proposal mends."""
+def _heaviest(cause: Cause, groups: _FailingLines) -> int:
+    """The line that represents a cause: the heaviest of those that its best proposal mends."""
     mended = cause.proposals[0].mended & set(cause.lines) if cause.proposals else ()
     return max(
         mended or cause.lines,
@@ -224,7 +227,7 @@ def _cluster(
     title: str,
     members: Sequence[Member],
     unlocks: int,
-    groups: _Lines,
+    groups: _FailingLines,
     needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
 ) -> Cluster:
     heaviest = _heaviest(cause, groups)
@@ -253,13 +256,13 @@ def _identity(title: str) -> str:
     return "c-" + hashlib.sha256(title.encode()).hexdigest()[:8]
 
 
-def _titles(lines: Sequence[int], shapes: Sequence[Shape]) -> list[str]:
-    """Titles; where two clusters share one, the rule and then a number tell them apart."""
-    plain = Counter(shapes[n].title for n in lines)
+def _titles(lines: Sequence[int], signatures: Sequence[Signature]) -> list[str]:
+    """Titles, made distinct by the rule and then by a number where two clusters share one."""
+    plain = Counter(signatures[n].title for n in lines)
     out: list[str] = []
     for n in lines:
-        shape = shapes[n]
-        title = shape.title if plain[shape.title] == 1 else f"{shape.title} (in {shape.rule})"
+        title, rule = signatures[n].title, signatures[n].rule
+        title = title if plain[title] == 1 else f"{title} (in {rule})"
         same = sum(t == title or t.startswith(f"{title} #") for t in out)
         out.append(f"{title} #{same + 1}" if same else title)
     return out
@@ -270,7 +273,7 @@ def _greedy(
     needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
     clusters: Sequence[Cluster],
 ) -> Iterator[tuple[Cluster, int]]:
-    """Mend next what lets most files parse, or brings most of them nearest to it."""
+    """Mend next what makes most files parse, or brings most of them nearest to it."""
     parsed = sum(len(f.places) for f in files if not f.failures)
     waiting: Counter[frozenset[int]] = Counter()
     for file, wanted in needs:

@@ -1,8 +1,8 @@
-"""Edits that are one thing: the same word or phrase is missing in several places.
+"""Merging of edits: the same word or phrase is missing in several places.
 
 ``A == B`` and ``A < B`` fail at different signs, but the edits that mend them differ in one word at
 the same place; a phrase may be missing in two rules, or two lost alternatives may be all that ever
-used a rule. Here is what tells so, and what writes such edits as one.
+used a rule. Such edits are found here and written as one.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from dataclasses import replace
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from recovery.proposals.candidates import Candidate
-from recovery.proposals.grammar_profile import Layout
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
 
-__all__ = ["one_choice", "one_form", "reach_the_same", "together"]
+__all__ = ["are_one_change", "combined_edits", "merged_as_choice", "merged_as_form"]
 
 # Words of a text, a choice of words taken for one.
 _WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
 
-def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
+def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     """The edits of both, each once, in an order in which no edit moves the place of another."""
     edits = list(dict.fromkeys((*first, *second)))
     tokens = [e for e in edits if isinstance(e, AddToken)]
@@ -32,18 +32,18 @@ def together(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     return (*tokens, *places, *(e for e in edits if isinstance(e, AddAlternative)))
 
 
-def _main(layout: Layout, edits: Sequence[Edit]) -> list[Edit]:
+def _main(profile: GrammarProfile, edits: Sequence[Edit]) -> list[Edit]:
     """The edits but for those that reserve words."""
-    reserving = layout.vocabulary.reserve(e.name for e in edits if isinstance(e, AddToken))
+    reserving = profile.vocabulary.reserve(e.name for e in edits if isinstance(e, AddToken))
     return [e for e in edits if e not in reserving]
 
 
-def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
-    """Whether two edits let in one thing: a phrase, or what alone used a rule.
+def are_one_change(profile: GrammarProfile, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
+    """Whether two edits accept one thing: a phrase, or what alone used a rule.
 
-    A few edits at most make one cause: a person has to see at a glance that they are one.
+    Only a few edits make one cause, so that a reader sees at a glance what they have in common.
     """
-    if len({*_main(layout, first), *_main(layout, second)}) > MOST_MERGED_EDITS:
+    if len({*_main(profile, first), *_main(profile, second)}) > MOST_MERGED_EDITS:
         return False
     one, other = first[-1], second[-1]
     if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
@@ -52,42 +52,42 @@ def reach_the_same(layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
         return False
     if one != other and one.text.rstrip("?*+") == other.text.rstrip("?*+"):
         return True
-    unused = layout.unused_in(one.text), layout.unused_in(other.text)
+    unused = profile.unused_in(one.text), profile.unused_in(other.text)
     if one.rule == other.rule and isinstance(one, AddAlternative) and type(one) is type(other):
         # what gathered several rules is gone, or what had several forms without a word of its own
-        return all(unused) or bool(layout.operands(one.text) & layout.operands(other.text))
+        return all(unused) or bool(profile.operands(one.text) & profile.operands(other.text))
     return bool(unused[0] & unused[1])
 
 
-def one_form(
-    layout: Layout, first: Sequence[Edit], second: Sequence[Edit]
+def merged_as_form(
+    profile: GrammarProfile, first: Sequence[Edit], second: Sequence[Edit]
 ) -> tuple[Edit, ...] | None:
-    """The edits of both with one text, where both let in a form of what one new word begins.
+    """The edits of both with one text, where both accept a form that one new word begins.
 
-    No rule has had a use for the word, and two rules are to have one now: they share the longer
+    No rule has had a use for the word, and two rules are to have one now: they get the longer
     form. ``None`` where that is not so.
     """
     one, other = first[-1], second[-1]
     if not isinstance(one, AddAlternative) or not isinstance(other, AddAlternative):
         return None
     words = {edit.text.split(" ")[0] for edit in (one, other)}
-    if len(words) > 1 or one.rule == other.rule or len(_main(layout, first)) > 1:
+    if len(words) > 1 or one.rule == other.rule or len(_main(profile, first)) > 1:
         return None
     word = words.pop()
-    if not word.isidentifier() or not word[0].isupper() or layout.vocabulary.is_written(word):
+    if not word.isidentifier() or not word[0].isupper() or profile.vocabulary.is_written(word):
         return None
     text = max(one.text, other.text, key=lambda t: (len(t), t))
     both = (replace(one, text=text), replace(other, text=text))
-    return together((*first[:-1], both[0]), (*second[:-1], both[1]))
+    return combined_edits((*first[:-1], both[0]), (*second[:-1], both[1]))
 
 
-def one_choice(
+def merged_as_choice(
     candidates: Sequence[Candidate],
     allowed: Callable[[Edit, int], bool] = lambda _edit, _place: True,
 ) -> list[Candidate]:
     """Candidates that differ in one word only, as one with a choice of words.
 
-    ``allowed`` is asked whether words at a place in the text of an edit may be a choice.
+    ``allowed`` says whether words at a place in the text of an edit may be a choice.
     """
     families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
     for candidate in candidates:

@@ -16,15 +16,15 @@ from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
-from recovery.proposals.candidates import Line
+from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_READ_TWICE, MOST_READINGS, MOST_RECOGNIZERS_KEPT
 
-__all__ = ["Outcome", "Trial", "edited"]
+__all__ = ["EditTrial", "TrialResult", "edited"]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
-    """Indices of the lines an edit lets be read whole, and of those it lets be read further."""
+class TrialResult:
+    """Indices of the lines that can be read with an edit, and of those that fail further on."""
 
     mended: frozenset[int]
     advanced: frozenset[int]
@@ -69,10 +69,10 @@ def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
     )
 
 
-class Trial:
+class EditTrial:
     """Tries edits on failing lines of one grammar."""
 
-    def __init__(self, recognizer: Recognizer, lines: Sequence[Line]) -> None:
+    def __init__(self, recognizer: Recognizer, lines: Sequence[LinePattern]) -> None:
         self.recognizer = recognizer
         self.lines = lines
         paths = Paths(recognizer.network)
@@ -115,7 +115,7 @@ class Trial:
         state, _ = self.recognizer.run(self.recognizer.start, way)
         return frozenset(self.recognizer.frames(state))
 
-    def _rules_at_work(self, line: Line) -> set[str]:
+    def _rules_at_work(self, line: LinePattern) -> set[str]:
         """Rules in which an edit could change how this line is read."""
         recognizer, form = self.recognizer, line.form
         rule_of = recognizer.network.rule
@@ -150,11 +150,11 @@ class Trial:
             self._wider[key] = edited(self.recognizer, edits)
         return self._wider[key]
 
-    def outcome(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> Outcome:
+    def result(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> TrialResult:
         """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
         wider = self.wider(edits)
         if wider is None:
-            return Outcome(frozenset(), frozenset())
+            return TrialResult(frozenset(), frozenset())
         chosen = self.relevant(edits)
         if among is not None:
             wanted = frozenset(among)
@@ -166,7 +166,7 @@ class Trial:
                 mended.append(number)
             elif failed > self.lines[number].form.index:
                 advanced.append(number)
-        return Outcome(frozenset(mended), frozenset(advanced))
+        return TrialResult(frozenset(mended), frozenset(advanced))
 
     def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
         """Whether one of the lines has two readings with the edits; the shortest few are read."""

@@ -1,6 +1,6 @@
 """Whole programs under an edit: how far can they be read, and which failures are gone?
 
-A line can be read and the file still not: the edit may have let it in at the wrong place, once
+A line can be read and the file still not: the edit may accept it at the wrong place, once
 where it comes again, or without what belongs to it on later lines. So the best edits for a line
 are tried on some of the files that fail there first. And a line that fails only because a line
 before it was not understood can be read once that one is: it has the same cause.
@@ -22,7 +22,7 @@ from recovery.tuning import (
     MOST_REREAD_TEXT,
 )
 
-__all__ = ["FailingFile", "WholeFiles"]
+__all__ = ["FailingFile", "FileTrial"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class FailingFile:
     failing: tuple[tuple[int, int], ...]
 
 
-class WholeFiles:
-    """Files by the lines that fail in them; read when they are first asked for."""
+class FileTrial:
+    """Tries edits on the files in which lines fail; files are read when they are needed."""
 
     def __init__(self, recognizer: Recognizer, files: Iterable[FailingFile] = ()) -> None:
         self._recognizer = recognizer
@@ -57,7 +57,7 @@ class WholeFiles:
         """Some of the texts that fail first at one of the lines."""
         return [text for text, _, _ in self._of(lines)]
 
-    def share(self, wider: Recognizer, lines: Iterable[int]) -> float:
+    def readable_share(self, wider: Recognizer, lines: Iterable[int]) -> float:
         """How much can be read of what lies behind first failures, on average; from 0 to 1.
 
         1 where there are no files to be tried.
@@ -75,8 +75,8 @@ class WholeFiles:
     ) -> frozenset[int]:
         """Those of the ``others`` that only fail because of the lines that ``wider`` mends.
 
-        They stand behind such a line wherever they are met, and fail no more. Lines that stand in
-        files too many or too long to be read again are none of them.
+        They come behind such a line wherever they occur, and no longer fail. Lines in files too
+        many or too long to be read again are left out.
         """
         first: dict[int, int] = {}
         for line in mended:

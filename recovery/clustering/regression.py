@@ -1,4 +1,4 @@
-"""What can be read today and no more once a word is reserved.
+"""Regressions: files that parse, and no longer would once a word is reserved.
 
 A word that one line has as a keyword may be a name in another file, and stays one where the grammar
 lists words that are names elsewhere. So an edit that reserves words is tried on some of the files
@@ -15,19 +15,19 @@ from functools import cached_property
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import FILES_PER_WORD, MOST_SEARCHED_TEXT
 
-__all__ = ["Readable", "nothing_readable"]
+__all__ = ["ParsedFiles", "no_parsed_files"]
 
 #: A file that can be read: its length in characters, and what gives its text.
-ReadableFile = tuple[int, Callable[[], str]]
+ParsedFile = tuple[int, Callable[[], str]]
 
 _WORDS = re.compile(r"\w+")
 
 
-class Readable:
-    """Files that can be read, by the words in them; read again when they are first asked for."""
+class ParsedFiles:
+    """Files that parse, by the words in them; read again when they are needed."""
 
-    def __init__(self, files: Iterable[ReadableFile], words: Collection[str]) -> None:
-        """``words`` are those that may ever be asked for, in capitals."""
+    def __init__(self, files: Iterable[ParsedFile], words: Collection[str]) -> None:
+        """``words`` are all that an edit may reserve, in capitals."""
         self._files = sorted(files, key=lambda file: file[0])
         self._wanted = frozenset(words)
 
@@ -45,10 +45,10 @@ class Readable:
                     found[word].append(text)
         return dict(found)
 
-    def is_lost(self, wider: Recognizer, words: Iterable[str]) -> bool:
+    def breaks(self, wider: Recognizer, words: Iterable[str]) -> bool:
         """Whether a file with one of the words can no longer be read by ``wider``."""
         texts = dict.fromkeys(text for word in words for text in self._texts.get(word, ()))
         return not all(map(wider.accepts, texts))
 
 
-nothing_readable = Readable((), ())
+no_parsed_files = ParsedFiles((), ())

@@ -1,7 +1,7 @@
-"""The search for the edit that mends most of a group of failing lines and lets in least.
+"""The search for the edit that mends most of a group of failing lines and accepts least.
 
 Candidate edits for some of the lines are tried on a sample first, then the best of them on all
-lines that have no cause yet; how they are ranked is told in docs/architecture.md.
+lines that have no cause yet. docs/architecture.md says how they are ranked.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from typing import TypeVar
 
 from grammar.notation.edits import AddToken, Edit
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, Judge, Proposal
-from recovery.clustering.edit_merging import one_choice
-from recovery.clustering.edit_trial import Outcome, Trial
-from recovery.clustering.file_trial import WholeFiles
-from recovery.clustering.regression import Readable, nothing_readable
-from recovery.proposals.candidates import Candidate, CandidateFinder, Line
+from recovery.clustering.cause import Cause, NegativeCounter, Proposal
+from recovery.clustering.edit_merging import merged_as_choice
+from recovery.clustering.edit_trial import EditTrial, TrialResult
+from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.regression import ParsedFiles, no_parsed_files
+from recovery.proposals.candidates import Candidate, CandidateFinder
+from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.segmentation import Word
 from recovery.tuning import (
     ADVANCED_WEIGHT,
@@ -46,29 +47,29 @@ from recovery.tuning import (
     WIDE_PER_SITE,
 )
 
-__all__ = ["Search"]
+__all__ = ["CauseSearch"]
 
 
-class Search:
+class CauseSearch:
     """Searches edits for the lines of one grammar."""
 
     def __init__(
         self,
         recognizer: Recognizer,
-        lines: Sequence[Line],
+        lines: Sequence[LinePattern],
         weights: Sequence[int],
-        judge: Judge,
-        whole: WholeFiles | None = None,
-        readable: Readable = nothing_readable,
+        count_negatives: NegativeCounter,
+        file_trial: FileTrial | None = None,
+        parsed_files: ParsedFiles = no_parsed_files,
     ) -> None:
         self.lines = lines
         self.weights = weights
-        self.judge = judge
-        self.whole = whole or WholeFiles(recognizer)
-        self.readable = readable
+        self.count_negatives = count_negatives
+        self.file_trial = file_trial or FileTrial(recognizer)
+        self.parsed_files = parsed_files
         self.finder = CandidateFinder(recognizer)
-        self.trial = Trial(recognizer, lines)
-        self.thorough = True
+        self.trial = EditTrial(recognizer, lines)
+        self.is_thorough = True
         self._sought: frozenset[int] = frozenset()
         self._has_words = False  # whether all lines sought for have words the grammar lacks
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
@@ -85,22 +86,22 @@ class Search:
         self._has_words = all(self.lines[n].keywords for n in group)
         proposals = self._proposals(group)
         for place, best in enumerate(proposals):
-            # what an edit lets be read further has its first cause here, and others behind it
+            # a line that is read further has its first cause here, and others behind it
             taken = (best.mended & self.open) | (best.advanced & members)
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
 
-    def best_afresh(self, lines: Sequence[int]) -> Cause | None:
-        """The cause of the heaviest of these lines as if none had one yet, others left aside."""
-        self.thorough = True
+    def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
+        """The cause of the heaviest of these lines, as if they were all and none had one yet."""
+        self.is_thorough = True
         self.open = set(lines)
         return self.best_for(lines)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
         """The edits tried on all lines, whatever their cause."""
-        outcome = self.trial.outcome(edits)
-        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+        result = self.trial.result(edits)
+        return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
     def with_entailed(self, cause: Cause) -> Cause:
         """The cause with the lines that fail only because of its own."""
@@ -110,13 +111,13 @@ class Search:
         if wider is None or not others:
             return cause
         mended = best.mended.intersection(cause.lines)
-        more = self.whole.entailed(wider, mended, others)
+        more = self.file_trial.entailed(wider, mended, others)
         return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
-        specimens = _spread(heavy, SPECIMENS if self.thorough else 1)
-        most = MOST_TRIED if self.thorough else MOST_TRIED_LIGHT
+        specimens = _spread(heavy, SPECIMENS if self.is_thorough else 1)
+        most = MOST_TRIED if self.is_thorough else MOST_TRIED_LIGHT
         alike = self._alike(specimens[0])
         led_alike = self._led_alike(specimens[0])
         near = dict.fromkeys((*specimens, *_spread(heavy, VARIED_LINES)))
@@ -128,39 +129,39 @@ class Search:
         sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
         first += [
-            (candidate, self.trial.outcome(candidate.edits, sample))
-            for candidate in one_choice([c for c, o in first if o.mended])
+            (candidate, self.trial.result(candidate.edits, sample))
+            for candidate in merged_as_choice([c for c, o in first if o.mended])
         ]
         proposals = []
         for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
-            outcome = self.trial.outcome(candidate.edits, self.open)
+            result = self.trial.result(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth
-            proposals.append(Proposal(edits, outcome.mended, outcome.advanced, breadth, negatives))
+            proposals.append(Proposal(edits, result.mended, result.advanced, breadth, negatives))
         kept = [self._names_kept(proposal) for proposal in proposals]
         useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
         return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
-        """The proposal; where files have a word as a name that it reserves, with that left one."""
+        """The proposal; a word it reserves stays a name too where files use it as one."""
         if not self._loses(proposal.edits):
             return proposal
-        layout, words = self.finder.layout, self.finder.layout.vocabulary
+        profile, words = self.finder.profile, self.finder.profile.vocabulary
         edits = words.still_names(proposal.edits)
         if words.names is None or edits is None or self._loses(edits):
             return proposal
-        outcome = self.trial.outcome(edits, self.open)
-        breadth = proposal.breadth + layout.width(words.names) // STILL_NAMES_PART
-        return Proposal(edits, outcome.mended, outcome.advanced, breadth, self.judge(edits))
+        result = self.trial.result(edits, self.open)
+        breadth = proposal.breadth + profile.width(words.names) // STILL_NAMES_PART
+        return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
     def _loses(self, edits: tuple[Edit, ...]) -> bool:
         """Whether files that can be read cannot be any more."""
         words = [edit.name for edit in edits if isinstance(edit, AddToken)]
         wider = self.trial.wider(edits) if words else None
-        return wider is not None and self.readable.is_lost(wider, words)
+        return wider is not None and self.parsed_files.breaks(wider, words)
 
     def _tried(
         self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
-    ) -> list[tuple[Candidate, Outcome]]:
+    ) -> list[tuple[Candidate, TrialResult]]:
         """At most so many candidates with what they do to a sample of lines.
 
         First the narrowest at each place; then the wider ones where these do most.
@@ -171,38 +172,41 @@ class Search:
         narrow = [c for c in candidates if c in at[c.place][:NARROW_PER_SITE]][
             : most - most // WIDE_PART
         ]
-        out = [(c, self.trial.outcome(c.edits, sample)) for c in narrow]
+        out = [(c, self.trial.result(c.edits, sample)) for c in narrow]
         gains: dict[object, tuple[float, int]] = {}
-        for c, outcome in out:
-            gain = self._gain(outcome)
+        for c, result in out:
+            gain = self._gain(result)
             if gain:
                 gains[c.place] = max((gain, -c.breadth), gains.get(c.place, (0.0, 0)))
-        hopeful = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
+        promising = sorted(gains, key=lambda p: (-gains[p][0], -gains[p][1], str(p)))
         wide = [
             c
-            for place in hopeful
+            for place in promising
             for c in at[place][NARROW_PER_SITE : NARROW_PER_SITE + WIDE_PER_SITE]
         ]
-        return out + [(c, self.trial.outcome(c.edits, sample)) for c in wide[: most // WIDE_PART]]
+        return out + [(c, self.trial.result(c.edits, sample)) for c in wide[: most // WIDE_PART]]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
-        """The best of the blocks that a line may open, with the negatives they let in."""
+        """The best of the blocks that a line may open, with the negatives they accept."""
         line = self.lines[number]
         opener = self.lead(line)
         if not opener:
             return []
-        texts = self.whole.texts(heavy)
+        texts = self.file_trial.texts(heavy)
         found = [
-            (self.whole.share(wider, heavy), candidate)
+            (self.file_trial.readable_share(wider, heavy), candidate)
             for candidate in self.finder.find_blocks(line, opener, texts, self._meant)
             if (wider := self.trial.wider(candidate.edits)) is not None
         ]
         found.sort(
             key=lambda pair: (-pair[0] * BREADTH_FACTOR ** pair[1].breadth, str(pair[1].edits))
         )
-        return [(candidate, self.judge(candidate.edits)) for _, candidate in found[:KEPT_PER_RULE]]
+        return [
+            (candidate, self.count_negatives(candidate.edits))
+            for _, candidate in found[:KEPT_PER_RULE]
+        ]
 
-    def lead(self, line: Line) -> str:
+    def lead(self, line: LinePattern) -> str:
         """The keyword or would-be keyword that a line begins with."""
         kind, keyword = line.words()[0]
         lexer = self.finder.recognizer.lexer
@@ -220,52 +224,52 @@ class Search:
         line = self.lines[number]
         return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
 
-    def _gain(self, outcome: Outcome | Proposal) -> float:
+    def _gain(self, result: TrialResult | Proposal) -> float:
         """What the lines count that are mended; those a cause is sought for count most."""
         sought = self._sought
-        whole = sum(self.weights[n] for n in outcome.mended & sought)
-        further = sum(self.weights[n] for n in outcome.advanced & sought)
-        if not whole and not further:
+        mended = sum(self.weights[n] for n in result.mended & sought)
+        further = sum(self.weights[n] for n in result.advanced & sought)
+        if not mended and not further:
             return 0.0
-        others = sum(self.weights[n] for n in outcome.mended - sought)
-        return whole + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
+        others = sum(self.weights[n] for n in result.mended - sought)
+        return mended + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
 
-    def _worth(self, candidate: Candidate | Proposal, outcome: Outcome | Proposal) -> float:
-        """Gain, less a little for all that an edit lets in besides, and for a word left a name."""
-        worth = self._gain(outcome) * BREADTH_FACTOR**candidate.breadth
+    def _worth(self, candidate: Candidate | Proposal, result: TrialResult | Proposal) -> float:
+        """Gain, less a little for all that an edit accepts besides, and for a word left a name."""
+        worth = self._gain(result) * BREADTH_FACTOR**candidate.breadth
         reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
         return worth * LEFT_A_NAME_FACTOR if self._has_words and not reserves else worth
 
-    def _kept(self, outcomes: list[tuple[Candidate, Outcome]]) -> list[tuple[Candidate, int]]:
-        """The most worthwhile candidates, first those that let in no negatives."""
-        useful = self._diverse(outcomes)
+    def _kept(self, results: list[tuple[Candidate, TrialResult]]) -> list[tuple[Candidate, int]]:
+        """The most worthwhile candidates, first those that accept no negatives."""
+        useful = self._diverse(results)
         useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
         clean: list[tuple[Candidate, int]] = []
         costly: list[tuple[Candidate, int]] = []
         in_rule: Counter[str] = Counter()
-        judged = 0
+        scored = 0
         for candidate, _ in useful:
             rule = getattr(candidate.edits[-1], "rule", "")
             if in_rule[rule] >= KEPT_PER_RULE:
                 continue
-            negatives = self.judge(candidate.edits)
-            judged += 1
+            negatives = self.count_negatives(candidate.edits)
+            scored += 1
             in_rule[rule] += not negatives
             (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == (KEPT if self.thorough else KEPT_LIGHT) or judged == (
-                MOST_SCORED if self.thorough else MOST_SCORED_LIGHT
+            if len(clean) == (KEPT if self.is_thorough else KEPT_LIGHT) or scored == (
+                MOST_SCORED if self.is_thorough else MOST_SCORED_LIGHT
             ):
                 break
         return clean + costly[: KEPT - len(clean)]
 
     def _diverse(
-        self, outcomes: list[tuple[Candidate, Outcome]]
-    ) -> list[tuple[Candidate, Outcome]]:
+        self, results: list[tuple[Candidate, TrialResult]]
+    ) -> list[tuple[Candidate, TrialResult]]:
         """Candidates that do something; of those that do the same the most restrictive few."""
-        alike: dict[Outcome, list[tuple[Candidate, Outcome]]] = defaultdict(list)
-        for candidate, outcome in outcomes:
-            if outcome.mended or outcome.advanced:
-                alike[outcome].append((candidate, outcome))
+        alike: dict[TrialResult, list[tuple[Candidate, TrialResult]]] = defaultdict(list)
+        for candidate, result in results:
+            if result.mended or result.advanced:
+                alike[result].append((candidate, result))
         return [
             pair
             for same in alike.values()
@@ -280,8 +284,8 @@ class Search:
         alike = self._alike(lines[0])
         for p in proposals:
             wider = self.trial.wider(p.edits)
-            share = 0.0 if wider is None else self.whole.share(wider, lines)
-            worth[p.edits] = self._worth(p, p) * (LINE_WEIGHT + (1 - LINE_WEIGHT) * share)
+            readable_share = 0.0 if wider is None else self.file_trial.readable_share(wider, lines)
+            worth[p.edits] = self._worth(p, p) * (LINE_WEIGHT + (1 - LINE_WEIGHT) * readable_share)
             if p.mended.issuperset(alike):
                 worth[p.edits] *= ALL_ALIKE_FACTOR
             if self._loses(p.edits):

@@ -1,6 +1,6 @@
 """Git repositories as places to read files from: found as local mirrors, or fetched.
 
-Only git itself is asked, as a child process, and only for objects: nothing is checked out, no hook
+Only git itself is run, as a child process, and only for objects: nothing is checked out, no hook
 or filter of a repository runs, and git never asks for a password.
 """
 
@@ -37,14 +37,14 @@ _SETTINGS = (
     "-c",
     "credential.helper=",  # the repositories are public: never ask, never open a window
     "-c",
-    "http.lowSpeedLimit=1000",  # a transfer that stands still ends, after this many
+    "http.lowSpeedLimit=1000",  # a stalled transfer ends, after this many
     "-c",
     "http.lowSpeedTime=60",  # seconds
 )
 
 
 class GitError(Exception):
-    """Git is missing or did not do what was asked; the text is one line for a person."""
+    """Git is missing or did not do what was asked; the text is one readable line."""
 
 
 class RefusedError(GitError):
@@ -209,5 +209,5 @@ def _environment() -> dict[str, str]:
     return kept | {
         "GIT_NO_LAZY_FETCH": "1",  # a partial mirror must not go out to the network
         "GIT_TERMINAL_PROMPT": "0",
-        "LC_ALL": "C",  # refusals are told by their English words
+        "LC_ALL": "C",  # refusals are recognised by their English words
     }

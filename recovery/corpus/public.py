@@ -2,7 +2,7 @@
 
 `corpus/sources.toml` names the repositories, each with its pinned commit and licence;
 `corpus/checksums.tsv` names their KRL files. The files themselves belong to other people. They are
-fetched by whoever wants to read them and never become part of this project. A file is taken only
+fetched by users who want to read them and never become part of this project. A file is taken only
 where its SHA-256 is the listed one, so that everybody measures the same corpus.
 """
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from grammar.notation.model import Grammar
-from recovery.growth.growth import Steps
+from recovery.growth.growth import LedgerSteps
 from recovery.growth.timeline import Content, Timeline, read_through
 from recovery.ledger.construct_record import construct_record
 from recovery.records import ClusterRecord, ConstructRecord
@@ -31,7 +31,7 @@ class Answers(TypedDict):
 def answered(
     clusters: Sequence[ClusterRecord],
     found: Survey,
-    steps: Steps,
+    steps: LedgerSteps,
     *,
     jobs: int | None = None,
     cache: Path | None = None,
@@ -55,25 +55,27 @@ def answered(
         contents, grammars, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
     )
     by_path = {line.content.path: line for line in read}
-    told: list[ClusterRecord] = []
+    answered_clusters: list[ClusterRecord] = []
     answers: set[int] = set()
     for cluster in clusters:
         number = _answer(_lines(cluster), by_path, len(steps))
-        told.append({**cluster, "answered_by": steps[number - 1][0].id if number else None})
+        answered_clusters.append(
+            {**cluster, "answered_by": steps[number - 1][0].id if number else None}
+        )
         if number:
             answers.add(number)
     return {
-        "clusters": told,
+        "clusters": answered_clusters,
         "constructs": [_record(grammars, steps, number) for number in sorted(answers)],
     }
 
 
-def _record(grammars: Sequence[Grammar], steps: Steps, number: int) -> ConstructRecord:
+def _record(grammars: Sequence[Grammar], steps: LedgerSteps, number: int) -> ConstructRecord:
     return construct_record(steps[number - 1][0], grammars[number - 1], grammars[number])
 
 
 def _lines(cluster: ClusterRecord) -> list[tuple[str, int]]:
-    """Path and number of the lines that stand for a cluster."""
+    """Path and number of the example lines of a cluster."""
     return [(e["path"], e["line"]) for e in (cluster["example"], *cluster["examples"])]
 
 

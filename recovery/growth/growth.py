@@ -1,4 +1,4 @@
-"""The growth of the grammar, told over a corpus: what each construct of the ledger brought.
+"""The growth of the grammar over a corpus: what each construct of the ledger brought.
 
 The ledger is replayed from the restrictive start; after each accepted construct the corpus is read
 and the grammar measured. The record is exact: it holds what surveys under all these grammars would
@@ -27,10 +27,10 @@ from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Steps", "growth"]
+__all__ = ["LedgerSteps", "growth"]
 
 #: Each construct with the grammar after it, as `recovery.ledger.ledger.replay` gives them.
-Steps = Sequence[tuple[Construct, Grammar]]
+LedgerSteps = Sequence[tuple[Construct, Grammar]]
 
 _FILES_NAMED = 100
 
@@ -38,7 +38,7 @@ _FILES_NAMED = 100
 def growth(
     roots: Sequence[Path],
     start: Grammar,
-    steps: Steps,
+    steps: LedgerSteps,
     *,
     jobs: int | None = None,
     cache: Path | None = None,
@@ -71,7 +71,7 @@ def growth(
 
 
 def _digest(
-    read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: Steps
+    read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: LedgerSteps
 ) -> str:
     """What the record depends on besides the code."""
     code = hashlib.sha256(start.sha256.encode())
@@ -85,7 +85,7 @@ def _digest(
 
 
 def _record(
-    read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: Steps
+    read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: LedgerSteps
 ) -> GrowthRecord:
     files = [line for line in read if not line.reason]
     last = steps[-1][1] if steps else start
@@ -129,7 +129,7 @@ def _skipped(skipped: Sequence[Skipped], read: Sequence[Timeline]) -> list[Skipp
 # ---------------------------------------------------------------------------------- the steps
 
 
-def _steps(files: Sequence[Timeline], start: Grammar, steps: Steps) -> Iterator[StepRecord]:
+def _steps(files: Sequence[Timeline], start: Grammar, steps: LedgerSteps) -> Iterator[StepRecord]:
     total = sum(len(f.content.places) for f in files)
     size = _bytes(f.content for f in files)
     failing = _failing_lines(files, len(steps) + 1)

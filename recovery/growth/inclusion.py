@@ -1,8 +1,8 @@
 """Does a grammar only add to another? Then what parsed under the one parses under the other.
 
 Proved, not guessed: every rule of the old grammar is in the new one and may still be what it was,
-so each derivation of the old one is a derivation of the new one, token by token. What that cannot
-tell is whether a text is still cut into the same tokens; new tokens of fixed text can change that
+so each derivation of the old one is a derivation of the new one, token by token. That does not
+show whether a text is still cut into the same tokens; new tokens of fixed text can change that
 only where their text occurs.
 """
 

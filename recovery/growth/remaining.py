@@ -44,7 +44,7 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
     ``fact`` of a file is a fact that no KRL program breaks (`recovery.negatives.language_facts`)
     and this one does, at ``fact_line``: the file is no valid KRL, whatever the grammar. It is empty
     where none is known. ``kind`` is invalid, template, damaged or waiting (for the verdict on a
-    construct), and ``reason`` says why: by a person for files of the public corpus, else by the
+    construct), and ``reason`` says why: written by hand for files of the public corpus, else by the
     broken fact. Both are empty where nothing is known.
     """
     finder = FailureFinder(Recognizer(grammar))

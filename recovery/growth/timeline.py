@@ -108,13 +108,13 @@ def read_through(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> list[Timeline]:
-    """Read each content under each of the grammars; the timelines stand in the given order.
+    """Read each content under each of the grammars; the timelines come in the given order.
 
     ``jobs`` is the number of processes, by default one a core, or one for little. ``cache`` is the
-    folder where results are kept by content and grammar. ``on_found`` is told how many readings
+    folder where results are kept by content and grammar. ``on_found`` gets how many readings
     there are to do (a content under a grammar is one), ``on_done`` how many more are done.
 
-    A content that has changed since it was found is told as no KRL, with that reason.
+    A content that has changed since it was found is reported as no KRL, with that reason.
     """
     if not grammars:
         raise ValueError("there is no grammar to read under")
@@ -147,7 +147,7 @@ def read_through(
 
 
 def _store(cache: Path | None, start: Grammar) -> AbstractContextManager[ResultStore | None]:
-    """Results hang on the first grammar of the row, which is the one that seldom changes."""
+    """Results are kept under the first grammar of the row, which is the one that seldom changes."""
     return nullcontext() if cache is None else ResultStore(cache, key_of(start))
 
 
@@ -197,7 +197,7 @@ def _key(content: Content) -> str:
 
 
 def _recalled(store: ResultStore | None, content: Content, names: Sequence[str]) -> _Known:
-    """What was found under these grammars before, in whatever row they stood."""
+    """What was found under these grammars before, whatever the others of the row."""
     kept = store.get_record(_key(content)) if store is not None else None
     if kept is None:
         return _Known({}, "", tuple(range(len(names))))

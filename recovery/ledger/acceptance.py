@@ -1,6 +1,6 @@
 """Acceptance: constructs taken into the grammar, all of them or none.
 
-The constructs are put behind those accepted before, each is weighed at its place, and only when
+The constructs are put behind those accepted before, each is evaluated at its place, and only when
 nothing speaks against any of them are the ledger, the grammar and its generated parser written.
 """
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from grammar.notation.generate import generate
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.ledger.baseline import Corpora, Standing
+from recovery.ledger.baseline import Corpora, GrammarMeasurement
 from recovery.ledger.construct import ACCEPTED, Construct, LedgerError
 from recovery.ledger.construct_file import text_of
 from recovery.ledger.evaluation import Evaluation, evaluate, losses
@@ -22,12 +22,12 @@ from recovery.ledger.regeneration import Generator, parser_of
 from support.files.atomic_write import write_together
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Acceptance", "Home", "Refused", "enter", "write"]
+__all__ = ["Acceptance", "AcceptanceRefused", "GrammarPaths", "prepare", "write"]
 
 
 @dataclass(frozen=True, slots=True)
-class Home:
-    """Where a grammar lives: the restrictive start, the grammar, its parser, its ledger."""
+class GrammarPaths:
+    """The files of a grammar: the restrictive start, the grammar, its parser, its ledger."""
 
     preliminary: Path
     grammar: Path
@@ -35,7 +35,7 @@ class Home:
     ledger: Path
 
 
-class Refused(Exception):
+class AcceptanceRefused(Exception):
     """Something speaks against an acceptance; ``refusals`` are pairs of where and why."""
 
     def __init__(self, refusals: Sequence[tuple[str, str]]) -> None:
@@ -45,7 +45,7 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """The ledger as it would be, the grammar it gives, and how the constructs given were weighed.
+    """The ledger as it would be, the grammar it gives, and the evaluations of the constructs given.
 
     ``constructs`` are those of the whole ledger, in order; ``file`` of each says where it lay so
     far. ``refusals`` are pairs of where and why, those of the evaluations included; without any the
@@ -64,7 +64,7 @@ class Acceptance:
         return tuple(refusal for refusal in self.refusals if refusal not in known)
 
 
-def enter(
+def prepare(
     given: Sequence[Construct],
     preliminary: Grammar,
     ledger: Ledger,
@@ -72,13 +72,14 @@ def enter(
     current: Grammar | None = None,
     on_done: Progress = no_progress,
 ) -> Acceptance:
-    """Weigh constructs, in order, as what the grammar takes in next; nothing is written.
+    """Evaluate constructs, in order, as the next to be accepted; nothing is written.
 
-    What was accepted before keeps its place and is weighed there again. ``current`` is the grammar
-    in force, where it matters what becomes of it. ``on_done`` is told of each construct weighed.
+    What was accepted before keeps its place and is evaluated there again. ``current`` is the
+    grammar in force, where it matters what becomes of it. ``on_done`` gets each construct
+    evaluated.
 
     Raises `LedgerError` where the grammar in force is not that of the ledger, unless a construct is
-    weighed again, and `support.files.discovery.IngestError` where a corpus cannot be read.
+    evaluated again, and `support.files.discovery.IngestError` where a corpus cannot be read.
     """
     is_again = any(_is_in(construct, ledger.accepted) for construct in given)
     if current and not is_again and in_force(preliminary, ledger.accepted).text != current.text:
@@ -90,24 +91,24 @@ def enter(
     asked = {c.file for c in given}
     refusals: list[tuple[str, str]] = []
     evaluations: list[Evaluation] = []
-    grammar, known = preliminary, _Known(corpora)
+    grammar, known = preliminary, _LastMeasurement(corpora)
     for place, construct in enumerate(order):
         if not construct.is_accepted and construct.file not in asked:
             continue
         try:
             wider = grown(grammar, construct)
-        except LedgerError as error:  # what comes after it has no grammar to stand on
+        except LedgerError as error:  # there is no grammar for what comes after it
             refusals.append((construct.id, str(error)))
             return Acceptance(tuple(order), tuple(evaluations), grammar, tuple(refusals))
         if construct.file in asked:
-            found = evaluate(construct, known.standing(grammar), known.standing(wider))
+            found = evaluate(construct, known.measure(grammar), known.measure(wider))
             evaluations.append(found)
             refusals += ((construct.id, why) for why in found.refusals)
             order[place] = replace(found.construct, state=ACCEPTED, comment="")
             on_done(1)
         grammar = wider
     if is_again and current:  # what was changed in the middle must not undo what came after it
-        final, now = known.standing(grammar), corpora.standing(current)
+        final, now = known.measure(grammar), corpora.measure(current)
         refusals += (("in the end", why) for why in losses(now, final))
     recognizer = Recognizer(grammar)
     refusals += (
@@ -120,16 +121,16 @@ def enter(
     return Acceptance(tuple(order), tuple(evaluations), grammar, tuple(refusals))
 
 
-class _Known:
-    """How the last grammar stood: the next construct begins with it."""
+class _LastMeasurement:
+    """The measurement of the last grammar: the next construct begins with it."""
 
     def __init__(self, corpora: Corpora) -> None:
         self._corpora = corpora
-        self._last: Standing | None = None
+        self._last: GrammarMeasurement | None = None
 
-    def standing(self, grammar: Grammar) -> Standing:
+    def measure(self, grammar: Grammar) -> GrammarMeasurement:
         if self._last is None or self._last.grammar.text != grammar.text:
-            self._last = self._corpora.standing(grammar)
+            self._last = self._corpora.measure(grammar)
         return self._last
 
 
@@ -149,18 +150,21 @@ def _ordered(given: Sequence[Construct], ledger: Ledger) -> list[Construct]:
 # ------------------------------------------------------------------------------------ writing
 
 
-def write(acceptance: Acceptance, home: Home, generator: Generator = generate) -> list[Path]:
+def write(
+    acceptance: Acceptance, home: GrammarPaths, generator: Generator = generate
+) -> list[Path]:
     """Write ledger, grammar and parser, all or nothing; returns the files that have changed.
 
-    Raises `Refused` where something speaks against it or ANTLR's parser does not treat the examples
-    as they ask for, `grammar.notation.generate.GenerationError` where there is none, and `OSError`.
+    Raises `AcceptanceRefused` where something speaks against it or ANTLR's parser does not treat
+    the examples as they ask for, `grammar.notation.generate.GenerationError` where there is none,
+    and `OSError`.
     """
     if acceptance.refusals:
-        raise Refused(acceptance.refusals)
+        raise AcceptanceRefused(acceptance.refusals)
     accepted = [c for c in acceptance.constructs if c.is_accepted]
     parser, disagreements = parser_of(acceptance.grammar, home.generated, accepted, generator)
     if disagreements:
-        raise Refused(disagreements)
+        raise AcceptanceRefused(disagreements)
     asked = {e.construct.file for e in acceptance.evaluations}
     changes: dict[Path, bytes | None] = {c.file: None for c in acceptance.constructs if c.file}
     for construct in acceptance.constructs:

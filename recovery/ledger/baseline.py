@@ -1,7 +1,7 @@
-"""How a grammar stands: what it reads of the corpora, and which negatives it lets in.
+"""Measurement of a grammar: what it reads of the corpora, and which negatives it accepts.
 
-Two grammars that differ by one construct are compared by how they stand
-(`recovery.ledger.evaluation`), so a row of constructs costs one reading of the corpora each.
+Two grammars that differ by one construct are compared by their measurements
+(`recovery.ledger.evaluation`), so a series of constructs costs one reading of the corpora each.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from recovery.survey.survey import Survey, survey
 from support.files.decode import decode
 from support.files.discovery import Found, Skipped, discover, read
 
-__all__ = ["Corpora", "Standing"]
+__all__ = ["Corpora", "GrammarMeasurement"]
 
 # What `recovery.negatives.language_facts` takes for more than a name.
 _KEYWORDS = (
@@ -36,18 +36,18 @@ _SEED = 2010
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class GrammarMeasurement:
     """A grammar, the surveys under it, and the negatives that it accepts.
 
     ``evidence`` is the survey of other people's files and ``own`` that of our programs; ``None``
-    where there are none here. ``let_in`` leaves out what the grammar cannot judge yet: a program
-    with a keyword that is still a name to it.
+    where there are none here. ``accepted_negatives`` leaves out what the grammar cannot reject yet:
+    a program with a keyword that is still a name to it.
     """
 
     recognizer: Recognizer
     evidence: Survey | None
     own: Survey | None
-    let_in: frozenset[Negative]
+    accepted_negatives: frozenset[Negative]
 
     @property
     def grammar(self) -> Grammar:
@@ -83,7 +83,7 @@ class Corpora:
         made = generate(list(_texts(own)), count=generated, seed=_SEED)
         self._negatives = NegativeSet((*negatives, *made))
 
-    def standing(self, grammar: Grammar) -> Standing:
+    def measure(self, grammar: Grammar) -> GrammarMeasurement:
         """Read everything under a grammar; raises `support.files.discovery.IngestError`."""
         recognizer = Recognizer(grammar)
         own = self._survey([self._own] if self._own else [], grammar)
@@ -92,9 +92,9 @@ class Corpora:
             ours = {file.digest for file in own.files}
             others = tuple(file for file in evidence.files if file.digest not in ours)
             evidence = replace(evidence, files=others)
-        return Standing(recognizer, evidence, own, frozenset(self._let_in(recognizer)))
+        return GrammarMeasurement(recognizer, evidence, own, frozenset(self._accepted(recognizer)))
 
-    def _let_in(self, recognizer: Recognizer) -> Iterator[Negative]:
+    def _accepted(self, recognizer: Recognizer) -> Iterator[Negative]:
         lexer = recognizer.lexer
         names = {word for word in _KEYWORDS if not lexer.is_keyword(lexer.kinds[word])}
         for negative in self._negatives.accepted(recognizer):

@@ -57,7 +57,7 @@ class Evidence:
 
     @property
     def objection(self) -> str:
-        """Why it does not let a construct into the grammar; empty where it does."""
+        """Why it does not suffice for a construct to be accepted; empty where it does."""
         if self.verdict.startswith(_REFUSED):
             return f"the oracle refused it: {self.verdict.removeprefix(_REFUSED).strip()}"
         if self.grounds:
@@ -85,8 +85,9 @@ class Effect:
 
     ``files`` to ``parsed_bytes`` are of the evidence corpus, copies included, and ``restores`` the
     files that parse with the construct and did not without; ``own_files`` and ``own_parsed`` are of
-    ``corpus/programs``. ``negatives`` is how many it let in, ``ambiguities`` how many of the texts
-    it lets be read have two readings. ``metrics`` are those of `recovery.ledger.metrics`.
+    ``corpus/programs``. ``negatives`` is how many of them it accepts, ``ambiguities`` how many of
+    the texts that can newly be read have two readings. ``metrics`` are those of
+    `recovery.ledger.metrics`.
     """
 
     files: int = 0
@@ -134,6 +135,6 @@ class Construct:
         return self.state == ACCEPTED
 
     @property
-    def standing(self) -> str:
-        """The state that its evidence gives it while it is neither accepted nor rejected."""
+    def earned_state(self) -> str:
+        """The state that its evidence earns while it is neither accepted nor rejected."""
         return (PROPOSED, *self.evidence.grounds)[-1]

@@ -27,8 +27,8 @@ _FIGURES = {
 def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) -> Path:
     """Write proposal ``number`` (from 1) of a cluster of a survey record into ``folder``.
 
-    ``cluster`` is an ID or its beginning. What the survey found out about the proposal stands in
-    the comment at the head of the file. Returns the new file; one that exists is never replaced.
+    ``cluster`` is an ID or its beginning. What the survey found out about the proposal is in the
+    comment at the head of the file. Returns the new file; one that exists is never replaced.
     Raises `LedgerError`.
     """
     chosen = _cluster(record, cluster)
@@ -67,7 +67,7 @@ def _cluster(record: Mapping[str, Any], wanted: str) -> Mapping[str, Any]:
 def _construct(
     record: Mapping[str, Any], cluster: Mapping[str, Any], proposal: Mapping[str, Any]
 ) -> Construct:
-    """The proposal as a construct without an effect: a survey is no weighing."""
+    """The proposal as a construct without an effect: a survey is no evaluation."""
     reproducer = cluster["reproducer"]
     seen = [
         f"{place(file['path'], origin['origin'])}:{file['line']}"
@@ -84,7 +84,7 @@ def _construct(
         accept=(str(reproducer["text"]),) if reproducer else (),
         comment=_comment(record, cluster, proposal),
     )
-    return replace(found, state=found.standing)
+    return replace(found, state=found.earned_state)
 
 
 def _comment(

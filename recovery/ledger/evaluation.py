@@ -1,4 +1,4 @@
-"""A construct weighed: what it brings, what it costs, and why it may not enter the grammar."""
+"""Evaluation of a construct: what it brings, what it costs, and why it may not be accepted."""
 
 from __future__ import annotations
 
@@ -6,15 +6,23 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.derivation import Deriver, Steps
+from grammar.parser.recognizer import Recognizer
 from grammar.parser.shortest_paths import Paths
-from recovery.ledger.baseline import Standing
+from recovery.ledger.baseline import GrammarMeasurement
 from recovery.ledger.construct import ACCEPTED, REJECTED, Construct, Effect
-from recovery.ledger.derivation import reading
-from recovery.ledger.evidence import Mended, broken, counted, mended, place, restored
+from recovery.ledger.evidence import (
+    RestoredLine,
+    broken_files,
+    place,
+    restored_files,
+    restored_lines,
+    with_counts,
+)
 from recovery.ledger.ledger import broken_examples, is_wording
 from recovery.ledger.metrics import metrics
 from recovery.negatives.negatives import Negative
-from recovery.survey.failing_line import Failed
+from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import Survey, SurveyedFile
 
 __all__ = ["Evaluation", "evaluate", "losses"]
@@ -43,18 +51,20 @@ class Evaluation:
         construct = self.construct
         if construct.state in (ACCEPTED, REJECTED):
             return construct
-        return replace(construct, state=construct.standing, effect=None)
+        return replace(construct, state=construct.earned_state, effect=None)
 
 
-def evaluate(construct: Construct, before: Standing, after: Standing) -> Evaluation:
-    """Weigh a construct by how the grammars without and with it stand."""
-    lines: list[Mended] = []
+def evaluate(
+    construct: Construct, before: GrammarMeasurement, after: GrammarMeasurement
+) -> Evaluation:
+    """Evaluate a construct by the measurements of the grammars without and with it."""
+    lines: list[RestoredLine] = []
     evidence = construct.evidence
     if before.evidence is not None and after.evidence is not None:
-        lines = mended(before.evidence, after.evidence)
-        evidence = counted(evidence, lines)
+        lines = restored_lines(before.evidence, after.evidence)
+        evidence = with_counts(evidence, lines)
     if before.own is not None and after.own is not None:
-        lines = lines + mended(before.own, after.own)
+        lines = lines + restored_lines(before.own, after.own)
     effect = _effect(construct, before, after, _ambiguities(construct, before, after, lines))
     measured = replace(construct, evidence=evidence, effect=effect)
     return Evaluation(
@@ -65,7 +75,9 @@ def evaluate(construct: Construct, before: Standing, after: Standing) -> Evaluat
 # ----------------------------------------------------------------------------------- refusals
 
 
-def _refusals(construct: Construct, before: Standing, after: Standing) -> Iterator[str]:
+def _refusals(
+    construct: Construct, before: GrammarMeasurement, after: GrammarMeasurement
+) -> Iterator[str]:
     if construct.state == REJECTED:
         yield "the ledger rejects it; its summary says why"
     yield from losses(before, after)
@@ -77,43 +89,65 @@ def _refusals(construct: Construct, before: Standing, after: Standing) -> Iterat
     if not construct.accept:
         yield "examples.accept: there is no program that shows it"
     for number, text in enumerate(construct.accept, 1):
-        known = reading(before.recognizer, text)
-        if known is not None and known == reading(after.recognizer, text):
+        known = _reading(before.recognizer, text)
+        if known is not None and known == _reading(after.recognizer, text):
             yield f"examples.accept: number {number} is read the same way without the construct"
 
 
-def losses(before: Standing, after: Standing) -> Iterator[str]:
+#: Each token by its name, with the rules that begin and end before it.
+_Reading = tuple[tuple[Steps, str], ...]
+
+
+def _reading(recognizer: Recognizer, text: str) -> _Reading | None:
+    """How a program is read; ``None`` where the text is no program.
+
+    Another keyword or other rules are another reading; the order of alternatives in a rule is not.
+    """
+    kinds = recognizer.kinds(text)
+    if recognizer.run(recognizer.start, kinds)[1] is not None:
+        return None
+    deriver = Deriver(recognizer.grammar, recognizer.lexer)
+    found = deriver.derive(kinds)
+    if found is None:
+        return None
+    actions = (deriver.actions[number] for number in found.actions)
+    return tuple((action.steps, recognizer.lexer.names[action.kind]) for action in actions)
+
+
+def losses(before: GrammarMeasurement, after: GrammarMeasurement) -> Iterator[str]:
     """What the first grammar did rightly and the second does not: a line each."""
     for survey, other in ((before.evidence, after.evidence), (before.own, after.own)):
         if survey is not None and other is not None:
-            yield from _breaks(broken(survey, other))
-    yield from _let_in(after.let_in - before.let_in)
+            yield from _breaks(broken_files(survey, other))
+    yield from _newly_accepted(after.accepted_negatives - before.accepted_negatives)
 
 
-def _breaks(found: Sequence[tuple[SurveyedFile, Failed]]) -> Iterator[str]:
+def _breaks(found: Sequence[tuple[SurveyedFile, FailingLine]]) -> Iterator[str]:
     for file, failed in found[:_NAMED]:
         yield f"no longer parses: {place(*file.places[0])}:{failed.line}, at {failed.token!r}"
     if len(found) > _NAMED:
         yield f"no longer parse: {len(found) - _NAMED} more files"
 
 
-def _let_in(negatives: Iterable[Negative]) -> Iterator[str]:
+def _newly_accepted(negatives: Iterable[Negative]) -> Iterator[str]:
     written = sorted((n for n in negatives if n.path), key=lambda n: str(n.path))
     made = sorted((n for n in negatives if not n.path), key=lambda n: (len(n.text), n.text))
     for negative in written:
         assert negative.path is not None
-        yield f"lets in a negative: {negative.path.as_posix()}: {negative.reason}"
+        yield f"accepts a negative: {negative.path.as_posix()}: {negative.reason}"
     for fact in sorted({n.reason for n in made}):
         breaking = [n for n in made if n.reason == fact]
         more = f" (and {len(breaking) - 1} more)" if len(breaking) > 1 else ""
         shortest = breaking[0].text.rstrip("\n").replace("\n", " ⏎ ")
-        yield f"lets in what breaks a fact{more}: {fact}: {shortest}"
+        yield f"accepts what breaks a fact{more}: {fact}: {shortest}"
 
 
 # ------------------------------------------------------------------------------------- effect
 
 
-def _effect(construct: Construct, before: Standing, after: Standing, ambiguities: int) -> Effect:
+def _effect(
+    construct: Construct, before: GrammarMeasurement, after: GrammarMeasurement, ambiguities: int
+) -> Effect:
     old = construct.effect or Effect()
     if before.evidence is not None and after.evidence is not None:
         old = replace(
@@ -122,14 +156,14 @@ def _effect(construct: Construct, before: Standing, after: Standing, ambiguities
             parsed=_places(_parsed(after.evidence)),
             bytes=_bytes(after.evidence.files),
             parsed_bytes=_bytes(_parsed(after.evidence)),
-            restores=_places(restored(before.evidence, after.evidence)),
+            restores=_places(restored_files(before.evidence, after.evidence)),
         )
     own = after.own
     return replace(
         old,
         own_files=0 if own is None else _places(own.files),
         own_parsed=0 if own is None else _places(_parsed(own)),
-        negatives=len(after.let_in - before.let_in),
+        negatives=len(after.accepted_negatives - before.accepted_negatives),
         ambiguities=ambiguities,
         metrics=dict(metrics(after.grammar)),
     )
@@ -151,7 +185,10 @@ def _bytes(files: Iterable[SurveyedFile]) -> int:
 
 
 def _ambiguities(
-    construct: Construct, before: Standing, after: Standing, lines: Sequence[Mended]
+    construct: Construct,
+    before: GrammarMeasurement,
+    after: GrammarMeasurement,
+    lines: Sequence[RestoredLine],
 ) -> int:
     """Of the accept examples and the lines that can now be read, those with two readings."""
     wider = after.recognizer

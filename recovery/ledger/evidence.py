@@ -1,4 +1,4 @@
-"""Evidence: the lines of real files that a construct lets be read.
+"""Evidence: the lines of real files that can be read with a construct.
 
 A line counts where it failed by itself under the grammar before the construct and does not fail
 under the grammar after it. A construct that lies behind others on the same line is so counted when
@@ -15,27 +15,34 @@ from itertools import islice, zip_longest
 
 from grammar.parser.failures import Form
 from recovery.ledger.construct import Evidence
-from recovery.survey.failing_line import Failed
+from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import Survey, SurveyedFile
 
-__all__ = ["Mended", "broken", "counted", "mended", "place", "restored"]
+__all__ = [
+    "RestoredLine",
+    "broken_files",
+    "place",
+    "restored_files",
+    "restored_lines",
+    "with_counts",
+]
 
 _PLACES_SEEN = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Mended:
+class RestoredLine:
     """A line that failed by itself and no longer fails: its file, and how it failed."""
 
     file: SurveyedFile
-    failed: Failed
+    failed: FailingLine
     form: Form
 
 
-def mended(before: Survey, after: Survey) -> list[Mended]:
+def restored_lines(before: Survey, after: Survey) -> list[RestoredLine]:
     """The lines that fail in the survey ``before`` and not in that ``after``, each content once."""
     return [
-        Mended(old, failed, before.forms[failed.form])
+        RestoredLine(old, failed, before.forms[failed.form])
         for old, new in _pairs(before, after)
         if old.failures
         for still in ({failed.line for failed in new.failures},)
@@ -44,12 +51,12 @@ def mended(before: Survey, after: Survey) -> list[Mended]:
     ]
 
 
-def restored(before: Survey, after: Survey) -> list[SurveyedFile]:
+def restored_files(before: Survey, after: Survey) -> list[SurveyedFile]:
     """The files that parse only in the survey ``after``."""
     return [new for old, new in _pairs(before, after) if old.failures and not new.failures]
 
 
-def broken(before: Survey, after: Survey) -> list[tuple[SurveyedFile, Failed]]:
+def broken_files(before: Survey, after: Survey) -> list[tuple[SurveyedFile, FailingLine]]:
     """The files that parse only in the survey ``before``, each with its first failure after it."""
     return [
         (new, new.failures[0])
@@ -64,7 +71,7 @@ def _pairs(before: Survey, after: Survey) -> Iterator[tuple[SurveyedFile, Survey
     return ((old, known[old.digest]) for old in before.files if old.digest in known)
 
 
-def counted(evidence: Evidence, lines: Sequence[Mended]) -> Evidence:
+def with_counts(evidence: Evidence, lines: Sequence[RestoredLine]) -> Evidence:
     """The evidence with its counts and places replaced by those of mended lines."""
     files = {line.file.digest: line.file for line in lines}
     origins = {origin for file in files.values() for _, origin in file.places}
@@ -77,7 +84,7 @@ def counted(evidence: Evidence, lines: Sequence[Mended]) -> Evidence:
     )
 
 
-def _seen(lines: Iterable[Mended]) -> list[str]:
+def _seen(lines: Iterable[RestoredLine]) -> list[str]:
     """The first places, spread over the origins first, then over the files of each."""
     by_file: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for line in lines:
@@ -95,7 +102,7 @@ def _in_turns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
 def place(path: str, origin: str) -> str:
     """Where a file lies within its origin, the origin's folder first.
 
-    Nothing of the folders around the origin is told: they are one person's machine.
+    The folders around the origin are left out: they belong to one machine.
     """
     folders = path.split("/")
     for index, folder in enumerate(folders[:-1]):

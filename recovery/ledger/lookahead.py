@@ -1,4 +1,4 @@
-"""Lookahead cost: how many tokens tell a parser which way a rule goes on.
+"""Lookahead: how many tokens a parser needs to decide how a rule goes on.
 
 A *decision* is a place in a rule where its text leaves a choice: alternatives, or an element with
 ``?``, ``*`` or ``+``. One token decides it when no token can begin two of its branches; two do when
@@ -27,7 +27,7 @@ from grammar.notation.model import (
 
 __all__ = ["Decision", "decisions", "share_decided"]
 
-#: Tokens looked at; what more would be needed for is not told apart.
+#: Tokens looked at; decisions that need more are not distinguished.
 _FARTHEST = 2
 _WIDEST = 60
 

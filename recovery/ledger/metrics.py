@@ -1,10 +1,9 @@
-"""Metrics of a grammar: how big it is and how it hangs together.
+"""Metrics of a grammar: its size and its structure.
 
 They are those of Power and Malloy, "A metrics suite for grammar-based software" (Journal of
 Software Maintenance and Evolution, 2004), read for rules with ``|``, ``?``, ``*`` and ``+``, and
 what a parser needs to look ahead (`recovery.ledger.lookahead`). Only parser rules count: a token is
-a
-terminal here, however its own rule is written. ``EOF`` is no symbol.
+a terminal here, however its own rule is written. ``EOF`` is no symbol.
 """
 
 from __future__ import annotations

@@ -16,19 +16,19 @@ from pathlib import Path
 from typing import Protocol
 
 from recovery.ledger.construct import ACCEPTED, REJECTED, Construct
-from recovery.negatives.tokens import Line, lines
+from recovery.negatives.tokens import SourceLine, lines
 
 __all__ = [
-    "Answer",
     "CommandOracle",
-    "Judged",
     "Oracle",
+    "OracleAnswer",
     "OracleError",
-    "Program",
+    "OracleVerdict",
+    "TestProgram",
     "as_bytes",
-    "judged",
     "programs_of",
     "reason_to_ask",
+    "verdict_on",
 ]
 
 _HEADS = frozenset({"DEF", "DEFFCT", "DEFDAT"})
@@ -40,7 +40,7 @@ class OracleError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class TestProgram:
     """An example of a construct as a module of its own.
 
     ``name`` is at most 24 characters and the name of its first routine or data list, as a
@@ -62,7 +62,7 @@ class Program:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class OracleAnswer:
     """What an oracle said about a program; the message is that of a refusal."""
 
     is_accepted: bool
@@ -70,11 +70,11 @@ class Answer:
 
 
 class Oracle(Protocol):
-    """Anything that can be asked about a program. ``name`` says what it is, and whose answer."""
+    """Anything that accepts or refuses a program. ``name`` says what it is, and whose answer."""
 
     name: str
 
-    def ask(self, program: Program) -> Answer | None:
+    def ask(self, program: TestProgram) -> OracleAnswer | None:
         """The answer; ``None`` where this oracle has none for the program. Raises `OracleError`."""
         ...
 
@@ -92,7 +92,7 @@ class CommandOracle:
         self._command = tuple(command)
         self._timeout = timeout
 
-    def ask(self, program: Program) -> Answer:
+    def ask(self, program: TestProgram) -> OracleAnswer:
         """Run the command in a folder of its own that holds the program and nothing else."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, program.file_name)
@@ -118,20 +118,20 @@ class CommandOracle:
             raise OracleError(
                 f"{self.name}: status {run.returncode} on {path.name} is no answer: {message}"
             )
-        return Answer(run.returncode == 0, message or "without a message")
+        return OracleAnswer(run.returncode == 0, message or "without a message")
 
 
 # ----------------------------------------------------------------------------- test programs
 
 
-def programs_of(construct: Construct) -> tuple[Program, ...]:
+def programs_of(construct: Construct) -> tuple[TestProgram, ...]:
     """The examples of a construct as modules, ``C0012_1`` and so on, those to accept first."""
     out = []
     for place, text in enumerate((*construct.accept, *construct.reject), 1):
-        name = f"C{construct.number or 0:04}_{place}"  # does not tell what is expected
+        name = f"C{construct.number or 0:04}_{place}"  # does not show what is expected
         digest = hashlib.sha256(text.encode()).hexdigest()
         is_accept = place <= len(construct.accept)
-        out.append(Program(name, _renamed(text, name), digest, construct.id, is_accept))
+        out.append(TestProgram(name, _renamed(text, name), digest, construct.id, is_accept))
     return tuple(out)
 
 
@@ -145,7 +145,7 @@ def _renamed(text: str, name: str) -> str:
     return "\n".join(_with(line, old, name) for line in found)
 
 
-def _name_in(head: Line) -> str:
+def _name_in(head: SourceLine) -> str:
     """The name a head gives: before its parenthesis, or the first one; empty where none is."""
     kinds = head.kinds
     end = kinds.index("(") if "(" in kinds else len(kinds)
@@ -156,7 +156,7 @@ def _name_in(head: Line) -> str:
     return names[0] if head.lead == "DEFDAT" else names[-1]
 
 
-def _with(line: Line, old: str, new: str) -> str:
+def _with(line: SourceLine, old: str, new: str) -> str:
     text = line.text
     for token in reversed(line.tokens):
         if token.word == old:
@@ -164,7 +164,7 @@ def _with(line: Line, old: str, new: str) -> str:
     return text
 
 
-def as_bytes(program: Program) -> bytes:
+def as_bytes(program: TestProgram) -> bytes:
     """The file as a controller holds it: CRLF, and cp1252 where that can say it."""
     text = program.text.replace("\r\n", "\n").replace("\n", "\r\n")
     try:
@@ -180,7 +180,7 @@ def reason_to_ask(construct: Construct) -> str:
     """Why an oracle should be asked about a construct; empty where none need be.
 
     What two origins show needs no oracle. A rule or a manual alone is worth a question: it may be
-    told from memory, or of another release.
+    said from memory, or of another release.
     """
     evidence = construct.evidence
     if construct.state == REJECTED or evidence.verdict or evidence.origins >= 2:
@@ -194,7 +194,7 @@ def reason_to_ask(construct: Construct) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class OracleVerdict:
     """A construct with the verdict of an oracle.
 
     ``unanswered`` is how many of its programs have no answer yet; ``findings`` say where the oracle
@@ -206,7 +206,7 @@ class Judged:
     findings: tuple[str, ...]
 
 
-def judged(construct: Construct, oracle: Oracle) -> Judged:
+def verdict_on(construct: Construct, oracle: Oracle) -> OracleVerdict:
     """Ask an oracle about all examples of a construct.
 
     The verdict is ``accepted`` when every accept example is, and the first refusal otherwise; it
@@ -229,5 +229,5 @@ def judged(construct: Construct, oracle: Oracle) -> Judged:
         evidence = replace(construct.evidence, verdict=verdict, oracle=oracle.name)
         construct = replace(construct, evidence=evidence)
         if construct.state not in (ACCEPTED, REJECTED):
-            construct = replace(construct, state=construct.standing)
-    return Judged(construct, sum(answer is None for _, answer in answers), tuple(findings))
+            construct = replace(construct, state=construct.earned_state)
+    return OracleVerdict(construct, sum(answer is None for _, answer in answers), tuple(findings))

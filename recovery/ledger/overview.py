@@ -41,13 +41,13 @@ def page_of(construct: Construct) -> Iterator[str]:
     if construct.summary:
         yield from ("", *construct.summary.splitlines())
     yield from ("", f"Evidence: {counts_of(evidence)}")
-    told = {
+    sources = {
         "rules": ", ".join(evidence.rules),
         "manual": evidence.manual,
         "verdict": evidence.verdict,
         "oracle": evidence.oracle,
     }
-    yield from (f"  {key}: {value}" for key, value in told.items() if value)
+    yield from (f"  {key}: {value}" for key, value in sources.items() if value)
     yield from (f"  seen: {place}" for place in evidence.seen)
     for heading, texts in (("Accepts", construct.accept), ("Rejects", construct.reject)):
         for text in texts:
@@ -61,7 +61,7 @@ def page_of(construct: Construct) -> Iterator[str]:
             f"{effect.bytes} bytes), {effect.restores} of them newly"
         )
         yield f"  {effect.own_parsed} of {effect.own_files} own programs parse"
-        yield f"  {effect.negatives} negatives let in, {effect.ambiguities} ambiguities"
+        yield f"  {effect.negatives} negatives accepted, {effect.ambiguities} ambiguities"
         metrics = (f"{name} {value:g}" for name, value in effect.metrics.items())
         yield f"  metrics: {', '.join(metrics)}"
 

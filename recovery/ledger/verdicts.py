@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from recovery.ledger.oracle import Answer, OracleError, Program, as_bytes
+from recovery.ledger.oracle import OracleAnswer, OracleError, TestProgram, as_bytes
 from support.files.atomic_write import write_together
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
@@ -50,7 +50,7 @@ release = ""   # such as KSS 8.6.7, OfficeLite
 """
 
 
-def write_bundle(programs: Sequence[Program], folder: Path) -> list[Path]:
+def write_bundle(programs: Sequence[TestProgram], folder: Path) -> list[Path]:
     """Write programs, README and an empty form into a folder; returns what was written.
 
     Raises `OracleError` where the folder holds a form already, which may be half filled.
@@ -66,7 +66,7 @@ def write_bundle(programs: Sequence[Program], folder: Path) -> list[Path]:
     return write_together(files)
 
 
-def _entry(program: Program) -> str:
+def _entry(program: TestProgram) -> str:
     return (
         f'[[program]]\nfile = "{program.file_name}"\nconstruct = "{program.construct}"\n'
         f'sha256 = "{program.digest}"\nanswer = ""\n'
@@ -90,11 +90,11 @@ class RecordedOracle:
         except DocumentError as error:
             raise OracleError(f"{form}: {error}") from None
         self._form = form
-        told = [self._text(data, key) for key in ("release", "by", "when")]
-        if not told[0]:
+        named = [self._text(data, key) for key in ("release", "by", "when")]
+        if not named[0]:
             raise OracleError(f"{form}: release: is empty; say which release was asked")
-        self.name = ", ".join(filter(None, told))
-        self._answers: dict[str, Answer] = {}
+        self.name = ", ".join(filter(None, named))
+        self._answers: dict[str, OracleAnswer] = {}
         programs = data.get("program", [])
         if not isinstance(programs, list) or not all(isinstance(p, dict) for p in programs):
             raise OracleError(f"{form}: program: is not a list of tables")
@@ -104,13 +104,13 @@ class RecordedOracle:
             said = " ".join(self._text(program, "answer", where).split())
             if said:
                 is_accepted = said.lower() == _ACCEPTED
-                self._answers[digest] = Answer(is_accepted, "" if is_accepted else said)
+                self._answers[digest] = OracleAnswer(is_accepted, "" if is_accepted else said)
 
     def __len__(self) -> int:
         """How many programs have an answer."""
         return len(self._answers)
 
-    def ask(self, program: Program) -> Answer | None:
+    def ask(self, program: TestProgram) -> OracleAnswer | None:
         """What was recorded about the program."""
         return self._answers.get(program.digest)
 

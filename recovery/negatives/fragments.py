@@ -1,7 +1,7 @@
-"""Pieces of valid programs, and short programs put together from them.
+"""Fragments of valid programs, and short programs put together from them.
 
-A piece is a statement or a small block, without comments. Of pieces that read alike but for names
-and values only the first is kept.
+A fragment is a statement or a small block, without comments. Of fragments that read alike but for
+names and values only the first is kept.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 from grammar.blocks import BLOCKS, CLOSERS
 from recovery.negatives.language_facts import violation
-from recovery.negatives.tokens import Line, lines
+from recovery.negatives.tokens import SourceLine, lines
 
-__all__ = ["Piece", "Stock", "stock_of"]
+__all__ = ["Fragment", "FragmentPool", "fragment_pool"]
 
 #: Lines, each indented by two blanks or more.
-Piece = tuple[str, ...]
+Fragment = tuple[str, ...]
 
 # A program has at most 14 lines, so that it has at most 15 with one more.
 _MOST_LINES = 14
@@ -118,16 +118,16 @@ ENDDAT
 
 
 @dataclass(frozen=True, slots=True)
-class Stock:
-    """Pieces by where they may stand: at the head of a routine, below, or in a data list.
+class FragmentPool:
+    """Fragments by where they may be used: at the head of a routine, below, or in a data list.
 
     Each is a list of forms, each form a list of pieces: a form is as likely as the other, however
     many assignments there are for one TRIGGER.
     """
 
-    declarations: tuple[tuple[Piece, ...], ...]
-    statements: tuple[tuple[Piece, ...], ...]
-    data: tuple[tuple[Piece, ...], ...]
+    declarations: tuple[tuple[Fragment, ...], ...]
+    statements: tuple[tuple[Fragment, ...], ...]
+    data: tuple[tuple[Fragment, ...], ...]
 
     def program(self, chance: random.Random) -> list[str]:
         """The lines of a program of one to four pieces."""
@@ -148,7 +148,7 @@ class Stock:
 
 
 def _some(
-    forms: Sequence[Sequence[Piece]], most: int, chance: random.Random, room: int = _MOST_LINES
+    forms: Sequence[Sequence[Fragment]], most: int, chance: random.Random, room: int = _MOST_LINES
 ) -> list[str]:
     """The lines of one to ``most`` pieces, as long as there is room for them."""
     out: list[str] = []
@@ -159,9 +159,9 @@ def _some(
     return out
 
 
-def stock_of(programs: Iterable[str]) -> Stock:
+def fragment_pool(programs: Iterable[str]) -> FragmentPool:
     """The pieces of valid programs and the built-in ones; a text that breaks a fact has none."""
-    found: dict[str, dict[str, dict[object, Piece]]] = {
+    found: dict[str, dict[str, dict[object, Fragment]]] = {
         "declarations": {},
         "statements": {},
         "data": {},
@@ -172,7 +172,7 @@ def stock_of(programs: Iterable[str]) -> Stock:
                 alike = tuple(line.kinds for line in piece)
                 form = found[where].setdefault(_form(piece[0]), {})
                 form.setdefault(alike, _trim(piece))
-    return Stock(
+    return FragmentPool(
         **{
             where: tuple(tuple(form.values()) for form in forms.values())
             for where, forms in found.items()
@@ -180,14 +180,14 @@ def stock_of(programs: Iterable[str]) -> Stock:
     )
 
 
-def _form(line: Line) -> str:
+def _form(line: SourceLine) -> str:
     """What a line is: the sign behind its first word if there is one, else its lead."""
     second = line.kinds[1:2]
     return second[0] if second and second[0] in "=[.(:" else line.lead
 
 
-def _pieces(text: str) -> Iterator[tuple[str, list[Line]]]:
-    """Statements and small blocks of a program with where they may stand."""
+def _pieces(text: str) -> Iterator[tuple[str, list[SourceLine]]]:
+    """Statements and small blocks of a program, with where they may be used."""
     program = [line for line in lines(text) if line.tokens]
     open_blocks: list[int] = []
     for index, line in enumerate(program):
@@ -205,18 +205,18 @@ def _pieces(text: str) -> Iterator[tuple[str, list[Line]]]:
                 yield "declarations" if _is_declaration(line) else "statements", [line]
 
 
-def _is_narrow(piece: list[Line]) -> bool:
+def _is_narrow(piece: list[SourceLine]) -> bool:
     return all(line.tokens[-1].end - line.tokens[0].start <= _LONGEST_LINE for line in piece)
 
 
 _DECLARING = frozenset("INT REAL BOOL CHAR ENUM STRUC SIGNAL EXT EXTFCT EXTP EXTFCTP".split())
 
 
-def _is_declaration(line: Line) -> bool:
+def _is_declaration(line: SourceLine) -> bool:
     return line.tokens[0].kind == "DECL" or line.lead in _DECLARING
 
 
-def _trim(piece: list[Line]) -> Piece:
+def _trim(piece: list[SourceLine]) -> Fragment:
     """The lines without comments, the first indented by two blanks and the others with it."""
     margin = piece[0].tokens[0].start
     out = []

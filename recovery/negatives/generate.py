@@ -14,15 +14,15 @@ from collections.abc import Callable, Container, Iterator, Sequence
 from itertools import cycle
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
-from recovery.negatives.fragments import stock_of
+from recovery.negatives.fragments import fragment_pool
 from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
 from recovery.negatives.negatives import Negative
-from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, Token, line
+from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, SourceToken, line
 
 __all__ = ["generate"]
 
 #: One spoilt version of a program, or nothing where the way does not fit.
-_Way = Callable[[list[str], random.Random], list[str] | None]
+_Mutation = Callable[[list[str], random.Random], list[str] | None]
 
 # So many failures in a row mean that what can be made of the pieces has been made.
 _PATIENCE = 2_000
@@ -36,7 +36,7 @@ def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator
     the pieces.
     """
     chance = random.Random(seed)
-    stock = stock_of(programs)
+    stock = fragment_pool(programs)
     neighbours = _Neighbours(chance)
     seen: set[tuple[tuple[str, ...], ...]] = set()
     failures = 0
@@ -78,7 +78,7 @@ def _spell(kind: str, chance: random.Random) -> str:
 
 
 class _Neighbours:
-    """Puts tokens side by side that cannot stand so; every pair of kinds in its turn."""
+    """Puts tokens side by side that cannot be neighbours; every pair of kinds in its turn."""
 
     def __init__(self, chance: random.Random) -> None:
         pairs = sorted(adjacent())
@@ -111,7 +111,7 @@ class _Neighbours:
         return _replaced(program, number, f"{before} {_spell(right, chance)} {after.lstrip()}")
 
 
-def _tokens(program: list[str]) -> Iterator[tuple[int, Token]]:
+def _tokens(program: list[str]) -> Iterator[tuple[int, SourceToken]]:
     """Every token with the index of its line."""
     for number, text in enumerate(program):
         for token in line(text).tokens:
@@ -211,16 +211,16 @@ _WORDS = sorted(
 
 def _site(
     program: list[str], chance: random.Random, wanted: Container[str] | None = None
-) -> tuple[int, Token] | None:
+) -> tuple[int, SourceToken] | None:
     """A token with the index of its line; of the ``wanted`` words and signs each as likely."""
-    sites: dict[str, list[tuple[int, Token]]] = {}
+    sites: dict[str, list[tuple[int, SourceToken]]] = {}
     for number, token in _tokens(program):
         if wanted is None or token.word in wanted:
             sites.setdefault("" if wanted is None else token.word, []).append((number, token))
     return chance.choice(sites[chance.choice(list(sites))]) if sites else None
 
 
-def _changed(program: list[str], site: tuple[int, Token], new: str) -> list[str]:
+def _changed(program: list[str], site: tuple[int, SourceToken], new: str) -> list[str]:
     number, token = site
     text = program[number]
     return _replaced(program, number, f"{text[: token.start]}{new}{text[token.end :]}")
@@ -297,8 +297,8 @@ def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | No
     return _replaced(program, number, turned)
 
 
-# The ways that tell most about a grammar come more often.
-_MUTATIONS: tuple[_Way, ...] = (
+# The ways that show most about a grammar come more often.
+_MUTATIONS: tuple[_Mutation, ...] = (
     *[_without_needed] * 8,
     *[_joined_lines, _other_closer, _stray_line, _swapped_sign, _second_equals, _tail] * 2,
     _without_line,

@@ -1,6 +1,6 @@
 """Facts of KRL that no program breaks, whatever grammar is in force.
 
-A grammar says what it lets in today. These few facts say what KRL never has: tokens that cannot be
+A grammar says what it accepts today. These few facts say what KRL never has: tokens that cannot be
 neighbours (``adjacent.tsv``), brackets and blocks that do not match, lines without the word that
 makes them what they are. They claim far less than a grammar does, so they hold for the programs of
 every dialect, and a text that breaks one is invalid for a reason that can be named.
@@ -18,7 +18,7 @@ from importlib import resources
 from itertools import pairwise
 
 from grammar.blocks import BLOCKS, CLOSERS
-from recovery.negatives.tokens import RESERVED, Line, lines
+from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
 __all__ = ["CLOSER_OF", "Violation", "adjacent", "violation"]
 
@@ -42,7 +42,7 @@ def violation(text: str) -> Violation | None:
 
 
 @lru_cache(maxsize=1 << 15)
-def _broken(line: Line) -> str | None:
+def _broken(line: SourceLine) -> str | None:
     """The fact that a line breaks by itself."""
     if not line.tokens:
         return None
@@ -56,7 +56,7 @@ def _broken(line: Line) -> str | None:
 def adjacent() -> Mapping[tuple[str, str], str]:
     """Why by pairs of kinds (`recovery.negatives.tokens.Token`) that no line has side by side.
 
-    ``start`` and ``end`` stand for the ends of a line, ``any`` for every kind.
+    ``start`` and ``end`` are the ends of a line, ``any`` is every kind.
     """
     table = resources.files(__package__).joinpath("adjacent.tsv").read_text(encoding="utf-8")
     found: dict[tuple[str, str], str] = {}
@@ -66,7 +66,7 @@ def adjacent() -> Mapping[tuple[str, str], str]:
     return found
 
 
-def _neighbours(line: Line) -> str | None:
+def _neighbours(line: SourceLine) -> str | None:
     table = adjacent()
     for left, right in pairwise(("start", *line.kinds, "end")):
         reason = table.get((left, right)) or (right != "end" and table.get((left, "any")))
@@ -80,12 +80,12 @@ CLOSER_OF: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
 _CLOSING = frozenset(CLOSER_OF.values())
 
 
-def _strings(line: Line) -> str | None:
+def _strings(line: SourceLine) -> str | None:
     is_open = any(token.text == '"' for token in line.tokens)
     return "a string is closed on its line" if is_open else None
 
 
-def _brackets(line: Line) -> str | None:
+def _brackets(line: SourceLine) -> str | None:
     expected: list[str] = []
     for kind in line.kinds:
         if kind in CLOSER_OF:
@@ -115,14 +115,14 @@ _OPERAND_ENDS = frozenset("name number string bits enum truth ) ] }".split())
 
 
 def _operands(kinds: Sequence[str]) -> str | None:
-    """What is wrong with expressions parted by commas; what braces hold is passed over."""
+    """What is wrong with expressions between commas; what braces hold is skipped."""
     braces = 0
     before = ""
     for kind in kinds:
         if kind in ("{", "}"):
             braces += 1 if kind == "{" else -1
         elif not braces:
-            if kind == "other":  # not ours to judge
+            if kind == "other":  # not a token of KRL: no fact is known of it
                 return None
             if kind == "=":
                 return "an expression has no equals sign"
@@ -143,17 +143,17 @@ def _can_follow(operand: str, kind: str) -> bool:
 # ---------------------------------------------------------------------------- forms of lines
 
 
-def _words(line: Line) -> list[str]:
+def _words(line: SourceLine) -> list[str]:
     return [token.word for token in line.tokens]
 
 
-def _if(line: Line) -> str | None:
+def _if(line: SourceLine) -> str | None:
     if line.kinds[-1] != "THEN":
         return "THEN ends the line of IF"
     return _operands(line.kinds[1:-1])
 
 
-def _for(line: Line) -> str | None:
+def _for(line: SourceLine) -> str | None:
     words, kinds = _words(line), line.kinds
     if "=" not in kinds:
         return "an equals sign gives the counter of FOR its start"
@@ -168,17 +168,17 @@ def _for(line: Line) -> str | None:
     return next(filter(None, map(_operands, parts)), None)
 
 
-def _expressions(line: Line) -> str | None:
+def _expressions(line: SourceLine) -> str | None:
     return _operands(line.kinds[1:])
 
 
-def _wait(line: Line) -> str | None:
+def _wait(line: SourceLine) -> str | None:
     if _words(line)[1:2] not in (["FOR"], ["SEC"]):
         return "FOR or SEC follows WAIT"
     return _operands(line.kinds[2:]) if len(line.tokens) > 2 else "WAIT waits for something"
 
 
-def _interrupt(line: Line) -> str | None:
+def _interrupt(line: SourceLine) -> str | None:
     words = _words(line)
     action = words[words.index("INTERRUPT") + 1 :][:1]
     if action in (["ON"], ["OFF"], ["ENABLE"], ["DISABLE"]):
@@ -190,23 +190,23 @@ def _interrupt(line: Line) -> str | None:
     return None
 
 
-def _trigger(line: Line) -> str | None:
+def _trigger(line: SourceLine) -> str | None:
     words = _words(line)
     if words[1:2] != ["WHEN"]:
         return "WHEN follows TRIGGER"
     return None if "DO" in words else "TRIGGER has DO"
 
 
-def _routine(line: Line) -> str | None:
+def _routine(line: SourceLine) -> str | None:
     is_whole = "(" in line.kinds and line.kinds[-1] == ")"
     return None if is_whole else "the head of a routine ends with its parentheses"
 
 
-def _goto(line: Line) -> str | None:
+def _goto(line: SourceLine) -> str | None:
     return None if line.kinds[1:] == ("name",) else "GOTO names one label"
 
 
-def _motion(line: Line) -> str | None:
+def _motion(line: SourceLine) -> str | None:
     if line.lead not in _OLD_MOTIONS and line.kinds[1:2] in (("=",), ("[",), (".",)):
         return _assignment_or_call(line)  # a name before there were splines
     is_bare = "=" in line.kinds and "WITH" not in _words(line)
@@ -217,7 +217,7 @@ _OLD_MOTIONS = frozenset("PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
 _MOTIONS = _OLD_MOTIONS | frozenset(
     "SPL SPL_REL SPTP SLIN SCIRC SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split()
 )
-_FORMS: Mapping[str, Callable[[Line], str | None]] = {
+_FORMS: Mapping[str, Callable[[SourceLine], str | None]] = {
     "IF": _if,
     "FOR": _for,
     "WHILE": _expressions,
@@ -234,7 +234,7 @@ _FORMS: Mapping[str, Callable[[Line], str | None]] = {
 } | dict.fromkeys(_MOTIONS, _motion)
 
 
-def _shape(line: Line) -> str | None:
+def _shape(line: SourceLine) -> str | None:
     """What is wrong with a line as a whole."""
     if "THEN" in line.kinds and line.lead != "IF":
         return "THEN ends the line of IF"
@@ -244,7 +244,7 @@ def _shape(line: Line) -> str | None:
     return _assignment_or_call(line) if line.kinds[0] == "name" else None
 
 
-def _assignment_or_call(line: Line) -> str | None:
+def _assignment_or_call(line: SourceLine) -> str | None:
     kinds, end = line.kinds, _behind_variable(line.kinds)
     following = kinds[end] if end < len(kinds) else "end"
     if following == "=":
@@ -286,7 +286,7 @@ class _Block:
     branched: bool = False
 
 
-def _blocks(program: Sequence[Line]) -> Violation | None:
+def _blocks(program: Sequence[SourceLine]) -> Violation | None:
     """The first line at which blocks do not match."""
     open_blocks: list[_Block] = []
     for number, line in enumerate(program, 1):
@@ -298,7 +298,7 @@ def _blocks(program: Sequence[Line]) -> Violation | None:
     return None
 
 
-def _block_word(line: Line) -> str:
+def _block_word(line: SourceLine) -> str:
     """The lead, unless it is a name that reads like the word of a spline block."""
     is_name = "SPLINE" in line.lead and line.kinds[1:2] in (("=",), ("[",), (".",), ("(",))
     return "" if is_name else line.lead

@@ -91,7 +91,7 @@ def _read(path: Path) -> Negative:
 
 
 def _front_matter(path: Path, text: str) -> tuple[dict[str, str], int]:
-    """The entries before the program, and on how many lines they stand."""
+    """The entries before the program, and how many lines they take."""
     matter: dict[str, str] = {}
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(";@"):
@@ -129,7 +129,7 @@ class NegativeSet:
         return len(self.negatives)
 
     def rejected_by(self, recognizer: Recognizer) -> NegativeSet:
-        """Those that this recogniser does reject, against which its successors are judged.
+        """Those that this recogniser does reject, by which its successors are measured.
 
         A grammar without a keyword takes the keyword for a name and may accept programs that misuse
         it; it is not to be blamed on an edit that they stay accepted.

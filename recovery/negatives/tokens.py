@@ -1,7 +1,7 @@
 """KRL text as lines of tokens, cut without any grammar.
 
 It knows what a string, a comment, a number and a word look like, and which words are never names.
-Everything else is left to who asks.
+Everything else is decided by the caller.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-__all__ = ["RESERVED", "RESERVED_FIRST", "Line", "Token", "line", "lines"]
+__all__ = ["RESERVED", "RESERVED_FIRST", "SourceLine", "SourceToken", "line", "lines"]
 
 #: Words that are never names.
 RESERVED = frozenset(
@@ -41,12 +41,12 @@ _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 @dataclass(frozen=True, slots=True)
-class Token:
-    """A token and where it stands in its line.
+class SourceToken:
+    """A token and its place in its line.
 
     ``kind`` is ``name``, ``number``, ``string``, ``bits``, ``enum``, ``truth``, ``type`` (one of
     the predefined), ``other``, the sign itself, or a reserved word in capitals. A word that can be
-    a name where it stands is one.
+    a name where it is used is one.
     """
 
     kind: str
@@ -61,7 +61,7 @@ class Token:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class SourceLine:
     """A line of a file; comments and header lines (``&ACCESS`` …) have no tokens.
 
     ``lead`` is the word in capitals that says what the line is: the first one behind ``GLOBAL`` and
@@ -69,7 +69,7 @@ class Line:
     """
 
     text: str
-    tokens: tuple[Token, ...]
+    tokens: tuple[SourceToken, ...]
     lead: str
 
     @property
@@ -78,17 +78,17 @@ class Line:
         return tuple(token.kind for token in self.tokens)
 
 
-def lines(text: str) -> list[Line]:
+def lines(text: str) -> list[SourceLine]:
     """The lines of a file, whichever line ends it has."""
     return [line(piece) for piece in _LINE_END.split(text)]
 
 
 @lru_cache(maxsize=1 << 15)
-def line(text: str) -> Line:
+def line(text: str) -> SourceLine:
     """One line, without its end."""
     if text.lstrip().startswith("&"):
-        return Line(text, (), "")
-    tokens: list[Token] = []
+        return SourceLine(text, (), "")
+    tokens: list[SourceToken] = []
     lead: str | None = None
     braces = 0
     for found in _TOKEN.finditer(text):
@@ -105,8 +105,8 @@ def line(text: str) -> Line:
             kind = "name" if is_name else _kind(word, is_first=not tokens)
         if lead is None and word not in _BEFORE_LEAD:
             lead = word
-        tokens.append(Token(kind, lexeme, found.start(), found.end()))
-    return Line(text, tuple(tokens), lead or "")
+        tokens.append(SourceToken(kind, lexeme, found.start(), found.end()))
+    return SourceLine(text, tuple(tokens), lead or "")
 
 
 def _kind(word: str, *, is_first: bool) -> str:

@@ -1,7 +1,7 @@
-"""What several phrases have in common: one phrase that reads all of them.
+"""Alignment of phrases: one phrase that reads all of several.
 
-Lines of one construct differ in their operands and in the parts that may be left out. Laid beside
-one another by their keywords and signs, each column of operands is read by a rule that reads all of
+Lines of one construct differ in their operands and in their optional parts. Aligned by their
+keywords and signs, each column of operands is read by a rule that reads all of
 them, what only some have becomes optional, and where some have one thing and the others another,
 a choice: from ``LIN A`` and ``LIN {X 1} C_DIS`` comes ``LIN target C_DIS?``.
 """
@@ -89,7 +89,7 @@ def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
 def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
     """A phrase cut into parts; ``a , a , a`` is one part."""
     out: list[_Part] = []
-    spans = phraser.cutter.parts(words) or []
+    spans = phraser.segmenter.parts(words) or []
     signs = [phraser.sign(span) for span in spans]
     for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
         # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty
@@ -110,7 +110,7 @@ def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Colum
     """The rows beside one another; the longest gives the order."""
 
     def fits(column: _Column, part: _Part) -> bool:
-        """Whether a part may stand in a column: the same sign, or operands that one rule reads."""
+        """Whether a part fits a column: the same sign, or operands that one rule reads."""
         if column.key or part.key:
             return column.key == part.key
         spans = {span for cell in column.cells.values() for span in cell.spans}

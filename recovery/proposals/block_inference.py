@@ -1,8 +1,8 @@
-"""Blocks the grammar has no form for: an opener, lines inside, and what closes it.
+"""Inference of blocks that the grammar has no form for: an opener, lines inside, a closer.
 
-Line by line a block cannot be understood: its opener looks like a statement, and its closer fails
-only because the opener did. So the files that fail at an opener are read on: which word closes it,
-so that both are in balance in every file, and which words lead lines that are only found between?
+One line does not show a block: its opener looks like a statement, and its closer fails only because
+the opener did. So the files that fail at an opener are read on: which word closes it, so that both
+are in balance in every file, and which words lead lines that are only found between?
 The grammar must have no other use for these words. From the lines, and from what other blocks have
 between theirs, comes one alternative: ``WHILE expression eol statement* ENDWHILE``.
 """
@@ -17,7 +17,7 @@ from grammar.blocks import BLOCKS
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.alignment import common_phrases
-from recovery.proposals.grammar_profile import Layout
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES, MOST_MIDDLES
@@ -37,7 +37,7 @@ class Block:
 
 
 @dataclass(slots=True)
-class _Seen:
+class _BlockLines:
     """Lines of one block as they were met in all files."""
 
     headers: list[tuple[Word, ...]] = field(default_factory=list)
@@ -45,16 +45,16 @@ class _Seen:
     middles: dict[str, list[tuple[Word, ...]]] = field(default_factory=lambda: defaultdict(list))
     repeated: set[str] = field(default_factory=set)  # middles met twice in one block
     missing: set[str] = field(default_factory=set)  # middles that some block does without
-    body_first: bool = False  # whether lines stand between the opener and the first middle
+    body_first: bool = False  # whether the opener has lines before the first middle
 
 
 class BlockFinder:
     """Finds blocks in texts, for one grammar."""
 
-    def __init__(self, recognizer: Recognizer, layout: Layout, phraser: Phraser) -> None:
+    def __init__(self, recognizer: Recognizer, profile: GrammarProfile, phraser: Phraser) -> None:
         self.recognizer = recognizer
-        self.layout = layout
-        self.vocabulary = layout.vocabulary
+        self.profile = profile
+        self.vocabulary = profile.vocabulary
         self.phraser = phraser
 
     def find(self, opener: str, texts: Sequence[str], meant: frozenset[str]) -> list[Block]:
@@ -116,8 +116,8 @@ class BlockFinder:
         first = next(words[0] for lines in files for lead, words in lines if lead == word)
         return first[1] is not None or lexer.is_keyword(first[0])
 
-    def _gathered(self, opener: str, closer: str, files: Sequence[Sequence[_Line]]) -> _Seen:
-        seen = _Seen()
+    def _gathered(self, opener: str, closer: str, files: Sequence[Sequence[_Line]]) -> _BlockLines:
+        seen = _BlockLines()
         outside = {
             lead
             for lines in files
@@ -151,11 +151,11 @@ class BlockFinder:
                 del seen.middles[lead]
         return seen
 
-    def _forms(self, seen: _Seen) -> Iterator[tuple[str, ...]]:
+    def _forms(self, seen: _BlockLines) -> Iterator[tuple[str, ...]]:
         if len(seen.middles) > MOST_MIDDLES:
             return
-        end = self.layout.line_end
-        for body in self.layout.bodies[:MOST_BODIES]:
+        end = self.profile.line_end
+        for body in self.profile.bodies[:MOST_BODIES]:
             headers = self._phrases(seen.headers)
             closers = self._phrases(seen.closers)
             for level in range(min(MOST_BLOCK_FORMS, len(headers))):

@@ -1,4 +1,4 @@
-"""Habits of a grammar: which rule it writes behind a word or sign.
+"""Collocations: which rule a grammar usually writes behind a word or sign.
 
 Of a few examples the narrowest rule that reads them all is often too narrow: a grammar that has
 ``CA expression`` in one place hardly means ``CA number`` in another, and where every ``word =`` has
@@ -17,7 +17,7 @@ from grammar.notation.model import Alternative, Element, Group, Literal, Referen
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import USUAL_PART, WORD_LIST_PART
 
-__all__ = ["Before", "Habits", "last_two", "symbols_in"]
+__all__ = ["Before", "Collocations", "last_two", "symbols_in"]
 
 #: The two symbols before a place, the nearer one last; empty where a rule begins.
 Before = tuple[str, str]
@@ -33,7 +33,7 @@ def symbols_in(texts: Iterable[str]) -> list[tuple[Before, str]]:
     before = _BEGINNING
     for symbol, suffix in _SYMBOLS.findall(" ".join(texts)):
         out.append((before, symbol))
-        if not suffix:  # what may be left out is passed over
+        if not suffix:  # optional parts are skipped
             before = (before[1], symbol)
     return out
 
@@ -43,8 +43,8 @@ def last_two(texts: Iterable[str]) -> Before:
     return symbols_in((*texts, "NEXT"))[-1][0]
 
 
-class Habits:
-    """Knows what one grammar writes where."""
+class Collocations:
+    """What one grammar writes behind what."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.grammar = recognizer.grammar
@@ -57,7 +57,7 @@ class Habits:
                     self._sequence(number, alternative, frozenset([_BEGINNING]))
 
     def usual(self, before: Before) -> dict[str, int]:
-        """The rules, and tokens with a value, that stand in many places like this: how many."""
+        """The rules, and tokens with a value, usual in places like this, with their counts."""
         for place in self._places(before):
             found = self._behind.get(place)
             if found:

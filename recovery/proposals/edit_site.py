@@ -1,4 +1,4 @@
-"""An opening: a place in the grammar, and the tokens of a failing line to be let in there."""
+"""Edit sites: a place in the grammar, and the tokens of a failing line it should accept."""
 
 from __future__ import annotations
 
@@ -13,23 +13,22 @@ from grammar.parser.recognizer import Recognizer, State
 from recovery.proposals.segmentation import Word
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
-__all__ = ["Line", "Opening", "Ranked", "places_of", "sites_of"]
+__all__ = ["EditSite", "LinePattern", "RankedEdits", "configurations_of", "places_of"]
 
-
-#: Edits that need no phrase, and how much they let in.
-Ranked = tuple[int, tuple[Edit, ...]]
+#: Edits that need no phrase, with their rank: how much they accept.
+RankedEdits = tuple[int, tuple[Edit, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
-    """A failing line: its form, and the names in it that are meant as keywords, by place."""
+class LinePattern:
+    """What failing lines of one kind share: a form, and the names meant as keywords, by place."""
 
     form: Form
     keywords: tuple[tuple[int, str], ...]
 
     @property
     def is_enormous(self) -> bool:
-        """Whether it is too long, or too deeply nested, to be worth a search: nobody wrote it."""
+        """Whether it is too long or too deeply nested to have been written by hand."""
         deepest = max(map(len, self.form.before), default=0)
         return len(self.form.kinds) > LONGEST_LINE or deepest > DEEPEST_STACK
 
@@ -40,13 +39,13 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Opening:
-    """A place, and the words of a line that would have to be let in there.
+class EditSite:
+    """A place in a rule, and the tokens of a line that it would have to accept.
 
     ``insert`` before the element at the place, ``lines`` the same with a line end behind them and
     any number of times; ``widen`` instead of that element; ``alternative`` of the rule, whatever
     the place, and ``line`` that with a line end behind it. ``rank`` says how much an edit there
-    lets in besides what is written.
+    accepts besides what is written.
     """
 
     kind: OneOf["insert", "lines", "line", "widen", "alternative"]
@@ -56,13 +55,17 @@ class Opening:
     rank: int
 
 
-def sites_of(recognizer: Recognizer, state: State) -> list[Configuration]:
-    """Where the recogniser stands in a state, calls and returns followed."""
-    return sorted(recognizer.sites(state), key=lambda c: (c[0], c[1].depth))
+def configurations_of(recognizer: Recognizer, state: State) -> list[Configuration]:
+    """The configurations of a state, calls and returns followed, in an order of their own.
+
+    They come as a set of interned objects, whose order changes from run to run.
+    """
+    found = recognizer.sites(state)
+    return sorted(found, key=lambda c: (c[0], c[1].depth, c[1].positions()))
 
 
 def places_of(recognizer: Recognizer, site: Configuration) -> list[Address]:
-    """The places in the text of its rule at which it stands there."""
+    """The places in the text of its rule that a configuration is at."""
     network = recognizer.network
     rule = network.rule[site[0]]
     return sorted(network.automata[rule].places[site[0] - network.entry[rule]])

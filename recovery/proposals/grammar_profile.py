@@ -1,7 +1,7 @@
-"""How the rules of a grammar look to somebody who is about to change one.
+"""What decides how restrictive and how fitting an edit of a grammar is.
 
-How many rules lead to a rule, which rules gather kinds of statement or operand, what an alternative
-is like beside those that are there: what decides how restrictive and how fitting an edit is.
+How many rules lead to a rule, which rules gather kinds of statement or operand, which end with a
+line end or are blocks, and what they write elsewhere.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from grammar.parser.recognizer import Recognizer
 from recovery.proposals.keywords import Vocabulary
 from recovery.tuning import HUB_ALTERNATIVES, SAME_TEXT_BONUS, WIDTH_PER_DOUBLING
 
-__all__ = ["Layout"]
+__all__ = ["GrammarProfile"]
 
 _NAMES = re.compile(r"\w+")
 
 
-class Layout:
-    """Knows the rules of one grammar."""
+class GrammarProfile:
+    """Properties of the rules of one grammar."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -106,15 +106,15 @@ class Layout:
         """Whether a name is that of a rule which nothing calls, or of no rule."""
         return name in self._unused or name not in self.recognizer.network.entry
 
-    def said_so(self, text: str) -> int:
-        """What speaks for a text that some rule has already, as what is optional or repeated."""
-        return SAME_TEXT_BONUS if "".join(text.split()) in self._said else 0
+    def same_text_bonus(self, text: str) -> int:
+        """Steps saved by a text that some rule already has as an optional or repeated part."""
+        return SAME_TEXT_BONUS if "".join(text.split()) in self._element_texts else 0
 
-    def place_as_elsewhere(self, rule: str, at: Address, text: str) -> Address | None:
+    def usual_place(self, rule: str, at: Address, text: str) -> Address | None:
         """Where a part goes that other sequences have beside what is also found here.
 
-        Behind parts that may be left out a line tells nothing of the order; where the part stands
-        elsewhere does. ``None`` where that speaks for no place before ``at``.
+        Behind optional parts a line does not show the order; the place of the part elsewhere does.
+        ``None`` where that speaks for no place before ``at``.
         """
         elements = self.sequence(rule, at[:-1]).elements
         source = self.grammar.by_name[rule].source_of
@@ -132,7 +132,7 @@ class Layout:
 
     @cached_property
     def _beside(self) -> frozenset[tuple[str, str]]:
-        """Texts of elements that stand beside one another in some sequence."""
+        """Texts of elements that are neighbours in some sequence."""
         found: set[tuple[str, str]] = set()
         for rule in self.grammar.rules:
             for _, sequence in () if rule.is_lexer else sequences(rule):
@@ -141,7 +141,7 @@ class Layout:
         return frozenset(found)
 
     @cached_property
-    def _said(self) -> frozenset[str]:
+    def _element_texts(self) -> frozenset[str]:
         return frozenset(
             "".join(rule.source_of(element).split())
             for rule in self.grammar.rules
@@ -165,8 +165,8 @@ class Layout:
         words = (n for n in names if n not in known or lexer.is_keyword(lexer.kind_of.get(n, 0)))
         return frozenset() if any(words) else names & known.keys()
 
-    def only_passes_on(self, rule: str) -> bool:
-        """Whether a rule is nothing but another rule: it waits for something."""
+    def is_single_reference(self, rule: str) -> bool:
+        """Whether a rule is nothing but another rule."""
         alternatives = self.grammar.by_name[rule].alternatives
         elements = [e for a in alternatives for e in a.elements]
         return (
@@ -253,7 +253,7 @@ class Layout:
 
     @cached_property
     def loops(self) -> frozenset[str]:
-        """Rules that stand in a loop somewhere."""
+        """Rules that are repeated somewhere."""
         return frozenset(
             e.item.name
             for rule in self.grammar.rules
@@ -265,7 +265,7 @@ class Layout:
 
     @cached_property
     def bodies(self) -> list[tuple[str, ...]]:
-        """What stands between the first line of a block and its last, in the blocks there are."""
+        """What blocks of the grammar have between their first line and their last."""
         found: Counter[tuple[str, ...]] = Counter()
         for rule in self.grammar.rules:
             for _, sequence in () if rule.is_lexer else sequences(rule):
@@ -293,7 +293,7 @@ class Layout:
     def first(self, sequence: Alternative, number: int) -> frozenset[int]:
         """The tokens with which the element at a place itself begins.
 
-        Rules are left aside, but for those that are nothing but a choice of reserved words.
+        Only rules that are nothing but a choice of reserved words are looked into.
         """
         if number > len(sequence.elements):
             return frozenset()
@@ -317,7 +317,7 @@ class Layout:
     # ------------------------------------------------------------------------- left recursion
 
     def is_left_recursive(self, edit: Edit) -> bool:
-        """Whether an edit lets a rule begin with itself, so that no reading of it would end."""
+        """Whether an edit makes a rule begin with itself, so that no reading of it would end."""
         match edit:
             case AddAlternative(rule=rule, text=text):
                 return rule in self._leading(text)

@@ -1,6 +1,6 @@
-"""The words of a grammar: which are reserved, which have a use, which are names all the same.
+"""The words of a grammar: which are reserved, which have a use, which are also names.
 
-Whoever lets in a word has to reserve it, and to enter it where the grammar lists its words.
+An edit that needs a new word reserves it, and adds it where the grammar lists its words.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = ["Vocabulary"]
 
 
 class Vocabulary:
-    """Knows the reserved words of one grammar, and the rules that are made of them."""
+    """The reserved words of one grammar, and the rules that are made of them."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -99,7 +99,7 @@ class Vocabulary:
         )
 
     def reserve(self, keywords: Iterable[str]) -> tuple[Edit, ...]:
-        """The edits that reserve words, and enter them where all reserved words are listed."""
+        """The edits that reserve words, and add them where all reserved words are listed."""
         edits: list[Edit] = []
         for word in sorted(set(keywords)):
             edits.append(AddToken(word))

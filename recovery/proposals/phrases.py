@@ -2,7 +2,7 @@
 
 The same tokens can be written into a rule as they are (``STEP 2``), or with rules in place of
 operands (``STEP literal``, ``STEP expression``). The first is the most restrictive; which is right
-is for the corpus and the negatives to tell, so all are proposed.
+is decided by the corpus and the negatives, so all are proposed.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from functools import cached_property
 from itertools import islice, product
 
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.collocations import Before, Habits, symbols_in
-from recovery.proposals.rule_matcher import Readers
-from recovery.proposals.segmentation import Cutter, Word
+from recovery.proposals.collocations import Before, Collocations, symbols_in
+from recovery.proposals.rule_matcher import RuleMatcher
+from recovery.proposals.segmentation import Segmenter, Word
 from recovery.tuning import (
     HUB_ALTERNATIVES,
     LONGEST_PHRASE,
@@ -34,9 +34,9 @@ class Phraser:
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
-        self.habits = Habits(recognizer)
-        self.readers = Readers(recognizer)
-        self.cutter = Cutter(self.readers)
+        self.collocations = Collocations(recognizer)
+        self.matcher = RuleMatcher(recognizer)
+        self.segmenter = Segmenter(self.matcher)
 
     @cached_property
     def _callers(self) -> dict[str, frozenset[str]]:
@@ -49,9 +49,9 @@ class Phraser:
         return {name: frozenset(found - {name}) for name, found in callers.items()}
 
     def _is_one_level(self, rule: str) -> bool:
-        """Whether a rule is only a step within another that stands for it alone.
+        """Whether a rule is only an intermediate level of another, which may consist of it alone.
 
-        One of many kinds that a rule gathers is no step.
+        One of many kinds that a rule gathers is no such level.
         """
         known = self.recognizer.grammar.by_name
         return len(self._callers[rule]) == 1 and all(
@@ -71,7 +71,7 @@ class Phraser:
 
     @cached_property
     def _wider(self) -> dict[str, frozenset[str]]:
-        """For each rule the rules it stands for alone (``expression`` for ``literal``)."""
+        """For each rule the rules that it may consist of alone (``expression`` of ``literal``)."""
         network = self.recognizer.network
         direct = {
             rule: {
@@ -91,14 +91,14 @@ class Phraser:
         return out
 
     def would_be_read_twice(self, rule: str, symbol: str) -> bool:
-        """Whether what stands for a rule alone reads a keyword that the rule would read too.
+        """Whether a rule that may consist of this one alone reads the keyword already.
 
-        That a list of almost all keywords has it says nothing.
+        Rules that read almost any keyword do not count.
         """
         kind = self.recognizer.lexer.kind_of.get(symbol)
         if kind is None:
             return False
-        found = self.readers.rules_for((kind,)) - self.readers.careless
+        found = self.matcher.rules_for((kind,)) - self.matcher.keyword_lists
         return any(rule in self._wider[reader] for reader in found)
 
     def is_unused(self, rule: str) -> bool:
@@ -106,7 +106,7 @@ class Phraser:
         return not self._uses[rule]
 
     def breadth(self, symbols: Sequence[str]) -> int:
-        """How much a phrase lets in: nothing for tokens, more for rules that stand for more.
+        """How much a phrase accepts: nothing for tokens, more for rules that consist of more.
 
         What the grammar usually writes in such a place (`recovery.proposals.collocations`) counts
         little; what is narrower than that counts as unlikely to be all that is meant.
@@ -114,11 +114,11 @@ class Phraser:
         return sum(self._cost(before, symbol) for before, symbol in symbols_in(symbols))
 
     def _cost(self, before: Before, symbol: str) -> int:
-        rule = self.habits.written_by.get(symbol, symbol)
+        rule = self.collocations.written_by.get(symbol, symbol)
         if rule not in self._wider:
             return 0
         cost = 1 + len(self._wider[rule]) + (rule != symbol)
-        usual = self.habits.usual(before)
+        usual = self.collocations.usual(before)
         if 2 * usual.get(symbol, 0) > sum(usual.values()):
             return min(cost, USUAL_RULE_COST)
         is_narrower = symbol not in usual and any(
@@ -128,29 +128,33 @@ class Phraser:
 
     def sign(self, span: Sequence[Word]) -> str | None:
         """The text of a keyword or sign; ``None`` for what carries a value."""
-        if len(span) != 1 or (span[0][1] is None and self.readers.is_operand(span[0][0])):
+        if len(span) != 1 or (span[0][1] is None and self.matcher.is_operand(span[0][0])):
             return None
         return self._token(span[0])
 
     def stands_for_a_rule(self, span: Sequence[Word], *, is_listed: bool) -> bool:
         """Whether some rule reads the span by itself (``TRUE`` is a literal too).
 
-        That a rule which reads almost any keyword reads this one says nothing, unless the keyword
-        is an item of a list.
+        A rule that reads almost any keyword does not count, unless the keyword is an item of a
+        list.
         """
         if any(keyword is not None for _, keyword in span):
             return False
         kinds = tuple(kind for kind, _ in span)
-        return bool(self.readers.rules_for(kinds)) if is_listed else self.readers.means_more(kinds)
+        return (
+            bool(self.matcher.rules_for(kinds))
+            if is_listed
+            else self.matcher.is_more_than_a_name(kinds)
+        )
 
     def rules_for_all(
         self, spans: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
-        """What can stand for each of the spans, from the narrowest to the widest."""
+        """What reads each of the spans, from the narrowest to the widest."""
         if any(keyword is not None or kind < 0 for span in spans for kind, keyword in span):
             return ()
         kinds = {tuple(kind for kind, _ in span) for span in spans}
-        rules = frozenset.intersection(*map(self.readers.rules_for, kinds))
+        rules = frozenset.intersection(*map(self.matcher.rules_for, kinds))
         token = self._token(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
         if not rules:
             return (token,) if token else ()
@@ -161,7 +165,7 @@ class Phraser:
     ) -> Iterator[tuple[str, ...]]:
         """Symbols for the words, the most restrictive first; none where they are too many.
 
-        ``near`` names rules that stand close by in the grammar: they are tried for operands too.
+        ``near`` names rules that the edited rule refers to: they are tried for operands too.
         """
         if not words or len(words) > LONGEST_PHRASE:
             return
@@ -174,14 +178,14 @@ class Phraser:
 
     def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
         """The words as they are, then with rules for their operands, narrow ones first."""
-        parts = self.cutter.parts(words)
+        parts = self.segmenter.parts(words)
         if parts is None:
             return
         plain = [self._token(word) for word in words]
         if all(plain):
             tokens = tuple(token for token in plain if token)
             yield tokens
-            yield tuple(self.habits.written_by.get(token, token) for token in tokens)
+            yield tuple(self.collocations.written_by.get(token, token) for token in tokens)
         choices = [self._levels(part, near) for part in parts]
         if all(choices):
             for level in (0, -1):
@@ -189,7 +193,7 @@ class Phraser:
             yield from islice(product(*choices), MOST_COMBINATIONS)
         if len(parts) == 1 and not any(keyword for _, keyword in words):
             # an operand that is all of a phrase may be whatever reads it, the most used ones first
-            rules = self.readers.rules_for(tuple(kind for kind, _ in words))
+            rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
             yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
 
@@ -202,37 +206,37 @@ class Phraser:
         return tuple(symbols)
 
     def usual_for(self, spans: Sequence[tuple[Word, ...]], before: Before) -> str | None:
-        """The rule that usually stands in such a place, where it reads all the spans."""
+        """The rule that is usual in such a place, where it reads all the spans."""
         if any(keyword is not None for span in spans for _, keyword in span):
             return None
         kinds = {tuple(kind for kind, _ in span) for span in spans}
-        usual = self.habits.usual(before)
+        usual = self.collocations.usual(before)
         fitting = [
             rule
             for rule in usual
-            if rule in self._wider and all(rule in self.readers.rules_for(k) for k in kinds)
+            if rule in self._wider and all(rule in self.matcher.rules_for(k) for k in kinds)
         ]
         return min(fitting, key=lambda r: (-usual[r], len(self._wider[r]), r), default=None)
 
     def _levels(
         self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
-        """What can stand for a part: its token, or rules from the narrowest to the widest."""
+        """What reads a part: its token, or rules from the narrowest to the widest."""
         if len(part) == 1:
             token = self._token(part[0])
             if token is None or part[0][1] is not None:
                 return () if token is None else (token,)
-            if not self.readers.is_operand(part[0][0]):
+            if not self.matcher.is_operand(part[0][0]):
                 if not self.recognizer.lexer.is_keyword(part[0][0]):
                     return (token,)
                 kinds = (part[0][0],)
-                if not self.readers.means_more(kinds):
+                if not self.matcher.is_more_than_a_name(kinds):
                     return (token,)
-                rules = self.readers.rules_for(kinds) - self.readers.careless
+                rules = self.matcher.rules_for(kinds) - self.matcher.keyword_lists
                 return (token, *self._levels_of(rules, near))
         elif any(keyword is not None or kind < 0 for kind, keyword in part):
             return ()
-        rules = self.readers.rules_for(tuple(kind for kind, _ in part))
+        rules = self.matcher.rules_for(tuple(kind for kind, _ in part))
         if not rules:
             token = self._token(part[0])
             return (token,) if len(part) == 1 and token else ()
@@ -241,7 +245,7 @@ class Phraser:
     def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
         close = sorted(rules & near)[:MOST_NEAR_RULES]
         rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
-        # a rule that nothing uses waits to be used: it comes first
+        # a rule that nothing uses was written to be used: it comes first
         narrow = min(
             rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), -self._uses[r], r)
         )

@@ -1,6 +1,6 @@
 """Which rules of a grammar read which tokens.
 
-What a few tokens are can be asked of every rule: is this a sentence of it, or the beginning of one?
+For each rule: are these tokens a sentence of it, or the beginning of one?
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer, State
 from recovery.tuning import LONGEST_BEGINNING_KEPT, MOST_ANSWERS_KEPT, WORD_LIST_PART
 
-__all__ = ["Readers"]
+__all__ = ["RuleMatcher"]
 
 
-class Readers:
-    """Knows what the rules of one grammar read."""
+class RuleMatcher:
+    """Matches tokens against the rules of one grammar."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -27,7 +27,7 @@ class Readers:
 
     @cached_property
     def _entries(self) -> dict[str, State]:
-        """A state at the start of each rule that stands for part of a line."""
+        """A state at the start of each rule, but for the start rule."""
         network = self.recognizer.network
         return {
             rule: self.recognizer.at_rule(rule)
@@ -35,7 +35,7 @@ class Readers:
             if rule != self.recognizer.grammar.start
         }
 
-    def opened_by(self, kinds: Sequence[int]) -> list[str]:
+    def multi_line_rules(self, kinds: Sequence[int]) -> list[str]:
         """Rules that go on over the end of a line which begins them so."""
         ends = self.recognizer.ends
         return [rule for rule, state in self._read(tuple(kinds)).items() if not ends(state)]
@@ -54,7 +54,7 @@ class Readers:
     def _read(self, kinds: tuple[int, ...]) -> Mapping[str, State]:
         """Rules that can begin with these tokens, with the state behind them.
 
-        Phrases are asked for with all that they begin with, so each is read one token further.
+        Phrases are asked for token by token, so each is read one token further than the last.
         """
         known = len(kinds)
         while known and kinds[:known] not in self._begun:
@@ -69,17 +69,17 @@ class Readers:
                 self._begun[kinds[: count + 1]] = states
         return states
 
-    def means_more(self, kinds: tuple[int, ...]) -> bool:
+    def is_more_than_a_name(self, kinds: tuple[int, ...]) -> bool:
         """Whether some rule reads the tokens that would not with any name for the first of them."""
-        rules = self.rules_for(kinds) - self.careless
+        rules = self.rules_for(kinds) - self.keyword_lists
         lexer = self.recognizer.lexer
         if rules and lexer.is_keyword(kinds[0]):
             rules -= self.rules_for((*self._a_name, *kinds[1:]))
         return bool(rules)
 
     @cached_property
-    def careless(self) -> frozenset[str]:
-        """Rules that read many keywords by themselves."""
+    def keyword_lists(self) -> frozenset[str]:
+        """Rules that read many keywords by themselves: they say little about any of them."""
         lexer = self.recognizer.lexer
         keywords = [kind for kind in lexer.kind_of.values() if lexer.is_keyword(kind)]
         counts = Counter(rule for kind in keywords for rule in self.rules_for((kind,)))
@@ -88,7 +88,7 @@ class Readers:
         )
 
     @cached_property
-    def of_values(self) -> frozenset[str]:
+    def value_rules(self) -> frozenset[str]:
         """Rules that read a name as well as values of other kinds."""
         kinds = [(k,) for k in self.recognizer.lexer.kind_of.values() if self.is_operand(k)]
         others = frozenset[str]().union(*(self.rules_for(k) for k in kinds if k != self._a_name))
@@ -97,7 +97,7 @@ class Readers:
     def may_be_a_name(self, kind: int) -> bool:
         """Whether a token is a reserved word that some rules read as any other name."""
         is_word = self.recognizer.lexer.is_keyword(kind)
-        return is_word and bool(self.rules_for((kind,)) - self.careless)
+        return is_word and bool(self.rules_for((kind,)) - self.keyword_lists)
 
     def is_operand(self, kind: int) -> bool:
         """Whether a token carries a value of its own: a name, a number, a string."""

@@ -1,4 +1,4 @@
-"""Parts: what the tokens of a line fall into, operands and single words or signs.
+"""Segmentation: the tokens of a line cut into operands and single words or signs.
 
 ``STEP A + 1`` is the word ``STEP`` and one operand: some rule reads ``A + 1`` as a whole.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from recovery.proposals.rule_matcher import Readers
+from recovery.proposals.rule_matcher import RuleMatcher
 from recovery.tuning import (
     LONGEST_SEGMENTED,
     MOST_ANSWERS_KEPT,
@@ -16,7 +16,7 @@ from recovery.tuning import (
     TOKEN_COST,
 )
 
-__all__ = ["Cutter", "Word"]
+__all__ = ["Segmenter", "Word"]
 
 #: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
 Word = tuple[int, str | None]
@@ -24,11 +24,11 @@ Word = tuple[int, str | None]
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 
-class Cutter:
+class Segmenter:
     """Cuts lines into parts under one grammar."""
 
-    def __init__(self, readers: Readers) -> None:
-        self.readers = readers
+    def __init__(self, matcher: RuleMatcher) -> None:
+        self.matcher = matcher
         self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
 
     def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
@@ -62,18 +62,18 @@ class Cutter:
         """Where a part could fall into operands: at commas outside of brackets, between values."""
         depth = seams = 0
         was_value = False
-        readers, lexer = self.readers, self.readers.recognizer.lexer
+        matcher, lexer = self.matcher, self.matcher.recognizer.lexer
         first = part[0][0]
         if lexer.is_keyword(first):  # what follows a word belongs to it
             kinds = tuple(kind for kind, _ in part)
-            is_operand = not readers.of_values.isdisjoint(readers.rules_for(kinds))
-            is_a_name = not readers.of_values.isdisjoint(readers.rules_for((first,)))
+            is_operand = not matcher.value_rules.isdisjoint(matcher.rules_for(kinds))
+            is_a_name = not matcher.value_rules.isdisjoint(matcher.rules_for((first,)))
             if not (is_operand and is_a_name):
-                return int(not is_operand and not readers.means_more(kinds))
+                return int(not is_operand and not matcher.is_more_than_a_name(kinds))
         for kind, _ in part:
             text = lexer.display[kind]
             depth += (text in _OPENING) - (text in _CLOSING)
-            is_value = depth == 0 and (readers.is_operand(kind) or readers.may_be_a_name(kind))
+            is_value = depth == 0 and (matcher.is_operand(kind) or matcher.may_be_a_name(kind))
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value
         return seams
@@ -84,4 +84,4 @@ class Cutter:
             return part[0][1] is not None or part[0][0] >= 0
         if any(keyword is not None or kind < 0 for kind, keyword in part):
             return False
-        return bool(self.readers.rules_for(tuple(kind for kind, _ in part)))
+        return bool(self.matcher.rules_for(tuple(kind for kind, _ in part)))

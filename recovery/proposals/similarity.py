@@ -1,6 +1,6 @@
-"""How like an alternative is to those that a rule has: where would somebody write it?
+"""How similar an alternative is to those that a rule has: which rule should get it.
 
-A rule that gathers kinds of statement takes one more; a rule of one form takes no other.
+A rule that gathers kinds of statement gets one more; a rule of one form gets no other.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from difflib import SequenceMatcher
 from functools import cached_property
 
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
-from recovery.proposals.grammar_profile import Layout
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
     HUB_ALTERNATIVES,
     LOOSE_GATHERING_COST,
@@ -21,20 +21,20 @@ from recovery.tuning import (
     SIMILARITY_STEPS,
 )
 
-__all__ = ["Likeness"]
+__all__ = ["Similarity"]
 
 
-class Likeness:
+class Similarity:
     """Compares alternatives under one grammar."""
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
-        self.vocabulary = layout.vocabulary
+    def __init__(self, profile: GrammarProfile) -> None:
+        self.profile = profile
+        self.vocabulary = profile.vocabulary
         self._classes: dict[str, list[list[str]]] = {}
         self._leading_words: dict[str, frozenset[str]] = {}
 
-    def unlike(self, rule: str, symbols: Sequence[str]) -> int:
-        """How little a rule asks for an alternative: below 0 where it has one just like it.
+    def dissimilarity(self, rule: str, symbols: Sequence[str]) -> int:
+        """Steps against an alternative of a rule: below 0 where the rule has one just like it.
 
         Keywords are alike; so are the same rules, signs and kinds of token. A rule of many
         alternatives is made to take more, one of a single form is not.
@@ -43,7 +43,7 @@ class Likeness:
         if known is None:
             known = self._classes[rule] = [
                 [self._class(rule, e) for e in a.elements]
-                for a in self.layout.grammar.by_name[rule].alternatives
+                for a in self.profile.grammar.by_name[rule].alternatives
             ]
         new = [self._class_of(symbol) for symbol in symbols]
         matcher = SequenceMatcher(None, b=new, autojunk=False)
@@ -51,7 +51,7 @@ class Likeness:
         for old in known:
             matcher.set_seq1(old)
             best = max(best, matcher.ratio())
-        if self.layout.only_passes_on(rule):
+        if self.profile.is_single_reference(rule):
             return 0
         kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
@@ -65,7 +65,7 @@ class Likeness:
                     if self._is_known_by(rule, symbols[0])
                     else LOOSE_GATHERING_COST
                 )
-            if not self.layout.is_free(symbols[0]):
+            if not self.profile.is_free(symbols[0]):
                 return -SIMILARITY_STEPS  # it has its place already
             return -3 * SIMILARITY_STEPS if _kind(new[0]) in kinds else -2 * SIMILARITY_STEPS
         leads = self._leads(rule)
@@ -77,19 +77,19 @@ class Likeness:
 
     def _is_one_of_words(self, rule: str) -> bool:
         """Whether a rule is a choice of words."""
-        return self.layout.has_choice(rule) and self.vocabulary.is_set_of_words(rule)
+        return self.profile.has_choice(rule) and self.vocabulary.is_set_of_words(rule)
 
     def _is_known_by(self, rule: str, word: str) -> bool:
         """Whether one of the rules that a rule gathers is known by a word."""
         return any(
-            rule in gathering and name in self.layout.callers and word in self._leads(name)
+            rule in gathering and name in self.profile.callers and word in self._leads(name)
             for name, gathering in self._gathered.items()
         )
 
     def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether the symbols begin with a rule that stands beside this one wherever it is called.
+        """Whether the symbols begin with a rule that is a sibling of this one in all its callers.
 
-        What may follow that rule is better said there.
+        What may follow that rule belongs there.
         """
         return len(symbols) > 1 and bool(
             self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
@@ -98,9 +98,9 @@ class Likeness:
     def extends(self, rule: str, symbols: Sequence[str]) -> bool:
         """Whether the symbols are an alternative that the rule has, with more before or behind it.
 
-        That may as well be left out, so it is better said there.
+        That is an optional part of the alternative, and belongs there.
         """
-        found = self.layout.grammar.by_name[rule]
+        found = self.profile.grammar.by_name[rule]
         for alternative in found.alternatives:
             known = [found.source_of(e) for e in alternative.elements]
             count = len(known)
@@ -122,7 +122,7 @@ class Likeness:
     def _gathered(self) -> dict[str, frozenset[str]]:
         """For each rule the rules that gather it."""
         found: dict[str, set[str]] = defaultdict(set)
-        for rule in self.layout.grammar.rules:
+        for rule in self.profile.grammar.rules:
             if not rule.is_lexer and self.gathers(rule.name):
                 for alternative in rule.alternatives:
                     only = self._only(rule, alternative)
@@ -132,25 +132,25 @@ class Likeness:
 
     def gathers(self, rule: str) -> bool:
         """Whether most alternatives of a rule are one rule or token each."""
-        found = self.layout.grammar.by_name[rule]
+        found = self.profile.grammar.by_name[rule]
         single = sum(self._only(found, a) is not None for a in found.alternatives)
         return len(found.alternatives) > 2 and 2 * single >= len(found.alternatives)
 
     def _only(self, rule: Rule, alternative: Alternative) -> Reference | None:
-        """The one rule or token that an alternative is, a line end behind it left aside."""
+        """The one rule or token that an alternative is, but for a line end behind it."""
         elements = alternative.elements
-        if len(elements) == 2 and rule.source_of(elements[1]) == self.layout.line_end:
+        if len(elements) == 2 and rule.source_of(elements[1]) == self.profile.line_end:
             elements = elements[:1]
         first = elements[0] if len(elements) == 1 else None
         return first if isinstance(first, Reference) else None
 
     def _is_single(self, symbols: Sequence[str]) -> bool:
-        """Whether the symbols are one rule or one reserved word, a line end left aside."""
-        if len(symbols) == 2 and symbols[1] == self.layout.line_end:
+        """Whether the symbols are one rule or one reserved word, but for a line end."""
+        if len(symbols) == 2 and symbols[1] == self.profile.line_end:
             symbols = symbols[:1]
         if len(symbols) != 1:
             return False
-        known = self.layout.grammar.by_name.get(symbols[0])
+        known = self.profile.grammar.by_name.get(symbols[0])
         is_rule = known is not None and not known.is_lexer
         return is_rule or self._class_of(symbols[0]) != symbols[0]
 
@@ -158,13 +158,13 @@ class Likeness:
         """The reserved words that alternatives begin with; an empty one for those without."""
         found = self._leading_words.get(rule)
         if found is None:
-            alternatives = self.layout.grammar.by_name[rule].alternatives
+            alternatives = self.profile.grammar.by_name[rule].alternatives
             words = (self._words_of(a.elements) for a in alternatives)
             found = self._leading_words[rule] = frozenset(word for some in words for word in some)
         return found
 
     def _words_of(self, elements: Sequence[Element]) -> list[str]:
-        """What a sequence begins with, what may be left out passed over."""
+        """What a sequence begins with, optional elements skipped."""
         for element in elements:
             if not isinstance(element, Repeat) or element.operator == "+":
                 return self._words(element)
@@ -179,16 +179,16 @@ class Likeness:
         return [""]
 
     def _class(self, rule: str, element: Element) -> str:
-        return self._class_of(self.layout.grammar.by_name[rule].source_of(element))
+        return self._class_of(self.profile.grammar.by_name[rule].source_of(element))
 
     def _class_of(self, symbol: str) -> str:
         suffix = symbol[-1] if symbol[-1] in "?*+" else ""
         name = symbol.rstrip("?*+")
-        if name in self.layout.grammar.by_name and not name[0].isupper():
-            if len(self.layout.callers[name]) > 1 or name in self.layout.line_ends:
+        if name in self.profile.grammar.by_name and not name[0].isupper():
+            if len(self.profile.callers[name]) > 1 or name in self.profile.line_ends:
                 return symbol
-            return ("block" if name in self.layout.blocks else "kind") + suffix
-        lexer = self.layout.recognizer.lexer
+            return ("block" if name in self.profile.blocks else "kind") + suffix
+        lexer = self.profile.recognizer.lexer
         kind = lexer.kind_of.get(name)
         if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
             return "keyword" + suffix

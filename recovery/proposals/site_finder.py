@@ -1,8 +1,8 @@
-"""Openings: where in the grammar tokens of a failing line could be let in.
+"""Edit sites: where the grammar could accept the tokens of a failing line.
 
-The recogniser is asked where it stands at the offending token, and where it stood before, and from
-which positions the rest of the line could be read. What is written into the rule there is not
-decided here: see `recovery.proposals.candidates`.
+They come from the configurations of the recogniser at the offending token and before it, and from
+the positions after which the rest of the line could be read. What is written into the rule there is
+not decided here: see `recovery.proposals.candidates`.
 """
 
 from __future__ import annotations
@@ -16,12 +16,18 @@ from grammar.notation.model import Alternative, Element, Group, Reference, Repea
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
-from recovery.proposals.edit_site import Line, Opening, Ranked, places_of, sites_of
-from recovery.proposals.grammar_profile import Layout
-from recovery.proposals.line_sites import LineOpenings
+from recovery.proposals.edit_site import (
+    EditSite,
+    LinePattern,
+    RankedEdits,
+    configurations_of,
+    places_of,
+)
+from recovery.proposals.grammar_profile import GrammarProfile
+from recovery.proposals.line_sites import LineSiteFinder
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
-from recovery.proposals.similarity import Likeness
+from recovery.proposals.similarity import Similarity
 from recovery.tuning import (
     LONGEST_PREFIX,
     LONGEST_RUN,
@@ -37,23 +43,23 @@ from recovery.tuning import (
     WIDEN_FIRST_WORD_COST,
 )
 
-__all__ = ["OpeningFinder"]
+__all__ = ["EditSiteFinder"]
 
 
-class OpeningFinder:
-    """Finds openings under one grammar."""
+class EditSiteFinder:
+    """Finds the edit sites of one grammar."""
 
-    def __init__(self, layout: Layout, likeness: Likeness, phraser: Phraser) -> None:
-        self.recognizer = layout.recognizer
-        self.grammar = layout.grammar
-        self.layout = layout
-        self.vocabulary = layout.vocabulary
-        self.likeness = likeness
+    def __init__(self, profile: GrammarProfile, similarity: Similarity, phraser: Phraser) -> None:
+        self.recognizer = profile.recognizer
+        self.grammar = profile.grammar
+        self.profile = profile
+        self.vocabulary = profile.vocabulary
+        self.similarity = similarity
         self.phraser = phraser
-        self._lines = LineOpenings(layout, likeness, phraser)
+        self._lines = LineSiteFinder(profile, similarity, phraser)
 
-    def find(self, line: Line) -> Iterator[Opening | Ranked]:
-        """Openings of a line, and edits that need no phrase; some more than once."""
+    def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
+        """Sites of a line, and edits that need no phrase; some more than once."""
         recognizer, form = self.recognizer, line.form
         words = line.words()
         before = recognizer.restore(form.before)
@@ -62,13 +68,13 @@ class OpeningFinder:
         starts |= {i for i, _ in line.keywords if i < form.index}
         for start in sorted(starts):
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in sites_of(self.recognizer, state):
+            for site in configurations_of(self.recognizer, state):
                 yield from self._at_site(state, site, words, start)
         if form.index:
             # the last token may have been read as what the line leaves out
             start = form.index - 1
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in sites_of(self.recognizer, state):
+            for site in configurations_of(self.recognizer, state):
                 for place in places_of(self.recognizer, site):
                     if place[-1] <= len(self._sequence_at(site, place).elements):
                         yield from self._omissions(state, site, place, words, start)
@@ -84,28 +90,28 @@ class OpeningFinder:
         """The edits that reserve the would-be keywords among the words."""
         return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
 
-    def block_rules(self, line: Line) -> list[str]:
+    def block_rules(self, line: LinePattern) -> list[str]:
         """Rules that can begin where a line begins and whose alternatives are lines or blocks."""
         network = self.recognizer.network
         sites = self.recognizer.sites(self.recognizer.restore(line.form.before))
         rules = {network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]}
-        return sorted(rules & (self.layout.of_lines | self.layout.blocks))
+        return sorted(rules & (self.profile.of_lines | self.profile.blocks))
 
     def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
-        return self.layout.sequence(self.recognizer.network.rule[site[0]], place[:-1])
+        return self.profile.sequence(self.recognizer.network.rule[site[0]], place[:-1])
 
     # ------------------------------------------------------------------- from an earlier token
 
     def _taken_for_something_else(
         self, before: State, form: Form, words: list[Word]
-    ) -> Iterator[Opening]:
+    ) -> Iterator[EditSite]:
         """Alternatives of the rules that the tokens before the failure were taken for."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = {frames for _, frames in self._begun(before, form)}
         latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
         state = before
         for start in range(form.index):
-            for position, stack in sites_of(self.recognizer, state):
+            for position, stack in configurations_of(self.recognizer, state):
                 below = stack.positions()
                 for entry, back in network.calls[position]:
                     frames = (back, *below)
@@ -117,15 +123,15 @@ class OpeningFinder:
             state = following
         for start, entry, beyond in latest.values():
             rule = network.rule[entry]
-            if rule in self.layout.line_ends:
+            if rule in self.profile.line_ends:
                 continue
             for end in self._resuming(beyond, words, start, form.index + 1):
-                yield Opening(
+                yield EditSite(
                     "alternative",
                     rule,
                     (1, 1),
                     tuple(words[start:end]),
-                    self.layout.width(rule) + SITE_COST,
+                    self.profile.width(rule) + SITE_COST,
                 )
 
     def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
@@ -138,30 +144,30 @@ class OpeningFinder:
             for i in range(1, len(each))
         }
 
-    def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[Opening]:
-        """Openings ahead of the failure: what was to be let in was read as something else."""
+    def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[EditSite]:
+        """Sites ahead of the failure: what should be accepted there was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
         for start in range(max(0, form.index - MOST_SKIPPED), form.index):
             state, _ = recognizer.run(before, form.kinds[:start])
-            for site in sites_of(self.recognizer, state):
+            for site in configurations_of(self.recognizer, state):
                 rule = network.rule[site[0]]
-                if rule in self.layout.line_ends:
+                if rule in self.profile.line_ends:
                     continue
                 is_first = site[0] == network.entry[rule]
                 for entry, back in network.calls[site[0]]:
                     beyond = recognizer.at((back, site[1]), state)
                     called = network.rule[entry]
-                    rank = self.layout.width(called) + SITE_COST
+                    rank = self.profile.width(called) + SITE_COST
                     if (called, (back, *site[1].positions())) not in begun:
                         rank += NOT_BEGUN_COST
                     for end in self._reading_on(beyond, words, start, form.index):
-                        yield Opening("alternative", called, (1, 1), tuple(words[start:end]), rank)
-                # what was let in may end where another reading went on, and failed later
+                        yield EditSite("alternative", called, (1, 1), tuple(words[start:end]), rank)
+                # the tokens accepted may end where another reading went on, and failed later
                 ends = self._reading_on(recognizer.at(site, state), words, start, start + 1)
                 for end, place in product(ends, places_of(self.recognizer, site)):
-                    sequence = self.layout.sequence(rule, place[:-1])
-                    comes_next = words[end][0] in self.layout.first(sequence, place[-1])
+                    sequence = self.profile.sequence(rule, place[:-1])
+                    comes_next = words[end][0] in self.profile.first(sequence, place[-1])
                     if self._is_behind_line_end(rule, place):
                         continue
                     if comes_next or (not is_first and end >= form.index):
@@ -177,11 +183,11 @@ class OpeningFinder:
 
     def _at_site(
         self, state: State, site: Configuration, words: list[Word], start: int
-    ) -> Iterator[Opening | Ranked]:
+    ) -> Iterator[EditSite | RankedEdits]:
         network = self.recognizer.network
         position, stack = site
         rule = network.rule[position]
-        if rule in self.layout.line_ends:
+        if rule in self.profile.line_ends:
             return
         base = network.entry[rule]
         automaton = network.automata[rule]
@@ -189,13 +195,13 @@ class OpeningFinder:
         ends = self._resuming(here, words, start)
         for place in sorted(automaton.places[position - base]):
             number = place[-1]
-            sequence = self.layout.sequence(rule, place[:-1])
+            sequence = self.profile.sequence(rule, place[:-1])
             # inserting what is missing, to go on where we are
             is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
             begins_loop = number == 1 and len(place) > 2
-            gathers = self.likeness.gathers(rule)
+            gathers = self.similarity.gathers(rule)
             for end in ends:
-                comes_next = words[end][0] in self.layout.first(sequence, number)
+                comes_next = words[end][0] in self.profile.first(sequence, number)
                 # behind all that may be left out, but for what the line has behind it; before the
                 # first element of a rule only where that element itself comes next
                 is_prefix = position != base or (not gathers and end - start <= LONGEST_PREFIX)
@@ -234,84 +240,86 @@ class OpeningFinder:
                 part.append(end)
         return whole[:MOST_RESUMPTIONS] or part[:1]
 
-    def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> Opening:
-        width = self._room(rule)
-        elements = self.layout.sequence(rule, place[:-1]).elements
+    def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> EditSite:
+        width = self._insertion_width(rule)
+        elements = self.profile.sequence(rule, place[:-1]).elements
         if len(place) > 2 and place[-1] > len(elements):
-            width += 1  # behind one of a choice rather than behind the choice
+            width += 1  # behind one branch of a choice, not behind the choice
         before = elements[place[-1] - 2] if place[-1] > 1 else elements[0]
         if isinstance(before, Reference) and not before.is_token:
-            alone = self.layout.is_hub(rule) and len(elements) == 1
-            if alone or (place[-1] > 1 and self.layout.is_hub(before.name)):
-                width += UNLIKELY_COST  # behind one of many statements rather than in it
-        return Opening("insert", rule, place, tuple(words), width + SITE_COST)
+            alone = self.profile.is_hub(rule) and len(elements) == 1
+            if alone or (place[-1] > 1 and self.profile.is_hub(before.name)):
+                width += UNLIKELY_COST  # behind one of many statements, not in it
+        return EditSite("insert", rule, place, tuple(words), width + SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:
         """Whether a place is behind the end of a line that a rule is: that is the next line."""
-        elements = self.layout.sequence(rule, place[:-1]).elements
-        return self.layout.closing(rule) is not None and (
+        elements = self.profile.sequence(rule, place[:-1]).elements
+        return self.profile.closing(rule) is not None and (
             len(place) == 2 and place[-1] > len(elements)
         )
 
-    def _room(self, rule: str) -> int:
-        """How wide an insertion into a rule is; one that has nothing of its own waits for it."""
-        width = self.layout.width(rule)
-        return width - UNLIKELY_COST if self.layout.only_passes_on(rule) else width
+    def _insertion_width(self, rule: str) -> int:
+        """How wide an insertion into a rule is; less for a rule that has nothing of its own."""
+        width = self.profile.width(rule)
+        return width - UNLIKELY_COST if self.profile.is_single_reference(rule) else width
 
     def _repetitions(
         self, rule: str, place: Address, words: Sequence[Word]
-    ) -> Iterator[Ranked | Opening]:
+    ) -> Iterator[RankedEdits | EditSite]:
         """The operand before a place again, after a sign or word: ``a (',' a)*``."""
         if place[-1] == 1 or len(words) < 2 or any(keyword for _, keyword in words[1:]):
             return
-        before = self.layout.sequence(rule, place[:-1]).elements[place[-1] - 2]
+        before = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
         if not isinstance(before, Reference) or before.is_token:
             return
         kind, keyword = words[0]
         if keyword is None and kind < 0:
             return
-        if before.name in self.phraser.readers.rules_for(tuple(k for k, _ in words[1:])):
+        if before.name in self.phraser.matcher.rules_for(tuple(k for k, _ in words[1:])):
             text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
-            rank = self._room(rule) + REPETITION_COST
+            rank = self._insertion_width(rule) + REPETITION_COST
             rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
-            rank -= self.layout.said_so(text)
+            rank -= self.profile.same_text_bonus(text)
             yield rank, (*self.reserved(words), Insert(rule, place, text))
 
-    def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[Ranked]:
+    def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[RankedEdits]:
         """A rule of several lines that this line begins and that is not known at this place."""
         if any(keyword for _, keyword in words):
             return
-        rank = self.layout.width(rule) + SITE_COST
-        elements = self.layout.sequence(rule, place[:-1]).elements
+        rank = self.profile.width(rule) + SITE_COST
+        elements = self.profile.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
-        for block in self.phraser.readers.opened_by([kind for kind, _ in words]):
+        for block in self.phraser.matcher.multi_line_rules([kind for kind, _ in words]):
             if isinstance(inner, Reference) and not inner.is_token and inner.name != block:
                 hub = inner.name
                 if len(self.grammar.by_name[hub].alternatives) > 1:
-                    end = self.layout.closing(hub)
+                    end = self.profile.closing(hub)
                     symbols = (block, end) if end else (block,)
-                    if not self.likeness.is_foreign(hub, symbols):
+                    if not self.similarity.is_foreign(hub, symbols):
                         worth = (
-                            self.layout.width(hub) + SITE_COST + self.likeness.unlike(hub, symbols)
+                            self.profile.width(hub)
+                            + SITE_COST
+                            + self.similarity.dissimilarity(hub, symbols)
                         )
                         yield worth, (AddAlternative(hub, " ".join(symbols)),)
-            if rule != self.grammar.start and self.layout.is_at_start(rule, place):
+            if rule != self.grammar.start and self.profile.is_at_start(rule, place):
                 continue
             for text in (f"{block}*", f"({block} NEWLINE*)*"):
                 yield rank + UNLIKELY_COST, (Insert(rule, place, text),)
 
     def _replacements(
         self, rule: str, place: Address, element: Element, words: Sequence[Word]
-    ) -> Iterator[Opening]:
-        layout = self.layout
-        elements = layout.sequence(rule, place[:-1]).elements
+    ) -> Iterator[EditSite]:
+        profile = self.profile
+        elements = profile.sequence(rule, place[:-1]).elements
         whole = len(place) == 2 and len(elements) == 1  # an alternative that is one element
         called = element.name if isinstance(element, Reference) and not element.is_token else None
-        # one kind of statement is no place for another kind: its caller is
-        if called and (layout.has_choice(called) or not (whole and layout.is_hub(rule))):
-            rank = layout.width(called) + SITE_COST
-            yield Opening("alternative", called, (1, 1), tuple(words), rank)
+        # another kind of statement belongs to the caller
+        if called and (profile.has_choice(called) or not (whole and profile.is_hub(rule))):
+            rank = profile.width(called) + SITE_COST
+            yield EditSite("alternative", called, (1, 1), tuple(words), rank)
         leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
         closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
         lexer = self.recognizer.lexer
@@ -320,18 +328,18 @@ class OpeningFinder:
             return  # the same as with the group it is in
         if whole or ((leading or closing) and not word):
             return  # the same as an alternative; the words that begin and close a line or a block
-        if called and place[-1] == 1 and len(place) == 2 and layout.is_hub(rule):
+        if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
         if place[-1] == 1 and len(place) == 2 and len(words) > LONGEST_PREFIX:
             return  # another beginning as long as that is another thing
-        rank = layout.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
+        rank = profile.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
         if leading and len(elements) < SHARED_ELEMENTS:
             rank += 2 * UNLIKELY_COST  # there is hardly anything that the two words have in common
         if isinstance(element, Repeat):
             rank += UNLIKELY_COST  # one more thing in a loop made for something else
         if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
             rank += UNLIKELY_COST
-        yield Opening("widen", rule, place, tuple(words), rank)
+        yield EditSite("widen", rule, place, tuple(words), rank)
 
     def _omissions(
         self,
@@ -340,13 +348,13 @@ class OpeningFinder:
         place: Address,
         words: list[Word],
         start: int,
-    ) -> Iterator[Ranked]:
+    ) -> Iterator[RankedEdits]:
         network = self.recognizer.network
         position, stack = site
         rule = network.rule[position]
         base = network.entry[rule]
         places = network.automata[rule].places
-        sequence = self.layout.sequence(rule, place[:-1])
+        sequence = self.profile.sequence(rule, place[:-1])
         rest = [kind for kind, _ in words[start:]]
         for count in range(1, MOST_SKIPPED + 1):
             last = (*place[:-1], place[-1] + count)
@@ -359,7 +367,7 @@ class OpeningFinder:
             for target in (base + s for s, at in enumerate(places) if last in at):
                 _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
                 if failed is None or failed > 1:
-                    rank = self.layout.width(rule) + SITE_COST + count
+                    rank = self.profile.width(rule) + SITE_COST + count
                     left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
                     ends = (left_out[0] is sequence.elements[0]) or last[-1] > len(
                         sequence.elements
@@ -382,7 +390,7 @@ class OpeningFinder:
         following = (*place[:-1], place[-1] + 1)
         network = self.recognizer.network
         rule = network.rule[site[0]]
-        element = self.layout.sequence(rule, place[:-1]).elements[place[-1] - 1]
+        element = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 1]
         if isinstance(element, Reference):
             state = network.automata[rule].edges[site[0] - base].get(element.name)
             return [] if state is None else [base + state]

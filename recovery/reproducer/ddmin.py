@@ -1,7 +1,7 @@
-"""Shrinking: the fewest items of a sequence that still pass a test.
+"""Delta debugging: the fewest items of a sequence that still pass a test.
 
-Delta debugging with what short sequences afford besides: every stretch is tried and not only
-halves and quarters, pairs that can only go together, and one item in place of many. What comes out
+Ddmin with what short sequences afford besides: every stretch is tried and not only halves and
+quarters, pairs that can only go together, and one item in place of many. What comes out
 is 1-minimal: without any single item it would not pass.
 """
 
@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from recovery.tuning import EXHAUSTIVE_ITEMS, SUBSTITUTED_ITEMS
 
-__all__ = ["shrunk", "without_loops", "without_stretches"]
+__all__ = ["minimized", "without_loops", "without_stretches"]
 
 
 _T = TypeVar("_T")
@@ -33,7 +33,7 @@ def without_loops(items: Sequence[_T], places: Sequence[Hashable]) -> list[_T]:
     return out
 
 
-def shrunk(
+def minimized(
     items: Sequence[_T], substitutes: Sequence[_T], passes: Callable[[list[_T]], bool]
 ) -> list[_T]:
     """The items with nothing left that can go or of which a substitute can take the place."""

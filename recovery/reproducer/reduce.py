@@ -17,10 +17,16 @@ from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.sentences import Sentences
 from grammar.parser.shortest_paths import Paths
-from recovery.proposals.candidates import Line
-from recovery.reproducer.ddmin import shrunk, without_loops, without_stretches
-from recovery.reproducer.rendering import Spelling, Token
-from recovery.reproducer.same_failure import SameFailure, Way, kinds_in, line_at, way_of
+from recovery.proposals.edit_site import LinePattern
+from recovery.reproducer.ddmin import minimized, without_loops, without_stretches
+from recovery.reproducer.rendering import AbstractToken, TokenRenderer
+from recovery.reproducer.same_failure import (
+    FailureMode,
+    SameFailure,
+    failure_mode,
+    kinds_in,
+    line_at,
+)
 from recovery.tuning import LONGEST_GAP, MOST_CONFIGURATIONS
 
 __all__ = ["Reducer", "Reproducer"]
@@ -47,11 +53,11 @@ class Reducer:
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
         self._finder = FailureFinder(recognizer)
-        self._spelling = Spelling(recognizer)
+        self._spelling = TokenRenderer(recognizer)
         self._paths = Paths(recognizer.network)
 
     def reduce(
-        self, line: Line, words: Sequence[str], *, mended: Recognizer | None = None
+        self, line: LinePattern, words: Sequence[str], *, mended: Recognizer | None = None
     ) -> Reproducer | None:
         """The reproducer of a failing line.
 
@@ -62,7 +68,8 @@ class Reducer:
         way = self._way(line)
         tokens = self._spelling.tokens(line, words)
         for wider in (None,) if mended is None else (mended, None):
-            # what only follows from the failure is put up with where it cannot be helped
+            # further failures that follow from this one are allowed only where none without is
+            # found
             for may_follow in (False, True):
                 test = SameFailure(self._finder, self._spelling, way, wider, may_follow)
                 for programs in self._programs(line, tokens, wider):
@@ -71,24 +78,24 @@ class Reducer:
                         return self._reproducer(test, min(found, key=len))
         return None
 
-    def _way(self, line: Line) -> Way:
+    def _way(self, line: LinePattern) -> FailureMode:
         form, meant = line.form, dict(line.keywords)
         before = self.recognizer.restore(form.before)
         state, _ = self.recognizer.run(before, form.kinds[: form.index])
         context = self._finder.context(state)
         words = [meant.get(i) for i in range(len(form.kinds))]
-        return way_of(self.recognizer, form.kinds, words, form.index, context)
+        return failure_mode(self.recognizer, form.kinds, words, form.index, context)
 
-    def _smallest(self, program: _Program, test: SameFailure) -> list[Token]:
-        """The program with as few tokens as the test lets it have."""
-        line = shrunk(
+    def _smallest(self, program: _Program, test: SameFailure) -> list[AbstractToken]:
+        """The program with as few tokens as the test allows."""
+        line = minimized(
             program.line,
             self._spelling.operands,
             lambda tokens: test.passes(program.before + tokens + program.after),
         )
         return without_stretches(program.before + line + program.after, test.passes)
 
-    def _reproducer(self, test: SameFailure, tokens: list[Token]) -> Reproducer:
+    def _reproducer(self, test: SameFailure, tokens: list[AbstractToken]) -> Reproducer:
         text = self._spelling.text(tokens, test.wider)
         assert text is not None  # the test has seen it
         failure = self._finder.find(text)[0]
@@ -109,7 +116,7 @@ class Reducer:
     # ----------------------------------------------------------------------- whole programs
 
     def _programs(
-        self, line: Line, tokens: list[Token], wider: Recognizer | None
+        self, line: LinePattern, tokens: list[AbstractToken], wider: Recognizer | None
     ) -> Iterator[list[_Program]]:
         """Programs around the line, those at one place together, the shortest ways there first."""
         recognizer, form, line_kind = self.recognizer, line.form, self.recognizer.line_kind
@@ -121,7 +128,7 @@ class Reducer:
             ):
                 continue
             before, body = self._spelling.frame(prefix), tokens
-            beyond: list[list[Token]] = []
+            beyond: list[list[AbstractToken]] = []
             if wider is not None and ways_out is not None:
                 read = _readable(wider, before, tokens, form.index)
                 if read is None:
@@ -141,8 +148,12 @@ class Reducer:
                 ]
 
     def _shortened(
-        self, start: State, before: list[Token], line: list[Token], wider: Recognizer | None
-    ) -> list[list[Token]]:
+        self,
+        start: State,
+        before: list[AbstractToken],
+        line: list[AbstractToken],
+        wider: Recognizer | None,
+    ) -> list[list[AbstractToken]]:
         """The line without what leads from a state back to it, as far as that can be known."""
         kinds = [token.kind for token in line]
         states = _states(self.recognizer, start, kinds)
@@ -162,18 +173,18 @@ class Reducer:
             )
         return found
 
-    def _broken(self, start: State, line: list[Token]) -> _Broken:
+    def _broken(self, start: State, line: list[AbstractToken]) -> _FailurePoint:
         kinds = [token.kind for token in line]
         state, index = self.recognizer.run(start, kinds)
         if index is None:  # what fails is the end of the file
-            return _Broken(len(kinds), state, 0, start)
+            return _FailurePoint(len(kinds), state, 0, start)
         for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
             end, failed = self.recognizer.run(state, kinds[index + gap :])
             if failed is None:
-                return _Broken(index, state, gap, end)
-        return _Broken(index, state, 0, start)
+                return _FailurePoint(index, state, gap, end)
+        return _FailurePoint(index, state, 0, start)
 
-    def _prefixes(self, line: Line) -> Iterator[list[int]]:
+    def _prefixes(self, line: LinePattern) -> Iterator[list[int]]:
         """Tokens to places where a line can begin, and to the very place where this one began."""
         yield from self._places.values()
         for frames in line.form.before[:MOST_CONFIGURATIONS]:
@@ -198,7 +209,7 @@ class Reducer:
                         found[here] = kinds[:end]
         return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
 
-    def _endings(self, start: State, line: list[Token]) -> list[list[Token]]:
+    def _endings(self, start: State, line: list[AbstractToken]) -> list[list[AbstractToken]]:
         """How a program goes on behind the line: as without it, or as if it had been read."""
         broken, frames = self._broken(start, line), self.recognizer.frames
         if broken.index == len(line):
@@ -213,17 +224,17 @@ class Reducer:
 class _Program:
     """A line in its frame."""
 
-    before: list[Token]
-    line: list[Token]
-    after: list[Token]
+    before: list[AbstractToken]
+    line: list[AbstractToken]
+    after: list[AbstractToken]
 
     @property
-    def whole(self) -> list[Token]:
+    def whole(self) -> list[AbstractToken]:
         return self.before + self.line + self.after
 
 
 @dataclass(frozen=True, slots=True)
-class _Broken:
+class _FailurePoint:
     """Where a line fails and in what state, and how it can be read on.
 
     ``gap`` is how many tokens there have to be left out for that, and ``end`` the state then; none
@@ -237,8 +248,8 @@ class _Broken:
 
 
 def _readable(
-    wider: Recognizer, before: list[Token], line: list[Token], index: int
-) -> tuple[list[Token], State] | None:
+    wider: Recognizer, before: list[AbstractToken], line: list[AbstractToken], index: int
+) -> tuple[list[AbstractToken], State] | None:
     """The line as a wider grammar reads it, and the state behind it.
 
     Where that fails too, further on than the line did, the tokens there are left out, or else the
@@ -272,7 +283,7 @@ def _states(
 
 
 def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
-    """What tells states apart while they are kept.
+    """What distinguishes states while they are kept.
 
     Deep tails may be equal and not identical, which costs a loop: comparing them costs more.
     """

@@ -1,7 +1,7 @@
-"""Spelling: tokens as a program that a person likes to read.
+"""Rendering: abstract tokens as the text of a readable program.
 
-What a name or a number is called tells nothing about a failure, so they get short ones; words that
-are meant as keywords stay as they are. Blocks are indented, blanks stand where people put them.
+Names and numbers do not matter to a failure, so they get short ones; words that are meant as
+keywords stay as they are. Blocks are indented, blanks are put as people put them.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES
 from grammar.parser.lexer import EOF, ERROR, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
-from recovery.proposals.candidates import Line
+from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_NAMES
 
-__all__ = ["FRAME", "Spelling", "Token"]
+__all__ = ["FRAME", "AbstractToken", "TokenRenderer"]
 
 #: What tokens around a failing line are named; names that occur in one are in upper case.
 FRAME = "frame"
@@ -32,10 +32,10 @@ _DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
 
 
-class Token(NamedTuple):
+class AbstractToken(NamedTuple):
     """A token not spelled yet.
 
-    ``name`` tells tokens of one kind apart (equal ones are spelled alike) and is the text of an
+    ``name`` distinguishes tokens of one kind (equal ones are spelled alike) and is the text of an
     unknown character; ``meant`` is the keyword that a name is meant as.
     """
 
@@ -44,7 +44,7 @@ class Token(NamedTuple):
     meant: str | None = None
 
 
-class Spelling:
+class TokenRenderer:
     """Spells the tokens of one grammar."""
 
     def __init__(self, recognizer: Recognizer) -> None:
@@ -53,8 +53,10 @@ class Spelling:
         self._speller = Speller(recognizer.grammar)
         self._name = self.lexer.kind_of.get("NAME", ERROR)
         number = self.lexer.kinds["1"]
-        #: Tokens that may stand for a longer expression.
-        self.operands = tuple(Token(kind, "operand") for kind in (self._name, number) if kind > 0)
+        #: Tokens that may replace a longer expression.
+        self.operands = tuple(
+            AbstractToken(kind, "operand") for kind in (self._name, number) if kind > 0
+        )
         self._fixed: dict[int, str] = {}
         self._forms: dict[int, str] = {}
         for kind, name in enumerate(self.lexer.names):
@@ -73,29 +75,31 @@ class Spelling:
 
     # -------------------------------------------------------------------------- its tokens
 
-    def tokens(self, line: Line, words: Sequence[str]) -> list[Token]:
+    def tokens(self, line: LinePattern, words: Sequence[str]) -> list[AbstractToken]:
         """The tokens of a failing line, the end of the file left out; ``words`` may be fewer."""
         meant = dict(line.keywords)
         return [
-            Token(kind, words[i] if i < len(words) else f"word {i}", meant.get(i))
+            AbstractToken(kind, words[i] if i < len(words) else f"word {i}", meant.get(i))
             for i, kind in enumerate(line.form.kinds)
             if kind != EOF
         ]
 
     def frame(
         self, kinds: Iterable[int], wider: Recognizer | None = None, *, name: str = FRAME
-    ) -> list[Token]:
-        """Tokens that nobody wrote; a kind that only the wider grammar has is a keyword there."""
+    ) -> list[AbstractToken]:
+        """Tokens of the frame; a kind that only the wider grammar has is a keyword there."""
         own = len(self.lexer.names)
         names = () if wider is None else wider.lexer.names
         return [
-            Token(kind, name) if kind < own else Token(self._name, name, names[kind])
+            AbstractToken(kind, name)
+            if kind < own
+            else AbstractToken(self._name, name, names[kind])
             for kind in kinds
         ]
 
     # --------------------------------------------------------------------------- its text
 
-    def text(self, tokens: Sequence[Token], wider: Recognizer | None = None) -> str | None:
+    def text(self, tokens: Sequence[AbstractToken], wider: Recognizer | None = None) -> str | None:
         """The program, or ``None`` where no spelling gives these tokens.
 
         The wider grammar's lexer takes for keywords what is meant so, and nothing else.
@@ -110,7 +114,7 @@ class Spelling:
                 return text
         return None
 
-    def _texts(self, tokens: Sequence[Token], lexers: Sequence[Lexer]) -> list[str] | None:
+    def _texts(self, tokens: Sequence[AbstractToken], lexers: Sequence[Lexer]) -> list[str] | None:
         found: dict[tuple[int, str], str] = {}
         pools: dict[int, Iterator[str]] = {}
         for kind, name, meant in tokens:
@@ -130,7 +134,9 @@ class Spelling:
             found[kind, name] = text
         return [meant or found[kind, name] for kind, name, meant in tokens]
 
-    def _laid_out(self, tokens: Sequence[Token], texts: Sequence[str], *, closely: bool) -> str:
+    def _laid_out(
+        self, tokens: Sequence[AbstractToken], texts: Sequence[str], *, closely: bool
+    ) -> str:
         lines: list[str] = []
         blocks = _Blocks()
         start = 0
@@ -144,7 +150,7 @@ class Spelling:
             start = end + 1
         return "\n".join(lines)
 
-    def _spaced(self, tokens: Sequence[Token], texts: Sequence[str]) -> Iterator[str]:
+    def _spaced(self, tokens: Sequence[AbstractToken], texts: Sequence[str]) -> Iterator[str]:
         """The texts of a line with blanks between them as people put them."""
         inside: list[str] = []  # open brackets
         declares = not _DECLARING.isdisjoint(texts[:2])
@@ -174,7 +180,7 @@ class Spelling:
             elif inside and text == _CLOSING[inside[-1]]:
                 inside.pop()
 
-    def _is_operand(self, token: Token) -> bool:
+    def _is_operand(self, token: AbstractToken) -> bool:
         return token.kind in self._forms and token.meant is None
 
 
@@ -185,7 +191,7 @@ def _formed(form: str) -> Iterator[str]:
 
 
 class _Blocks:
-    """How deep lines stand in blocks, asked for in their order."""
+    """How deep lines are nested in blocks, asked for in their order."""
 
     def __init__(self) -> None:
         self._closers: list[frozenset[str]] = []

@@ -11,13 +11,13 @@ from typing import NamedTuple
 from grammar.parser.failures import Context, FailureFinder
 from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer
-from recovery.reproducer.rendering import FRAME, Spelling, Token
+from recovery.reproducer.rendering import FRAME, AbstractToken, TokenRenderer
 from recovery.tuning import LONGEST_GAP, MOST_TOKENS_READ, TEST_COST
 
-__all__ = ["SameFailure", "Way", "kinds_in", "line_at", "way_of"]
+__all__ = ["FailureMode", "SameFailure", "failure_mode", "kinds_in", "line_at"]
 
 
-class Way(NamedTuple):
+class FailureMode(NamedTuple):
     """What makes two failures alike: the offending token and what the grammar was doing.
 
     ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
@@ -34,17 +34,17 @@ class Way(NamedTuple):
     expected: tuple[str, ...]
 
 
-def way_of(
+def failure_mode(
     recognizer: Recognizer,
     kinds: Sequence[int],
     meant: Sequence[str | None],
     index: int,
     context: Context,
-) -> Way:
+) -> FailureMode:
     """How the line of these tokens fails at ``index``."""
     line_kind = recognizer.line_kind
     could_end = line_kind > 0 and recognizer.lexer.display[line_kind] in context.expected
-    return Way(
+    return FailureMode(
         kinds[index],
         meant[index],
         meant[index - 1] if index else None,
@@ -71,8 +71,8 @@ class SameFailure:
     def __init__(
         self,
         finder: FailureFinder,
-        spelling: Spelling,
-        way: Way,
+        spelling: TokenRenderer,
+        way: FailureMode,
         wider: Recognizer | None,
         may_follow: bool,
     ) -> None:
@@ -84,7 +84,7 @@ class SameFailure:
         self._may_follow = may_follow
         self._left = MOST_TOKENS_READ
 
-    def passes(self, tokens: list[Token]) -> bool:
+    def passes(self, tokens: list[AbstractToken]) -> bool:
         """Whether the program passes; never once the work allowed has been done."""
         self._left -= len(tokens) + TEST_COST
         if self._left < 0:
@@ -97,7 +97,7 @@ class SameFailure:
         first, end = line_at(recognizer, kinds, index)
         meant = [*(t.meant for t in tokens[first:end]), None]
         context = self._finder.context(state)
-        if way_of(recognizer, kinds[first:end], meant, index - first, context) != self._way:
+        if failure_mode(recognizer, kinds[first:end], meant, index - first, context) != self._way:
             return False
         if any(t.name == FRAME and t.kind != recognizer.line_kind for t in tokens[index + 1 : end]):
             return False  # the next line is one of its own
@@ -115,7 +115,7 @@ class SameFailure:
         run, start = self.recognizer.run, self.recognizer.start
         return any(run(start, kinds[:i] + kinds[j:])[1] is None for i, j in cuts)
 
-    def _fails_once(self, tokens: list[Token]) -> bool:
+    def _fails_once(self, tokens: list[AbstractToken]) -> bool:
         text = self._spelling.text(tokens, self.wider)
         if text is None:
             return False
@@ -125,7 +125,7 @@ class SameFailure:
         )
 
 
-def kinds_in(recognizer: Recognizer, tokens: list[Token]) -> list[int]:
+def kinds_in(recognizer: Recognizer, tokens: list[AbstractToken]) -> list[int]:
     """Kinds of the tokens where names that are meant as keywords may be keywords."""
     kind_of = recognizer.lexer.kind_of
     return [t.kind if t.meant is None else kind_of.get(t.meant, t.kind) for t in tokens]

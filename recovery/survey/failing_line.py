@@ -7,14 +7,14 @@ from functools import lru_cache
 
 from grammar.parser.failures import Failure, FailureFinder, Form
 
-__all__ = ["Failed", "failures_of", "source_lines"]
+__all__ = ["FailingLine", "failures_of", "source_lines"]
 
 _LONGEST_LINE_KEPT = 1_000
 _WORDS_KEPT = 24
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class FailingLine:
     """One failing line of a file.
 
     ``line`` and ``column`` from 1; ``token`` is the offending token as written; ``source`` the line
@@ -30,24 +30,26 @@ class Failed:
     form: int
     follows: bool
 
-    def with_form(self, form: int) -> Failed:
+    def with_form(self, form: int) -> FailingLine:
         """The same with another number for its form (`dataclasses.replace` takes twice as long)."""
-        return Failed(
+        return FailingLine(
             self.line, self.column, self.token, self.source, self.words, form, self.follows
         )
 
 
-def failures_of(finder: FailureFinder, text: str, forms: dict[Form, int]) -> tuple[Failed, ...]:
+def failures_of(
+    finder: FailureFinder, text: str, forms: dict[Form, int]
+) -> tuple[FailingLine, ...]:
     """The failing lines of a program; ``forms`` numbers their forms and is added to."""
     failures = finder.find(text)
     lines = source_lines(text) if failures else []
     return tuple(_failed(failure, lines, forms) for failure in failures)
 
 
-def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> Failed:
+def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> FailingLine:
     words = failure.lexemes[: max(_WORDS_KEPT, failure.form.index + 1)]
     source = lines[failure.line - 1] if failure.line <= len(lines) else ""
-    return Failed(
+    return FailingLine(
         failure.line,
         failure.column,
         failure.text[:200],

@@ -8,14 +8,14 @@ from typing import Any
 
 from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
-from recovery.survey.failing_line import Failed
+from recovery.survey.failing_line import FailingLine
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 
 __all__ = ["Kept", "keep", "key_of", "recall"]
 
 #: What is kept of a content: its failures with their forms, or why it is no KRL.
-Kept = tuple[tuple[Failed, ...], tuple[Form, ...]] | str
+Kept = tuple[tuple[FailingLine, ...], tuple[Form, ...]] | str
 
 
 def key_of(grammar: Grammar) -> str:
@@ -51,9 +51,9 @@ def _read(data: Any) -> Kept:
     return tuple(_failed(f) for f in failures), tuple(_forms(forms))
 
 
-def _failed(values: list[Any]) -> Failed:
+def _failed(values: list[Any]) -> FailingLine:
     line, column, token, source, words, form, follows = values
-    return Failed(line, column, token, source, tuple(words), form, follows)
+    return FailingLine(line, column, token, source, tuple(words), form, follows)
 
 
 def _forms(forms: list[list[object]]) -> Iterator[Form]:

@@ -1,10 +1,10 @@
-"""Shapes: what a failing line looks like, in words a person uses.
+"""Signatures: what a failing line looks like, in readable words.
 
-Real source has thousands of failing lines and few causes. A shape keeps what tells causes apart
-(the word a line begins with, the token that could not come, the rule at work) and drops what does
-not (names, numbers, the place in the file). Words that the grammar does not know yet are names to
-its lexer; that such a word is meant as a keyword shows in how it stands: beside operands of many
-kinds with no sign between, in several files, and hardly ever as a plain name.
+Real source has thousands of failing lines and few causes. A signature keeps what distinguishes
+causes (the word a line begins with, the token that could not come, the rule at work) and drops what
+does not (names, numbers, the place in the file). Words that the grammar does not know yet are names
+to its lexer; that such a word is meant as a keyword shows in its neighbours: operands of many kinds
+with no sign between, in several files, and hardly ever as a plain name.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 from grammar.parser.failures import Context, Form
 from grammar.parser.lexer import ERROR, Lexer
-from recovery.survey.failing_line import Failed
+from recovery.survey.failing_line import FailingLine
 from recovery.tuning import (
     KEYWORD_ALONE,
     KEYWORD_CHOICE,
@@ -24,7 +24,7 @@ from recovery.tuning import (
     KEYWORD_SHARE,
 )
 
-__all__ = ["Shape", "Shaper"]
+__all__ = ["Signature", "SignatureBuilder"]
 
 _ELLIPSIS = "…"
 # Signs that no plain name at the beginning of a line has behind it, but a keyword can.
@@ -32,13 +32,13 @@ _BEGINS_OPERAND = frozenset("{-+")
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
-    """What tells one kind of failure from another.
+class Signature:
+    """What distinguishes one kind of failure from another.
 
     ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
     plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
     ``bracket`` the bracket that is open before it, and ``is_first`` whether it comes right behind
-    that: this is told, but alone it tells no kinds apart.
+    that: this is shown in the title, and distinguishes no kinds by itself.
     """
 
     rule: str
@@ -49,7 +49,7 @@ class Shape:
 
     @property
     def title(self) -> str:
-        """A short name for a person: ``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``."""
+        """A short readable name: ``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``."""
         parts = [self.lead] if self.lead else []
         if self.bracket:
             parts += [_ELLIPSIS, self.bracket]
@@ -62,10 +62,10 @@ class Shape:
         return " ".join((*parts, self.offender))
 
 
-class Shaper:
+class SignatureBuilder:
     """Gives failures their shapes; sees all of them first, to learn the words."""
 
-    def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, Failed, Form]]) -> None:
+    def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, FailingLine, Form]]) -> None:
         """``failures`` come with the digest of their file."""
         self.lexer = lexer
         self._name = lexer.kind_of.get("NAME", ERROR)
@@ -123,8 +123,8 @@ class Shaper:
             and count >= KEYWORD_SHARE * (count + plain[word])
         )
 
-    def _names(self, failed: Failed, form: Form) -> Iterator[tuple[int, str]]:
-        """Names on a line that are not inside braces, where names stand beside values anyway."""
+    def _names(self, failed: FailingLine, form: Form) -> Iterator[tuple[int, str]]:
+        """Names on a line, but for those in braces, which have values beside them anyway."""
         depth = 0
         for place, (kind, word) in enumerate(zip(form.kinds, failed.words, strict=False)):
             if word == "{":
@@ -135,7 +135,7 @@ class Shaper:
                 yield place, word
 
     def _stands_out(self, form: Form, place: int, word: str) -> bool:
-        """Whether a name stands as a keyword would: alone, or where no other name ever comes."""
+        """Whether a name is placed like a keyword: alone, or where no other name ever comes."""
         is_sole = place == form.index and word in self._sole
         return is_sole or self._stands_alone(form.kinds, place)
 
@@ -163,7 +163,7 @@ class Shaper:
     def _is_sign(self, kind: int, text: str) -> bool:
         return kind > 0 and self.lexer.display[kind] == text
 
-    def keywords(self, failed: Failed, form: Form) -> tuple[tuple[int, str], ...]:
+    def keywords(self, failed: FailingLine, form: Form) -> tuple[tuple[int, str], ...]:
         """Would-be keywords on a failing line, with their places."""
         return tuple(
             (place, word)
@@ -171,7 +171,7 @@ class Shaper:
             if word in self._keywords and self._stands_out(form, place, word)
         )
 
-    def shape(self, failed: Failed, form: Form, context: Context) -> Shape:
+    def signature(self, failed: FailingLine, form: Form, context: Context) -> Signature:
         """The shape of a failure."""
         kinds, index = form.kinds, form.index
         meant = dict(self.keywords(failed, form))
@@ -183,7 +183,7 @@ class Shaper:
             offender = lead  # the line fails after its first word because of that word
         bracket = self._open_bracket(kinds[:index])
         is_first = index > 0 and self._display(kinds[index - 1]) == bracket
-        return Shape(context.rule, lead, bracket, offender, is_first)
+        return Signature(context.rule, lead, bracket, offender, is_first)
 
     def _display(self, kind: int) -> str:
         if kind == ERROR:

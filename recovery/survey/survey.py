@@ -20,7 +20,7 @@ from grammar.notation import g4
 from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
-from recovery.survey.failing_line import Failed, failures_of, source_lines
+from recovery.survey.failing_line import FailingLine, failures_of, source_lines
 from recovery.survey.result_cache import Kept, keep, key_of, recall
 from support.files.decode import decode, digest
 from support.files.discovery import Found, Skipped, discover, read
@@ -28,7 +28,7 @@ from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Failed", "Survey", "SurveyedFile", "source_lines", "survey", "survey_texts"]
+__all__ = ["Survey", "SurveyedFile", "survey", "survey_texts"]
 
 # One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
 _TASK_BYTES = 1 << 20
@@ -48,7 +48,7 @@ class SurveyedFile:
     places: tuple[tuple[str, str], ...]
     digest: str
     size: int
-    failures: tuple[Failed, ...]
+    failures: tuple[FailingLine, ...]
 
     @property
     def path(self) -> str:
@@ -90,11 +90,11 @@ def survey(
     ``jobs`` is the number of processes, by default one a core, or one for a small corpus;
     ``scheduler`` the address of a Dask cluster that reads instead (`support.parallel.ordered_map`).
     ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
-    ``on_found`` is told how many candidates there are once they are known, ``on_done`` how many
-    more have been dealt with.
+    ``on_found`` gets the number of candidates once it is known, ``on_done`` how many more have
+    been dealt with.
 
     Raises `support.files.discovery.IngestError` where there is nothing to survey, and
-    `support.parallel.workers.WorkersError` where there is nobody to read.
+    `support.parallel.executor.WorkersError` where there are no workers.
     """
     began = time.perf_counter()
     candidates = list(discover(roots))
@@ -164,7 +164,7 @@ class _Content:
     found: Found
     places: list[tuple[str, str]]
     size: int
-    result: tuple[Failed, ...] | str = ()
+    result: tuple[FailingLine, ...] | str = ()
 
 
 class _Gathered:

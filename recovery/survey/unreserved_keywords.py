@@ -1,8 +1,8 @@
-"""Words that a grammar swallows: keywords it lacks, read as names without any failure.
+"""Unreserved keywords: words that a grammar lacks and reads as names without any failure.
 
 Take ``TRUE`` out of a grammar and every program still parses: the word becomes a variable. No
-failure will ever show it, but its uses do: programs of several origins read it, and nobody declares
-it, assigns it, calls it or indexes it. Real variables are bound somewhere.
+failure shows it, but its uses do: programs of several origins read it, and none declares it,
+assigns it, calls it or indexes it. Real variables are bound somewhere.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from grammar.parser.lexer import Lexer
 from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
 
-__all__ = ["Suspect", "suspects"]
+__all__ = ["UnreservedKeyword", "unreserved_keywords"]
 
 
 @dataclass(frozen=True, slots=True)
-class Suspect:
+class UnreservedKeyword:
     """A word that is read everywhere and bound nowhere; ``files`` and ``origins`` count readers."""
 
     word: str
@@ -26,7 +26,9 @@ class Suspect:
     origins: int
 
 
-def suspects(programs: Iterable[tuple[str, str]], lexer: Lexer) -> list[Suspect]:
+def unreserved_keywords(
+    programs: Iterable[tuple[str, str]], lexer: Lexer
+) -> list[UnreservedKeyword]:
     """Suspected keywords in programs given as (origin, text), the most read first."""
     name = lexer.kind_of.get("NAME")
     files: dict[str, int] = defaultdict(int)
@@ -53,7 +55,7 @@ def suspects(programs: Iterable[tuple[str, str]], lexer: Lexer) -> list[Suspect]
             origins[word].add(origin)
     needed = UNRESERVED_ORIGINS if len(every) > 1 else 1
     found = [
-        Suspect(word, count, len(origins[word]))
+        UnreservedKeyword(word, count, len(origins[word]))
         for word, count in files.items()
         if count >= UNRESERVED_FILES
         and len(origins[word]) >= needed
@@ -64,7 +66,7 @@ def suspects(programs: Iterable[tuple[str, str]], lexer: Lexer) -> list[Suspect]
 
 
 def _is_read(before: str, after: str, behind_name: bool) -> bool:
-    """Whether a name stands as a value: behind an operator, a bracket or a word like WHEN.
+    """Whether a name is used as a value: behind an operator, a bracket or a word like WHEN.
 
     A name at the start of a line, behind a type, a dot or DECL, or before ``=``, ``(``, ``[`` or a
     dot is bound there, or part of something that is.

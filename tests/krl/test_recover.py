@@ -267,7 +267,7 @@ def test_another_grammar_finds_something_else(corpus: Path, tmp_path: Path) -> N
 
 
 def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
-    """A proposal that lets in a program of the folder named says so; without one none does."""
+    """A proposal that accepts a program of the folder named says so; without one none does."""
     corpus = lay(tmp_path / "corpus", back=RETURN)
     folder = tmp_path / "negatives"
     folder.mkdir()

@@ -13,7 +13,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, cluster
-from recovery.clustering.negative_score import judge_of
+from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative
 from recovery.proposal_review import Reviewer
 from recovery.records import ProposalRecord
@@ -78,7 +78,9 @@ class Reviewed:
         self.root = root
         self.found: Survey = survey([root], PRELIMINARY, jobs=1)
         negatives = [Negative(None, text, "it is wrong", "parse") for text in NEGATIVES]
-        self.clusters: Clusters = cluster(self.found, judge=judge_of(PRELIMINARY, negatives))
+        self.clusters: Clusters = cluster(
+            self.found, count_negatives=negative_counter(PRELIMINARY, negatives)
+        )
         self.reviewer = Reviewer(self.found, self.clusters)
         self.records = [(c, self.reviewer.records(c)) for c in self.clusters.ranked]
 
@@ -182,7 +184,7 @@ def test_breaks_counts_the_files_that_parse_no_more(lines: Reviewed) -> None:
     assert 0 in broken
 
 
-def test_negatives_let_in_are_counted(lines: Reviewed) -> None:
+def test_negatives_accepted_are_counted(lines: Reviewed) -> None:
     """Programs that must stay rejected, were so far, and would be no longer."""
     refused = [text for text in NEGATIVES if not RECOGNIZER.accepts(text)]
     for record in lines.proposals():

@@ -63,8 +63,8 @@ def mutation(
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.model import GrammarError
-    from recovery.bench.assessment import examine
-    from recovery.bench.specimens import choose, material_for
+    from recovery.bench.assessment import assess_all
+    from recovery.bench.specimens import choose_mutants, material_for
     from recovery.bench.stability import rankings, same_ranking
     from recovery.negatives.negatives import NegativeError, load
     from support.files.discovery import IngestError
@@ -73,10 +73,10 @@ def mutation(
     try:
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], load(negatives), seed)
-        chosen = choose(whole, singles, multiple, seed)
+        chosen = choose_mutants(whole, singles, multiple, seed)
         again = chosen[:: max(1, len(chosen) // repeated)][:repeated] if repeated else []
         with progress_bar("assessing", len(chosen)) as bar:
-            record = examine(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
+            record = assess_all(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
         with progress_bar("repeating", runs) as bar:
             same = same_ranking(rankings(material, again, runs, bar)) if again else None
     except (GrammarError, IngestError, NegativeError) as error:

@@ -1,4 +1,4 @@
-"""`krl construct try`, `accept` and `replay`: constructs weighed, taken in, and replayed."""
+"""`krl construct try`, `accept` and `replay`: constructs evaluated, accepted, and replayed."""
 
 import shutil
 from pathlib import Path
@@ -23,7 +23,7 @@ from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar
-    from recovery.ledger.acceptance import Acceptance, Home
+    from recovery.ledger.acceptance import Acceptance, GrammarPaths
     from recovery.ledger.baseline import Corpora
     from recovery.ledger.ledger import Ledger
 
@@ -88,7 +88,7 @@ def accept(
     was accepted before is weighed again at its place. Exit status 1 when something is refused.
     """
     from grammar.notation.g4 import read_file
-    from recovery.ledger.acceptance import Refused, write
+    from recovery.ledger.acceptance import AcceptanceRefused, write
     from recovery.ledger.ledger import Ledger
 
     home = _home()
@@ -101,7 +101,7 @@ def accept(
         found = _weighed(Ledger.read(home.ledger), files, corpus, jobs, current)
         try:
             written = write(found, home)
-        except Refused as refused:
+        except AcceptanceRefused as refused:
             print_refusals(refused.refusals)
             typer.echo("nothing has changed")
             return FINDINGS
@@ -152,10 +152,10 @@ def replay(
     return FINE
 
 
-def _home() -> "Home":
-    from recovery.ledger.acceptance import Home
+def _home() -> "GrammarPaths":
+    from recovery.ledger.acceptance import GrammarPaths
 
-    return Home(PRELIMINARY, GRAMMAR, GENERATED, LEDGER)
+    return GrammarPaths(PRELIMINARY, GRAMMAR, GENERATED, LEDGER)
 
 
 def _weighed(
@@ -165,13 +165,13 @@ def _weighed(
     jobs: int | None,
     current: "Grammar | None" = None,
 ) -> "Acceptance":
-    from recovery.ledger.acceptance import enter
+    from recovery.ledger.acceptance import prepare
     from recovery.ledger.ledger import preliminary_of
 
     given = list({c.file: c for c in map(ledger.take, files)}.values())
     preliminary, corpora = preliminary_of(there(PRELIMINARY)), _corpora(corpus, jobs)
     with progress_bar("weighing", len(given)) as bar:
-        return enter(given, preliminary, ledger, corpora, current, bar)
+        return prepare(given, preliminary, ledger, corpora, current, bar)
 
 
 def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":

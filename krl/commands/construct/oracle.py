@@ -92,13 +92,13 @@ def oracle(
 def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
     """Ask about constructs, write the verdicts into their files, say what was answered."""
     from recovery.ledger.construct_file import text_of
-    from recovery.ledger.oracle import judged
+    from recovery.ledger.oracle import verdict_on
     from support.files.atomic_write import write_together
 
     with progress_bar("asking", len(constructs)) as bar:
         found = []
         for construct in constructs:
-            found.append((construct, judged(construct, asked)))
+            found.append((construct, verdict_on(construct, asked)))
             bar()
     changes: dict[Path, bytes | None] = {}
     findings = 0

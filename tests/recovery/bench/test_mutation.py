@@ -11,10 +11,17 @@ from grammar.notation import g4
 from grammar.notation.edits import AddAlternative
 from grammar.parser.recognizer import Recognizer
 from recovery.bench import assessment
-from recovery.bench.assessment import Material, Verdict, assess, covering, examine, figures
+from recovery.bench.assessment import (
+    Assessment,
+    BenchMaterial,
+    assess,
+    assess_all,
+    covering,
+    figures,
+)
 from recovery.bench.mutation import Mutant, combined, mutants
-from recovery.bench.specimens import choose
-from recovery.clustering.cause import Proposal, no_judge
+from recovery.bench.specimens import choose_mutants
+from recovery.clustering.cause import Proposal, no_negatives
 from recovery.clustering.cluster import Clusters, cluster
 
 SMALL = g4.read("""grammar S;
@@ -76,20 +83,20 @@ def test_several_parts_are_of_different_rules(every: list[Mutant]) -> None:
 
 def test_choosing_is_by_seed() -> None:
     """The same seed draws the same mutants."""
-    assert choose(SMALL, 4, 2, 7) == choose(SMALL, 4, 2, 7)
+    assert choose_mutants(SMALL, 4, 2, 7) == choose_mutants(SMALL, 4, 2, 7)
 
 
 def test_the_tool_finds_its_way_back(every: list[Mutant]) -> None:
     """On this small grammar an alternative or part taken out is noticed and put back."""
     shown = [*PROGRAMS[::2], *covering(SMALL)]
     numbered = tuple((f"program {n}", text) for n, text in enumerate(shown))
-    material = Material(SMALL, numbered, tuple(PROGRAMS[1::2]), ())
+    material = BenchMaterial(SMALL, numbered, tuple(PROGRAMS[1::2]), ())
     wanted = [m for m in every if m.kind == "alternative" and "halt" not in m.title(SMALL)]
-    record = examine(material, wanted)
+    record = assess_all(material, wanted)
     assert record["detected"] == 1.0
     assert record["repair_top5"] >= 0.8
     assert record == {
-        **examine(material, wanted),
+        **assess_all(material, wanted),
         "seconds_per_mutant": record["seconds_per_mutant"],
     } | {"by_kind": record["by_kind"]}
 
@@ -120,7 +127,7 @@ def test_several_parts_are_ranked_by_how_deep_a_person_looks(
             return replace(found, ranked=(*found.ranked[:-1], last))
 
         monkeypatch.setattr(assessment, "cluster", changed)
-        verdict = assess(mutant, SMALL, shown, PROGRAMS[1::2], lambda _: no_judge, lambda _: 0)
+        verdict = assess(mutant, SMALL, shown, PROGRAMS[1::2], lambda _: no_negatives, lambda _: 0)
         return verdict.repair_rank
 
     assert 1 == rank_with(lambda found: found)
@@ -131,8 +138,8 @@ def test_several_parts_are_ranked_by_how_deep_a_person_looks(
 def test_figures_count_ranks(every: list[Mutant]) -> None:
     """A rank within one or five counts; clusters are counted for each part taken out."""
     verdicts = [
-        Verdict(every[0], True, 1, 4, None, 2, 0, (3,), 1.0),
-        Verdict(every[1], False, None, None, None, 0, 0, (), 1.0),
+        Assessment(every[0], True, 1, 4, None, 2, 0, (3,), 1.0),
+        Assessment(every[1], False, None, None, None, 0, 0, (), 1.0),
     ]
     found = figures(verdicts, 10)
     assert (0.5, 0.5, 0.0, 0.5, 0.0) == (

@@ -3,7 +3,7 @@
 import os
 
 from grammar.notation import g4
-from recovery.bench.assessment import Material
+from recovery.bench.assessment import BenchMaterial
 from recovery.bench.mutation import mutants
 from recovery.bench.stability import rankings, same_ranking
 
@@ -15,7 +15,7 @@ def test_two_runs_tell_the_same(small_grammar: str) -> None:
     shown = (("a", "DEF A()\nHALT\nEND\n"), ("b", "DEF A()\nWAIT B\nEND\n"))
     chosen = [m for m in mutants(grammar) if m.kind == "alternative"]
     done: list[int] = []
-    found = rankings(Material(grammar, shown, (), ()), chosen, 2, done.append)
+    found = rankings(BenchMaterial(grammar, shown, (), ()), chosen, 2, done.append)
     assert found[0] == found[1]
     assert len(chosen) == len(set(found[0]))
     assert [1, 1] == done

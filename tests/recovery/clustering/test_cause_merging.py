@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from grammar.notation.edits import Edit, Widen
 from grammar.notation.g4 import read
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, Judge, Proposal, no_judge
-from recovery.clustering.cause_merging import joined, sought_together
-from recovery.clustering.search import Search
-from recovery.proposals.candidates import Line
+from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
+from recovery.clustering.causes import merged_by_edits, merged_by_first_word
+from recovery.clustering.search import CauseSearch
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
 GRAMMAR = read("""grammar S;
@@ -27,15 +27,15 @@ LESS = Widen("line", (1, 3), "'<'")
 MORE = Widen("line", (1, 3), "'>'")
 
 
-def search(judge: Judge = no_judge) -> Search:
+def search(count_negatives: NegativeCounter = no_negatives) -> CauseSearch:
     """A search for four lines: two with a sign that is missing, two with another."""
     texts = [f"IF {name} {sign} B\n" for sign in "<>" for name in "AC"]
     found = survey_texts(list(zip("1234", texts, strict=True)), GRAMMAR)
-    lines = [Line(found.forms[file.failures[0].form], ()) for file in found.files]
-    return Search(Recognizer(GRAMMAR), lines, [1] * 4, judge)
+    lines = [LinePattern(found.forms[file.failures[0].form], ()) for file in found.files]
+    return CauseSearch(Recognizer(GRAMMAR), lines, [1] * 4, count_negatives)
 
 
-def apart(searched: Search) -> list[Cause]:
+def apart(searched: CauseSearch) -> list[Cause]:
     """Each sign a cause of its own."""
     proposals = [searched.proposal((edit,), 0) for edit in (LESS, MORE)]
     assert [{0, 1}, {2, 3}] == [p.mended for p in proposals]
@@ -49,7 +49,7 @@ def mends_all(proposal: Proposal) -> bool:
 def test_words_at_one_place_have_one_cause() -> None:
     """Two signs that are missing in one place become a choice of both, in place of the first."""
     searched = search()
-    [one] = joined(searched, apart(searched))
+    [one] = merged_by_edits(searched, apart(searched))
     assert (0, 1, 2, 3) == one.lines
     assert (Widen("line", (1, 3), "('<' | '>')"),) == one.proposals[0].edits
     assert mends_all(one.proposals[0])
@@ -59,7 +59,7 @@ def test_words_at_one_place_have_one_cause() -> None:
 def test_lines_that_begin_alike_are_searched_together() -> None:
     """What mends all of them is found though each cause had an edit of its own."""
     searched = search()
-    [one] = sought_together(searched, apart(searched))
+    [one] = merged_by_first_word(searched, apart(searched))
     assert (0, 1, 2, 3) == one.lines
     assert mends_all(one.proposals[0])
 
@@ -67,12 +67,12 @@ def test_lines_that_begin_alike_are_searched_together() -> None:
 def test_causes_stay_apart_where_the_edit_for_both_lets_in_more() -> None:
     """An edit that costs negatives which neither cost is no reason to make two causes one."""
 
-    def judge(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit]) -> int:
         return any("'<'" in str(edit) and "'>'" in str(edit) for edit in edits)
 
-    searched = search(judge)
+    searched = search(count_negatives)
     causes = apart(searched)
-    assert causes == joined(searched, causes)
+    assert causes == merged_by_edits(searched, causes)
 
 
 def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
@@ -80,5 +80,5 @@ def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
     searched = search()
     hopeless = Cause((3,), ())
     first, _ = apart(searched)
-    assert [first, hopeless] == joined(searched, [first, hopeless])
-    assert [first, hopeless] == sought_together(searched, [first, hopeless])
+    assert [first, hopeless] == merged_by_edits(searched, [first, hopeless])
+    assert [first, hopeless] == merged_by_first_word(searched, [first, hopeless])

@@ -10,10 +10,10 @@ from grammar.notation.edits import Edit
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, Judge
+from recovery.clustering.cause import Cause, NegativeCounter
 from recovery.clustering.causes import find_causes
-from recovery.clustering.edit_trial import Trial
-from recovery.proposals.candidates import Line
+from recovery.clustering.edit_trial import EditTrial
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -29,14 +29,14 @@ def program(line: str) -> str:
     return f"DEF A()\n{line}\nEND\n"
 
 
-def lines_of(*texts: str) -> list[Line]:
+def lines_of(*texts: str) -> list[LinePattern]:
     """The failing line of each text; STEP and C_VEL are meant as keywords."""
     found = survey_texts([(text, program(text)) for text in texts], PRELIMINARY)
     lines = []
     for file in found.files:
         failed = file.failures[0]
         meant = ((i, word) for i, word in enumerate(failed.words) if word in ("STEP", "C_VEL"))
-        lines.append(Line(found.forms[failed.form], tuple(meant)))
+        lines.append(LinePattern(found.forms[failed.form], tuple(meant)))
     return lines
 
 
@@ -47,7 +47,7 @@ def nothing_wrong(edits: Sequence[Edit]) -> int:
 
 def causes(
     groups: Sequence[Sequence[str]],
-    judge: Judge = nothing_wrong,
+    count_negatives: NegativeCounter = nothing_wrong,
     weights: Sequence[int] | None = None,
 ) -> list[Cause]:
     """The causes of lines that come in these groups, numbered through them."""
@@ -58,7 +58,7 @@ def causes(
         lines,
         weights or [1] * len(lines),
         [[next(numbers) for _ in group] for group in groups],
-        judge,
+        count_negatives,
     )
 
 
@@ -119,13 +119,13 @@ def test_lines_nested_beyond_measure_get_no_search() -> None:
 def test_proposals_mend_what_they_say(all_causes: list[Cause]) -> None:
     """The best proposal mends lines of its cause only, and each tells all lines it mends."""
     lines = lines_of(*(text for group in ALL for text in group))
-    trial = Trial(RECOGNIZER, lines)
+    trial = EditTrial(RECOGNIZER, lines)
     gone: set[int] = set()
     for cause in all_causes:
         for proposal in cause.proposals:
             # lines that have their cause already are not asked again
-            assert trial.outcome(proposal.edits).mended - gone == proposal.mended
-            assert trial.outcome(proposal.edits).advanced - gone == proposal.advanced
+            assert trial.result(proposal.edits).mended - gone == proposal.mended
+            assert trial.result(proposal.edits).advanced - gone == proposal.advanced
         if cause.proposals:
             assert set(cause.proposals[0].mended) <= set(cause.lines)
             assert cause.proposals[0].mended
@@ -140,32 +140,32 @@ def test_proposals_differ(all_causes: list[Cause]) -> None:
 
 @pytest.mark.parametrize("salt", range(3))
 def test_what_lets_in_negatives_comes_last(salt: int) -> None:
-    """Whatever the judge says, proposals are ordered by it first, and tell what it said."""
+    """Proposals are ordered by the count of negatives first, and record it."""
 
-    def judge(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit]) -> int:
         return zlib.crc32(f"{salt}{edits}".encode()) % 3
 
-    for cause in causes([STEPS, LISTS, RETURNS], judge):
+    for cause in causes([STEPS, LISTS, RETURNS], count_negatives):
         said = [proposal.accepts_negatives for proposal in cause.proposals]
-        assert [judge(proposal.edits) for proposal in cause.proposals] == said
+        assert [count_negatives(proposal.edits) for proposal in cause.proposals] == said
         assert sorted(said) == said
 
 
 def test_an_edit_that_lets_in_no_negative_is_preferred() -> None:
-    """An edit that the judge refuses gives way to another that mends the same lines."""
+    """An edit that accepts negatives gives way to another that mends the same lines."""
     (plain,) = causes([LISTS])
     best = plain.proposals[0]
 
-    def judge(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit]) -> int:
         return 5 if tuple(edits) == best.edits else 0
 
-    (careful,) = causes([LISTS], judge)
+    (careful,) = causes([LISTS], count_negatives)
     assert best.edits != careful.proposals[0].edits
     assert best.mended == careful.proposals[0].mended
 
 
 def test_among_equals_the_most_restrictive_comes_first(all_causes: list[Cause]) -> None:
-    """Of edits that mend the same lines and let in no negatives, the narrowest comes first."""
+    """Of edits that mend the same lines and accept no negatives, the narrowest comes first."""
     for cause in all_causes:
         if not cause.proposals:
             continue

@@ -23,8 +23,9 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.clustering.edit_trial import Outcome, Trial, edited
-from recovery.proposals.candidates import CandidateFinder, Line
+from recovery.clustering.edit_trial import EditTrial, TrialResult, edited
+from recovery.proposals.candidates import CandidateFinder
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -104,14 +105,14 @@ def fresh(name: str) -> Recognizer:
 
 
 @cache
-def trial() -> Trial:
+def trial() -> EditTrial:
     found = survey_texts([(line, program(line)) for line in FAILING], PRELIMINARY)
     lines = []
     for file in found.files:
         (failed,) = file.failures
         meant = tuple((i, word) for i, word in enumerate(failed.words) if word in KEYWORDS)
-        lines.append(Line(found.forms[failed.form], meant))
-    return Trial(RECOGNIZER, lines)
+        lines.append(LinePattern(found.forms[failed.form], meant))
+    return EditTrial(RECOGNIZER, lines)
 
 
 def failing_token(recognizer: Recognizer, text: str) -> int | None:
@@ -130,24 +131,26 @@ def test_lines_are_mended_that_whole_programs_say_are(name: str) -> None:
             mended.add(number)
         elif after > before:
             advanced.add(number)
-    assert Outcome(frozenset(mended), frozenset(advanced)) == trial().outcome(EDITS[name])
+    assert TrialResult(frozenset(mended), frozenset(advanced)) == trial().result(EDITS[name])
 
 
 def test_the_edits_tell_lines_apart() -> None:
     """The examples above do mend lines, each its own, and leave others as they are."""
-    outcomes = [trial().outcome(edits) for edits in EDITS.values()]
-    assert len({o.mended for o in outcomes}) > 6
-    assert not any(len(o.mended) == len(FAILING) for o in outcomes)
-    assert any(o.advanced for o in outcomes)
+    results = [trial().result(edits) for edits in EDITS.values()]
+    assert len({o.mended for o in results}) > 6
+    assert not any(len(o.mended) == len(FAILING) for o in results)
+    assert any(o.advanced for o in results)
 
 
 @pytest.mark.parametrize("name", ["insert in the middle", "keyword", "new rule"])
 def test_only_the_lines_asked_about_are_tried(name: str) -> None:
     """The outcome among some lines is that among all, cut to them."""
-    whole = trial().outcome(EDITS[name])
+    file_trial = trial().result(EDITS[name])
     some = frozenset(range(0, len(FAILING), 3))
-    assert Outcome(whole.mended & some, whole.advanced & some) == trial().outcome(EDITS[name], some)
-    assert Outcome(frozenset(), frozenset()) == trial().outcome(EDITS[name], [])
+    assert TrialResult(file_trial.mended & some, file_trial.advanced & some) == trial().result(
+        EDITS[name], some
+    )
+    assert TrialResult(frozenset(), frozenset()) == trial().result(EDITS[name], [])
 
 
 def test_candidates_mend_what_they_say() -> None:
@@ -162,10 +165,10 @@ def test_candidates_mend_what_they_say() -> None:
             new = {edit.name for edit in candidate.edits if isinstance(edit, AddToken)}
             # a line is tried with a new keyword only where it may mean one
             relevant = {i for i, line in enumerate(trial().lines) if new <= words_of(line)}
-            assert expected & relevant <= trial().outcome(candidate.edits).mended
+            assert expected & relevant <= trial().result(candidate.edits).mended
 
 
-def words_of(line: Line) -> set[str]:
+def words_of(line: LinePattern) -> set[str]:
     return {word for _, word in line.keywords}
 
 
@@ -209,7 +212,7 @@ def test_edits_leave_the_recogniser_as_it_was() -> None:
     """Trying an edit changes nothing: what was refused before is refused after."""
     before = [failing_token(RECOGNIZER, program(line)) for line in FAILING]
     for edits in EDITS.values():
-        trial().outcome(edits)
+        trial().result(edits)
     assert before == [failing_token(RECOGNIZER, program(line)) for line in FAILING]
 
 
@@ -230,19 +233,19 @@ def test_edits_leave_the_recogniser_as_it_was() -> None:
 def test_edits_that_make_no_grammar_mend_nothing(edits: list[Edit]) -> None:
     """An edit that does not fit, or that no recogniser could read, is no error and no mend."""
     assert edited(RECOGNIZER, edits) is None
-    assert Outcome(frozenset(), frozenset()) == trial().outcome(edits)
+    assert TrialResult(frozenset(), frozenset()) == trial().result(edits)
 
 
 def test_a_line_is_tried_behind_what_lets_it_begin_in_every_way() -> None:
     """A second routine follows a routine: what leads there through a data list does not count."""
     text = "DEFDAT A\nENDDAT\n", "DEF A()\nEND\nDEF B(X)\nEND\n"
-    whole = read_file(GRAMMAR)
-    grammar = apply(whole, [RemoveElement("procedure", (1, 5))])
+    file_trial = read_file(GRAMMAR)
+    grammar = apply(file_trial, [RemoveElement("procedure", (1, 5))])
     found = survey_texts([(f"{n}.src", t) for n, t in enumerate(text)], grammar)
     form = found.forms[found.files[1].failures[0].form]
-    trial = Trial(Recognizer(grammar), [Line(form, ())])
+    trial = EditTrial(Recognizer(grammar), [LinePattern(form, ())])
     edit = Insert("procedure", (1, 5), "parameters?")
-    assert frozenset([0]) == trial.outcome([edit]).mended
+    assert frozenset([0]) == trial.result([edit]).mended
 
 
 def test_two_readings_are_told() -> None:
@@ -250,6 +253,6 @@ def test_two_readings_are_told() -> None:
     grammar = read_file(GRAMMAR)
     found = survey_texts([("a.src", "DEF A()\nHALT C_DIS\nEND\n")], grammar)
     form = found.forms[found.files[0].failures[0].form]
-    trial = Trial(Recognizer(grammar), [Line(form, ())])
+    trial = EditTrial(Recognizer(grammar), [LinePattern(form, ())])
     assert trial.is_ambiguous([Insert("halt", (1, 2), "(C_DIS | criterion)?")], [0])
     assert not trial.is_ambiguous([Insert("halt", (1, 2), "criterion?")], [0])

@@ -8,7 +8,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import cluster
 from recovery.clustering.edit_trial import edited
-from recovery.clustering.regression import Readable
+from recovery.clustering.regression import ParsedFiles
 from recovery.survey.survey import survey_texts
 
 GRAMMAR: Grammar = read("""grammar S;
@@ -42,9 +42,9 @@ def test_a_file_that_has_the_word_as_a_name_is_lost() -> None:
     wider = edited(Recognizer(GRAMMAR), RESERVED)
     assert wider is not None
     plain, named = (6, lambda: "STOP 1\n"), (7, lambda: "hold=1\n")
-    assert Readable([plain, named], {"HOLD"}).is_lost(wider, ["HOLD"])
-    assert not Readable([plain], {"HOLD"}).is_lost(wider, ["HOLD"])
-    assert not Readable([plain, named], {"HOLD"}).is_lost(wider, ["KEEP"])
+    assert ParsedFiles([plain, named], {"HOLD"}).breaks(wider, ["HOLD"])
+    assert not ParsedFiles([plain], {"HOLD"}).breaks(wider, ["HOLD"])
+    assert not ParsedFiles([plain, named], {"HOLD"}).breaks(wider, ["KEEP"])
 
 
 @pytest.mark.parametrize(

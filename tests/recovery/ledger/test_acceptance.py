@@ -12,7 +12,7 @@ from grammar.notation import g4
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert
 from grammar.notation.generate import GENERATED, GenerationError
 from grammar.parser import antlr_reference
-from recovery.ledger.acceptance import Acceptance, Home, Refused, enter, write
+from recovery.ledger.acceptance import Acceptance, AcceptanceRefused, GrammarPaths, prepare, write
 from recovery.ledger.baseline import Corpora
 from recovery.ledger.construct import Construct, Evidence, LedgerError
 from recovery.ledger.construct_file import read, text_of
@@ -51,7 +51,7 @@ class House:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.home = Home(
+        self.home = GrammarPaths(
             folder / "preliminary.g4",
             folder / "KRL.g4",
             folder / "_generated",
@@ -81,16 +81,16 @@ class House:
         self.generated += 1
         shutil.copytree(GENERATED, folder, ignore=shutil.ignore_patterns("__pycache__"))
 
-    def enter(self, *files: Path, own: Path | None = None) -> Acceptance:
+    def prepare(self, *files: Path, own: Path | None = None) -> Acceptance:
         """Weigh the constructs of files."""
         ledger = self.ledger
         current = g4.read_file(self.home.grammar)
         corpora = Corpora([], own, [], generated=0, jobs=1)
-        return enter([ledger.take(f) for f in files], START, ledger, corpora, current)
+        return prepare([ledger.take(f) for f in files], START, ledger, corpora, current)
 
     def accept(self, *files: Path) -> list[Path]:
         """Weigh and write them."""
-        return write(self.enter(*files), self.home, self.generate)
+        return write(self.prepare(*files), self.home, self.generate)
 
     def content(self) -> dict[str, bytes]:
         """Every file there is."""
@@ -150,10 +150,10 @@ def test_one_refusal_refuses_all_and_changes_nothing(house: House) -> None:
     wrong = replace(WORDS["BBB"], accept=("DEF A(\n",), evidence=Evidence())
     files = [house.file(c) for c in (WORDS["AAA"], wrong, WORDS["CCC"])]
     before = house.content()
-    found = house.enter(*files)
+    found = house.prepare(*files)
     assert ["0002-bbb"] * 2 == [where for where, _ in found.refusals]
     assert 3 == len(found.evaluations)
-    with pytest.raises(Refused, match="no ground"):
+    with pytest.raises(AcceptanceRefused, match="no ground"):
         write(found, house.home, house.generate)
     assert before == house.content()
 
@@ -161,7 +161,7 @@ def test_one_refusal_refuses_all_and_changes_nothing(house: House) -> None:
 def test_an_edit_that_does_not_fit_refuses(house: House) -> None:
     """It is named; what comes after it is not weighed, for there is no grammar to weigh it on."""
     wrong = replace(WORDS["BBB"], edits=(AddAlternative("sum", "sum"),))
-    found = house.enter(house.file(wrong), house.file(WORDS["AAA"]))
+    found = house.prepare(house.file(wrong), house.file(WORDS["AAA"]))
     ((where, why),) = found.refusals
     assert "0001-bbb" == where
     assert "left recursion" in why
@@ -169,11 +169,11 @@ def test_an_edit_that_does_not_fit_refuses(house: House) -> None:
 
 
 def test_an_example_that_fails_in_the_end_refuses(house: House) -> None:
-    """A construct may take away what one before it let in."""
+    """A construct may take away what one before it accepted."""
     name = construct("names", (AddAlternative("simpleStatement", "NAME sum"),), "AAA 1", "1")
     edits = (AddToken("AAA"), AddAlternative("simpleStatement", "AAA AAA"))
     other = replace(WORDS["AAA"], edits=edits, accept=("DEF A()\nAAA AAA\nEND\n",), reject=())
-    found = house.enter(house.file(name), house.file(other))
+    found = house.prepare(house.file(name), house.file(other))
     assert (
         ("0001-names", "in the end examples.accept: number 1 is not accepted"),
     ) == found.refusals
@@ -185,7 +185,7 @@ def test_where_antlr_disagrees_nothing_is_written(house: House) -> None:
     before = house.content()
     assert antlr_reference.accepts(FOR_STEP.accept[0])
     ours = sys.modules["grammar._generated.KRLParser"]
-    with pytest.raises(Refused, match="ANTLR refuses number 1, line 2"):
+    with pytest.raises(AcceptanceRefused, match="ANTLR refuses number 1, line 2"):
         house.accept(file)
     assert before == house.content()
     assert ours is sys.modules["grammar._generated.KRLParser"]
@@ -206,7 +206,7 @@ def test_a_grammar_changed_by_hand_is_not_overwritten(house: House) -> None:
     """What is in force has to be the replay of the ledger."""
     house.home.grammar.write_bytes(START.text.replace("// Only", "// Only,").encode())
     with pytest.raises(LedgerError, match="is not the replay of the ledger"):
-        house.enter(house.file(WORDS["AAA"]))
+        house.prepare(house.file(WORDS["AAA"]))
 
 
 @pytest.mark.usefixtures("trusting")
@@ -251,7 +251,7 @@ def test_a_change_in_the_middle_may_not_undo_what_came_after(house: House, tmp_p
     file = house.home.ledger / "0001-aaa.toml"
     edits = (AddToken("AAA"), AddAlternative("simpleStatement", "AAA sum"))
     file.write_text(text_of(replace(read(file), edits=edits)), encoding="utf-8")
-    found = house.enter(file, own=own)
+    found = house.prepare(file, own=own)
     assert (("in the end", "no longer parses: programs/a.src:2, at '=='"),) == found.refusals
 
 
@@ -261,5 +261,5 @@ def test_progress_is_told(house: House) -> None:
     note: Callable[[int], object] = done.append
     ledger = house.ledger
     given = [ledger.take(house.file(WORDS[word])) for word in ("AAA", "BBB")]
-    enter(given, START, ledger, Corpora([], None, [], generated=0), None, note)
+    prepare(given, START, ledger, Corpora([], None, [], generated=0), None, note)
     assert [1, 1] == done

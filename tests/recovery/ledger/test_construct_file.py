@@ -131,7 +131,7 @@ def test_ids_and_names_have_one_form() -> None:
 
 
 @pytest.mark.parametrize(
-    ("evidence", "grounds", "standing", "objection"),
+    ("evidence", "grounds", "earned_state", "objection"),
     [
         (Evidence(), (), "proposed", "no ground: no file"),
         (Evidence(9, 1, 9), (), "proposed", "no ground: only one file"),
@@ -156,10 +156,10 @@ def test_ids_and_names_have_one_form() -> None:
     ],
 )
 def test_grounds_follow_from_the_evidence(
-    evidence: Evidence, grounds: tuple[str, ...], standing: str, objection: str
+    evidence: Evidence, grounds: tuple[str, ...], earned_state: str, objection: str
 ) -> None:
     """Two origins, a rule or manual, and a verdict are grounds; a refusal outweighs them all."""
     construct = Construct("a", "T", (AddToken("X"),), evidence=evidence)
-    assert (grounds, standing) == (evidence.grounds, construct.standing)
+    assert (grounds, earned_state) == (evidence.grounds, construct.earned_state)
     assert evidence.objection.startswith(objection)
     assert bool(objection) == bool(evidence.objection)

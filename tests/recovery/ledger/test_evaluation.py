@@ -43,7 +43,7 @@ def weighed(
     roots = [evidence] if evidence else []
     corpora = Corpora(roots, own, negatives, generated=generated, jobs=1)
     after = grown(START, construct)
-    return evaluate(construct, corpora.standing(START), corpora.standing(after))
+    return evaluate(construct, corpora.measure(START), corpora.measure(after))
 
 
 def refusals(construct: Construct, **more: object) -> tuple[str, ...]:
@@ -158,14 +158,14 @@ def test_a_file_that_no_longer_parses_refuses(tmp_path: Path) -> None:
     assert (3, "no longer parse: 2 more files") == (len(named), rest)
 
 
-def test_a_negative_that_is_let_in_refuses() -> None:
-    """It is named with its reason; one that was let in before is not held against it."""
+def test_a_negative_that_is_accepted_refuses() -> None:
+    """It is named with its reason; one that was accepted before does not count."""
     texts = ("DEF N()\nFOR I=1 TO 9 STEP 2\nENDFOR\nEND\n", "DEF N()\nX=1\nEND\n")
     new, old = (Negative(Path("corpus", f"{n}.src"), t, "so", "parse") for n, t in enumerate(texts))
-    assert ("lets in a negative: corpus/0.src: so",) == refusals(STEP, negatives=(new, old))
+    assert ("accepts a negative: corpus/0.src: so",) == refusals(STEP, negatives=(new, old))
 
 
-def test_a_generated_negative_that_is_let_in_names_its_fact() -> None:
+def test_a_generated_negative_that_is_accepted_names_its_fact() -> None:
     """With the shortest program that breaks it, for the fact may be wrong."""
     wide = edited(
         AddAlternative("simpleStatement", "expression"),
@@ -174,7 +174,7 @@ def test_a_generated_negative_that_is_let_in_names_its_fact() -> None:
     )
     found = refusals(wide, generated=400)
     assert found
-    assert all(why.startswith("lets in what breaks a fact") for why in found)
+    assert all(why.startswith("accepts what breaks a fact") for why in found)
     assert any(": a line that begins with a variable gives it a value: DEF" in why for why in found)
     assert all("\n" not in why for why in found)
 
@@ -187,7 +187,7 @@ def test_a_keyword_that_is_still_a_name_cannot_be_judged() -> None:
     reserved = replace(
         STEP, edits=(*STEP.edits, AddToken("SWITCH"), AddAlternative("primary", "SWITCH"))
     )
-    assert ("lets in a negative: n.src: so",) == refusals(reserved, negatives=negatives)
+    assert ("accepts a negative: n.src: so",) == refusals(reserved, negatives=negatives)
 
 
 def test_examples_are_tried() -> None:
@@ -227,6 +227,6 @@ def test_losses_are_between_any_two_grammars(tmp_path: Path) -> None:
     """What the first did rightly and the second does not; nothing the other way round."""
     own = written(tmp_path, cell__a=f"DEF A()\n{LOOP}END\n")
     corpora = Corpora([], own, [], generated=0, jobs=1)
-    narrow, wide = corpora.standing(START), corpora.standing(grown(START, STEP))
+    narrow, wide = corpora.measure(START), corpora.measure(grown(START, STEP))
     assert [] == list(losses(narrow, wide))
     assert ["no longer parses: cell/a.src:2, at 'STEP'"] == list(losses(wide, narrow))

@@ -9,14 +9,14 @@ import pytest
 from grammar.notation.edits import AddToken
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.oracle import (
-    Answer,
     CommandOracle,
+    OracleAnswer,
     OracleError,
-    Program,
+    TestProgram,
     as_bytes,
-    judged,
     programs_of,
     reason_to_ask,
+    verdict_on,
 )
 
 GOOD = '; head\nDEF Deep( A:IN)\nDEEP (A) ; deep\nS="DEEP"\nX.DEEP=1\nEND\n'
@@ -32,11 +32,11 @@ class Fixed:
 
     name = "a fixed oracle"
 
-    def ask(self, program: Program) -> Answer | None:
+    def ask(self, program: TestProgram) -> OracleAnswer | None:
         """What its text says."""
         if "GOOD" in program.text:
-            return Answer(True)
-        return Answer(False, "KSS2023") if "BAD" in program.text else None
+            return OracleAnswer(True)
+        return OracleAnswer(False, "KSS2023") if "BAD" in program.text else None
 
 
 # ----------------------------------------------------------------------------- test programs
@@ -84,7 +84,7 @@ def test_an_answer_outlives_the_number() -> None:
 def test_a_file_is_as_a_controller_holds_it() -> None:
     """Lines end with CRLF; cp1252 where it can say it, else UTF-8."""
     for text, expected in (("A\nÄ\r\n", b"A\r\n\xc4\r\n"), ("→\n", b"\xe2\x86\x92\r\n")):
-        assert expected == as_bytes(Program("P", text, "", "", is_accept=True))
+        assert expected == as_bytes(TestProgram("P", text, "", "", is_accept=True))
 
 
 # ------------------------------------------------------------------------------- the command
@@ -96,19 +96,19 @@ def command(tmp_path: Path, body: str, timeout: float = 60.0) -> CommandOracle:
     return CommandOracle([sys.executable, str(script)], "the command", timeout)
 
 
-PROGRAM = Program("C0001_1", "DEF C0001_1()\nEND\n", "", "", is_accept=True)
+PROGRAM = TestProgram("C0001_1", "DEF C0001_1()\nEND\n", "", "", is_accept=True)
 
 
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
-        ("sys.exit(0)", Answer(True)),
-        ("print('  no  =\\nmore'); sys.exit(1)", Answer(False, "no =")),
-        ("sys.stderr.write('bad'); sys.exit(1)", Answer(False, "bad")),
-        ("sys.exit(1)", Answer(False, "without a message")),
+        ("sys.exit(0)", OracleAnswer(True)),
+        ("print('  no  =\\nmore'); sys.exit(1)", OracleAnswer(False, "no =")),
+        ("sys.stderr.write('bad'); sys.exit(1)", OracleAnswer(False, "bad")),
+        ("sys.exit(1)", OracleAnswer(False, "without a message")),
     ],
 )
-def test_a_command_accepts_or_refuses(tmp_path: Path, body: str, expected: Answer) -> None:
+def test_a_command_accepts_or_refuses(tmp_path: Path, body: str, expected: OracleAnswer) -> None:
     """Status 0 is accepted, 1 refused with the first line that it printed."""
     found = command(tmp_path, body).ask(PROGRAM)
     assert expected.is_accepted == found.is_accepted
@@ -166,7 +166,7 @@ def test_a_verdict_is_that_of_all_accept_examples(
     accept: list[str], reject: list[str], verdict: str, unanswered: int, findings: int
 ) -> None:
     """One refusal refuses; a missing answer keeps it waiting; what differs is told."""
-    found = judged(construct(*accept, reject=tuple(reject)), Fixed())
+    found = verdict_on(construct(*accept, reject=tuple(reject)), Fixed())
     assert verdict == found.construct.evidence.verdict
     assert (unanswered, findings) == (found.unanswered, len(found.findings))
     assert ("a fixed oracle" if verdict else "") == found.construct.evidence.oracle
@@ -175,9 +175,11 @@ def test_a_verdict_is_that_of_all_accept_examples(
 def test_a_verdict_gives_the_state() -> None:
     """A proposal becomes confirmed; what is accepted or rejected stays so."""
     states = ("proposed", "accepted", "rejected")
-    found = [judged(construct("GOOD", state=state), Fixed()).construct.state for state in states]
+    found = [
+        verdict_on(construct("GOOD", state=state), Fixed()).construct.state for state in states
+    ]
     assert ["confirmed", "accepted", "rejected"] == found
-    refused = judged(construct("BAD", state="proposed"), Fixed()).construct
+    refused = verdict_on(construct("BAD", state="proposed"), Fixed()).construct
     assert "proposed" == refused.state
 
 

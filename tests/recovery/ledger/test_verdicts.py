@@ -7,7 +7,7 @@ import pytest
 
 from grammar.notation.edits import AddToken
 from recovery.ledger.construct import Construct
-from recovery.ledger.oracle import Answer, OracleError, programs_of
+from recovery.ledger.oracle import OracleAnswer, OracleError, programs_of
 from recovery.ledger.verdicts import FORM, RecordedOracle, write_bundle
 
 CONSTRUCT = Construct(
@@ -55,11 +55,13 @@ def filled(tmp_path: Path, *answers: str, head: str = HEAD) -> Path:
 def test_a_filled_form_is_an_oracle(tmp_path: Path) -> None:
     """Accepted in any letters, any other text a refusal, nothing no answer."""
     oracle = RecordedOracle(filled(tmp_path / "a", " Accepted ", "KSS2023  no"))
-    assert [Answer(True), Answer(False, "KSS2023 no")] == [oracle.ask(p) for p in PROGRAMS]
+    assert [OracleAnswer(True), OracleAnswer(False, "KSS2023 no")] == [
+        oracle.ask(p) for p in PROGRAMS
+    ]
     assert "KSS 8.6, somebody, 2026-03-31" == oracle.name
     assert 2 == len(oracle)
     half = RecordedOracle(filled(tmp_path / "b", "accepted"))
-    assert [Answer(True), None] == [half.ask(p) for p in PROGRAMS]
+    assert [OracleAnswer(True), None] == [half.ask(p) for p in PROGRAMS]
 
 
 @pytest.mark.parametrize(

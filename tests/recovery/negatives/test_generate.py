@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from grammar.notation.g4 import read_file
 from grammar.parser.recognizer import Recognizer
-from recovery.negatives.fragments import stock_of
+from recovery.negatives.fragments import fragment_pool
 from recovery.negatives.generate import generate
 from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -168,12 +168,12 @@ END
 def test_invalid_programs_are_no_source_of_pieces() -> None:
     """A text that breaks a fact itself is left aside."""
     text = "DEF A()\n  IF RARE_NAME\n  RARE_CALL()\n  ENDIF\nEND\n"
-    assert stock_of([text]) == stock_of([])
+    assert fragment_pool([text]) == fragment_pool([])
 
 
 def test_programs_put_together_are_valid(permissive: Recognizer) -> None:
     """Before something in them is spoilt, the programs are programs."""
-    stock, chance = stock_of(own_programs()), random.Random(5)
+    stock, chance = fragment_pool(own_programs()), random.Random(5)
     texts = ["\n".join(stock.program(chance)) + "\n" for _ in range(1_000)]
     assert [] == [text for text in texts if violation(text)]
     assert [] == [text for text in texts if not permissive.accepts(text)]

@@ -11,7 +11,8 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.network import Network, is_left_recursive, network_of
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.candidates import Candidate, CandidateFinder, Line
+from recovery.proposals.candidates import Candidate, CandidateFinder
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -156,7 +157,7 @@ class Example:
 
     missing: Missing
     grammar: Grammar
-    line: Line
+    line: LinePattern
     candidates: list[Candidate]
     edited: list[tuple[Grammar, Network]]
 
@@ -174,7 +175,7 @@ def example(request: pytest.FixtureRequest) -> Example:
     found = survey_texts([("a.src", missing.text)], grammar)
     failed = found.files[0].failures[0]
     meant = ((i, word) for i, word in enumerate(failed.words) if word in missing.keywords)
-    line = Line(found.forms[failed.form], tuple(meant))
+    line = LinePattern(found.forms[failed.form], tuple(meant))
     candidates = CandidateFinder(Recognizer(grammar)).find(line)
     return Example(missing, grammar, line, candidates, [edited(grammar, one) for one in candidates])
 
@@ -228,5 +229,5 @@ def test_the_same_line_has_the_same_candidates() -> None:
     for missing in list(CONSTRUCTS.values())[::3]:
         found = survey_texts([("a.src", missing.text)], PRELIMINARY)
         for form in found.forms:
-            line = Line(form, ())
+            line = LinePattern(form, ())
             assert CandidateFinder(Recognizer(PRELIMINARY)).find(line) == used.find(line)

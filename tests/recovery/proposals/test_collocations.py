@@ -6,10 +6,10 @@ from grammar.notation.edits import Insert, RemoveElement, apply
 from grammar.notation.g4 import read
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import cluster
-from recovery.proposals.collocations import Habits, last_two, symbols_in
-from recovery.proposals.grammar_profile import Layout
+from recovery.proposals.collocations import Collocations, last_two, symbols_in
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.similarity import Likeness
+from recovery.proposals.similarity import Similarity
 from recovery.survey.survey import survey_texts
 
 WHOLE = read("""grammar S;
@@ -50,9 +50,9 @@ NEWLINE : '\\r'? '\\n' ;
 SPACE : ' '+ -> skip ;
 """)
 RECOGNIZER = Recognizer(WHOLE)
-HABITS = Habits(RECOGNIZER)
+HABITS = Collocations(RECOGNIZER)
 PHRASER = Phraser(RECOGNIZER)
-LAYOUT = Layout(RECOGNIZER)
+LAYOUT = GrammarProfile(RECOGNIZER)
 
 
 def test_what_stands_before_a_place_is_its_last_two_symbols() -> None:
@@ -106,7 +106,7 @@ def test_a_lost_part_comes_back_as_it_is_elsewhere() -> None:
 
 def test_a_part_goes_where_it_stands_elsewhere() -> None:
     """Behind what may be left out the order is that of another sequence; else it is the last."""
-    layout = Layout(
+    profile = GrammarProfile(
         Recognizer(
             read("""grammar S;
 program : line* EOF ;
@@ -122,9 +122,9 @@ NEWLINE : '\\n' ;
 """)
         )
     )
-    assert (2, 3) == layout.place_as_elsewhere("line", (2, 5), "extra?")
-    assert layout.place_as_elsewhere("line", (2, 3), "extra?") is None
-    assert layout.place_as_elsewhere("line", (2, 5), "WITH?") is None
+    assert (2, 3) == profile.usual_place("line", (2, 5), "extra?")
+    assert profile.usual_place("line", (2, 3), "extra?") is None
+    assert profile.usual_place("line", (2, 5), "WITH?") is None
 
 
 def test_a_keyword_with_a_meaning_is_no_name() -> None:
@@ -136,8 +136,8 @@ def test_a_keyword_with_a_meaning_is_no_name() -> None:
 
 def test_an_alternative_with_more_around_it_is_an_extension() -> None:
     """What only adds to an alternative is better said as a part that may be left out."""
-    likeness = Likeness(LAYOUT)
-    assert likeness.extends("turn", ["TURN", "name"])
-    assert likeness.extends("label", ["SET", "name", "':'"])
-    assert not likeness.extends("turn", ["TURN"])
-    assert not likeness.extends("label", ["name", "SET", "':'"])
+    similarity = Similarity(LAYOUT)
+    assert similarity.extends("turn", ["TURN", "name"])
+    assert similarity.extends("label", ["SET", "name", "':'"])
+    assert not similarity.extends("turn", ["TURN"])
+    assert not similarity.extends("label", ["name", "SET", "':'"])

@@ -105,8 +105,8 @@ def test_rules_near_by_are_tried_too(text: str) -> None:
 # ------------------------------------------------------------------------------- breadth
 
 
-def test_tokens_let_in_less_than_rules_and_narrow_rules_less_than_wide_ones() -> None:
-    """Breadth orders phrases by what they let in; signs and words cost nothing."""
+def test_tokens_accept_less_than_rules_and_narrow_rules_less_than_wide_ones() -> None:
+    """Breadth orders phrases by what they accept; signs and words cost nothing."""
     rows = (["STEP", "INTEGER"], ["STEP", "literal"], ["STEP", "sum"], ["STEP", "expression"])
     breadths = [PHRASER.breadth(row) for row in rows]
     assert sorted(set(breadths)) == breadths
@@ -132,7 +132,7 @@ def test_phrases_are_made_for_any_grammar() -> None:
     """Nothing is taken from KRL: a grammar of three tokens has its phrases too."""
     phraser = Phraser(Recognizer(read(SMALL)))
     kinds = phraser.recognizer.kinds("A B")[:-1]
-    assert {"pair", "unused"} <= phraser.readers.rules_for(tuple(kinds))
+    assert {"pair", "unused"} <= phraser.matcher.rules_for(tuple(kinds))
     written = [" ".join(symbols) for symbols in phraser.phrases([(k, None) for k in kinds])]
     assert "A B" == written[0]
     assert {"pair", "unused"} & set(written)

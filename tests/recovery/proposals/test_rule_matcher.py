@@ -6,10 +6,10 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.rule_matcher import Readers
+from recovery.proposals.rule_matcher import RuleMatcher
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
-READERS = Readers(RECOGNIZER)
+READERS = RuleMatcher(RECOGNIZER)
 
 
 def kinds_of(text: str) -> tuple[int, ...]:
@@ -39,12 +39,12 @@ def test_rules_are_those_of_which_the_tokens_are_a_sentence(
 
 def test_a_block_is_known_by_the_line_that_opens_it() -> None:
     """The rules of several lines that begin with a line, and no others."""
-    opened = READERS.opened_by(kinds_of("IF A THEN\n"))
+    opened = READERS.multi_line_rules(kinds_of("IF A THEN\n"))
     assert "ifStatement" in opened
     assert not {"forStatement", "simpleStatement", "expression"} & set(opened)
-    assert "loopStatement" in READERS.opened_by(kinds_of("LOOP\n"))
-    assert "ifStatement" not in READERS.opened_by(kinds_of("IF A\n"))
-    assert "halt" not in READERS.opened_by(kinds_of("HALT"))
+    assert "loopStatement" in READERS.multi_line_rules(kinds_of("LOOP\n"))
+    assert "ifStatement" not in READERS.multi_line_rules(kinds_of("IF A\n"))
+    assert "halt" not in READERS.multi_line_rules(kinds_of("HALT"))
 
 
 def test_what_carries_a_value_is_an_operand() -> None:
@@ -55,13 +55,13 @@ def test_what_carries_a_value_is_an_operand() -> None:
 
 def test_rules_of_values_read_names_and_more() -> None:
     """A rule of names alone is none of them, nor one that reads no name."""
-    assert {"expression", "primary"} <= READERS.of_values
-    assert not {"literal", "variable"} & READERS.of_values
+    assert {"expression", "primary"} <= READERS.value_rules
+    assert not {"literal", "variable"} & READERS.value_rules
 
 
 def test_a_list_of_all_words_tells_nothing() -> None:
     """That a rule which reads any keyword reads this one is no meaning of its own."""
-    listed = Readers(
+    listed = RuleMatcher(
         Recognizer(
             read("""grammar S;
 program : (word '=' value NEWLINE)* EOF ;
@@ -81,6 +81,6 @@ SPACE : ' '+ -> skip ;
         )
     )
     true, stop = (listed.recognizer.lexer.kind_of[word] for word in ("TRUE", "STOP"))
-    assert {"word"} == listed.careless
-    assert [True, False] == [listed.means_more((kind,)) for kind in (true, stop)]
+    assert {"word"} == listed.keyword_lists
+    assert [True, False] == [listed.is_more_than_a_name((kind,)) for kind in (true, stop)]
     assert [True, False] == [listed.may_be_a_name(kind) for kind in (true, stop)]

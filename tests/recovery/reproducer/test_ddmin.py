@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recovery.reproducer.ddmin import shrunk, without_loops, without_stretches
+from recovery.reproducer.ddmin import minimized, without_loops, without_stretches
 
 
 def test_stretches_go_that_the_test_does_not_need() -> None:
@@ -27,7 +27,7 @@ def test_pairs_go_together() -> None:
     def balanced(left: list[str]) -> bool:
         return "x" in left and left.count("(") == left.count(")")
 
-    assert shrunk(list("a(b(x)c)"), [], balanced) == ["x"]
+    assert minimized(list("a(b(x)c)"), [], balanced) == ["x"]
 
 
 def test_a_substitute_takes_the_place_of_a_stretch() -> None:
@@ -37,18 +37,18 @@ def test_a_substitute_takes_the_place_of_a_stretch() -> None:
         text = "".join(left)
         return text in {"[x]", "[a+b]", "[a+b+c]"}
 
-    assert shrunk(list("[a+b+c]"), ["x"], an_operand_between) == ["[", "x", "]"]
+    assert minimized(list("[a+b+c]"), ["x"], an_operand_between) == ["[", "x", "]"]
 
 
 def test_a_substitute_of_the_same_length_is_left_alone() -> None:
     """A single item is not exchanged: the result would be no shorter."""
-    assert shrunk(["a"], ["x"], lambda left: len(left) == 1) == ["a"]
+    assert minimized(["a"], ["x"], lambda left: len(left) == 1) == ["a"]
 
 
 def test_what_cannot_be_made_shorter_stays() -> None:
     """Where nothing else passes, the items come back."""
     items = list("abc")
-    assert shrunk(items, ["x"], lambda left: left == items) == ["a", "b", "c"]
+    assert minimized(items, ["x"], lambda left: left == items) == ["a", "b", "c"]
 
 
 @given(
@@ -63,7 +63,7 @@ def test_the_result_passes_and_is_minimal(items: list[int], wanted: list[frozens
 
     if not passes(items):
         return
-    left = shrunk(items, [], passes)
+    left = minimized(items, [], passes)
     assert passes(left)
     assert [i for i in range(len(left)) if passes(left[:i] + left[i + 1 :])] == []
 

@@ -11,7 +11,7 @@ from grammar.notation.g4 import read_file
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
-from recovery.proposals.candidates import Line
+from recovery.proposals.edit_site import LinePattern
 from recovery.reproducer.reduce import Reducer, Reproducer
 
 PRELIMINARY = Path(__file__).parents[3] / "grammar" / "preliminary.g4"
@@ -48,7 +48,7 @@ class Bench:
         """The reproducer of the first failure; the words given are would-be keywords."""
         failure = self.first(text)
         lexemes = [lexeme.upper() for lexeme in failure.lexemes]
-        line = Line(failure.form, tuple((i, w) for i, w in enumerate(lexemes) if w in meant))
+        line = LinePattern(failure.form, tuple((i, w) for i, w in enumerate(lexemes) if w in meant))
         mended = self.wider(edits) if edits else None
         found = self.reducer.reduce(line, lexemes[:words], mended=mended)
         assert found is not None

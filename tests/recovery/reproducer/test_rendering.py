@@ -10,7 +10,7 @@ from grammar.notation.g4 import read_file
 from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
-from recovery.reproducer.rendering import Spelling, Token
+from recovery.reproducer.rendering import AbstractToken, TokenRenderer
 
 PRELIMINARY = Path(__file__).parents[3] / "grammar" / "preliminary.g4"
 Respell = Callable[..., str | None]
@@ -24,14 +24,14 @@ def recognizer() -> Recognizer:
 @pytest.fixture(scope="module")
 def respell(recognizer: Recognizer) -> Respell:
     """Spells a text anew, the words given being meant as keywords."""
-    spelling = Spelling(recognizer)
+    spelling = TokenRenderer(recognizer)
 
     def respelled(text: str, *meant: str) -> str | None:
         lexemes = [t for t in recognizer.lexer.lexemes(text) if t]
         kinds = [kind for kind in recognizer.kinds(text) if kind != EOF]
         return spelling.text(
             [
-                Token(kind, word.upper(), word.upper() if word.upper() in meant else None)
+                AbstractToken(kind, word.upper(), word.upper() if word.upper() in meant else None)
                 for kind, word in zip(kinds, lexemes, strict=True)
             ]
         )
@@ -100,11 +100,14 @@ def test_keywords_of_another_grammar_are_no_names(recognizer: Recognizer) -> Non
     """A name is called so that a wider grammar takes it for a name too."""
     wider = edited(recognizer, [AddToken("A"), AddToken("C")])
     name = recognizer.lexer.kind_of["NAME"]
-    tokens = [Token(name, "SPEED"), Token(recognizer.lexer.kind_of["ASSIGN"], "=")]
-    assert Spelling(recognizer).text([*tokens, Token(name, "LIMIT")], wider) == "B = D"
+    tokens = [AbstractToken(name, "SPEED"), AbstractToken(recognizer.lexer.kind_of["ASSIGN"], "=")]
+    assert TokenRenderer(recognizer).text([*tokens, AbstractToken(name, "LIMIT")], wider) == "B = D"
 
 
 def test_tokens_that_nothing_spells(recognizer: Recognizer) -> None:
     """There is no text for two names of which the first has to swallow the second."""
     header, name = (recognizer.lexer.kind_of[kind] for kind in ("HEADER", "NAME"))
-    assert Spelling(recognizer).text([Token(header, "&"), Token(name, "X")]) is None
+    assert (
+        TokenRenderer(recognizer).text([AbstractToken(header, "&"), AbstractToken(name, "X")])
+        is None
+    )

@@ -8,7 +8,7 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
-from recovery.survey.signature import Shape, Shaper
+from recovery.survey.signature import Signature, SignatureBuilder
 from recovery.survey.survey import survey_texts
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -19,7 +19,7 @@ def program(*lines: str) -> str:
     return "\n".join(["DEF A()", *lines, "END", ""])
 
 
-def shapes(*programs: str) -> list[list[Shape]]:
+def signatures(*programs: str) -> list[list[Signature]]:
     """The shapes of the failures of each program, all of them seen together."""
     found = survey_texts([(f"{n}.src", text) for n, text in enumerate(programs)], PRELIMINARY)
     finder = FailureFinder(RECOGNIZER)
@@ -29,17 +29,17 @@ def shapes(*programs: str) -> list[list[Shape]]:
         for failed in file.failures
         if not failed.follows
     ]
-    shaper = Shaper(RECOGNIZER.lexer, failures)
-    out: dict[str, list[Shape]] = {file.digest: [] for file in found.files}
+    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
+    out: dict[str, list[Signature]] = {file.digest: [] for file in found.files}
     for digest, failed, form in failures:
         state, _ = RECOGNIZER.run(RECOGNIZER.restore(form.before), form.kinds[: form.index])
-        out[digest].append(shaper.shape(failed, form, finder.context(state)))
+        out[digest].append(signature_builder.signature(failed, form, finder.context(state)))
     return list(out.values())
 
 
 def titles(*programs: str) -> list[str]:
     """The title of the first failure of each program."""
-    return [first.title for first, *_ in shapes(*programs)]
+    return [first.title for first, *_ in signatures(*programs)]
 
 
 def each(*lines: str) -> list[str]:
@@ -84,12 +84,12 @@ def test_a_program_cut_off_fails_at_the_end_of_the_file() -> None:
 
 def test_shape_names_the_rule_at_work() -> None:
     """The rule is the innermost that cannot end where the line fails."""
-    ((shape,),) = shapes(program("FOR I=1 STEP 2 TO 9"))
+    ((signature,),) = signatures(program("FOR I=1 STEP 2 TO 9"))
     assert ("forStatement", "FOR", "", "name") == (
-        shape.rule,
-        shape.lead,
-        shape.bracket,
-        shape.offender,
+        signature.rule,
+        signature.lead,
+        signature.bracket,
+        signature.offender,
     )
 
 
@@ -100,7 +100,7 @@ def test_names_numbers_and_place_do_not_matter() -> None:
         program("LOOP", "  POSITIONS[I,Jay]= K", "ENDLOOP"),
         program("HALT", "x [ 100 , 7 ] = 5 ; why not"),
     ]
-    assert 1 == len({shape for found in shapes(*programs) for shape in found})
+    assert 1 == len({signature for found in signatures(*programs) for signature in found})
 
 
 # -------------------------------------------------------------------- would-be keywords
@@ -141,9 +141,9 @@ def test_keywords_in_the_middle_of_a_line_are_told_with_their_places() -> None:
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, f.failures[0], found.forms[f.failures[0].form]) for f in found.files]
-    shaper = Shaper(RECOGNIZER.lexer, failures)
+    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
     assert [((6, "STEP"),)] * 3 + [((2, "STEP"),)] == [
-        shaper.keywords(failed, form) for _, failed, form in failures
+        signature_builder.keywords(failed, form) for _, failed, form in failures
     ]
 
 
@@ -152,8 +152,10 @@ def only_names(lines: Sequence[str], word: str) -> bool:
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
-    shaper = Shaper(RECOGNIZER.lexer, failures)
-    meant = {said for _, failed, form in failures for _, said in shaper.keywords(failed, form)}
+    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
+    meant = {
+        said for _, failed, form in failures for _, said in signature_builder.keywords(failed, form)
+    }
     return word not in meant and not any(word in t.split() for t in titles(*each(*lines)))
 
 
@@ -166,7 +168,7 @@ def test_a_name_beside_its_type_is_no_keyword() -> None:
 
 def test_a_word_of_one_file_is_no_keyword() -> None:
     """Whoever repeats a word in one program only may have called something so."""
-    ((first, *_),) = shapes(program(*(f"GLUE {name}" for name in "BCDEFGHIJ")))
+    ((first, *_),) = signatures(program(*(f"GLUE {name}" for name in "BCDEFGHIJ")))
     assert "… name" == first.title
 
 
@@ -201,7 +203,7 @@ def test_the_order_of_files_does_not_matter() -> None:
 
 def test_what_comes_right_behind_a_bracket_is_a_title_of_its_own_but_no_shape() -> None:
     """A dimension left out has another title; whether one edit mends both is not yet known."""
-    ((one,), (other,)) = shapes(*each("X[1,2]=3", "X[,]=3"))
+    ((one,), (other,)) = signatures(*each("X[1,2]=3", "X[,]=3"))
     assert ("… [ … ,", "… [ ,") == (one.title, other.title)
     assert one == other
 

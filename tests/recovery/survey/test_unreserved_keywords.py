@@ -6,7 +6,7 @@ from grammar.notation import g4
 from grammar.notation.edits import Edit, RemoveAlternative, RemoveRule, apply
 from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
-from recovery.survey.unreserved_keywords import Suspect, suspects
+from recovery.survey.unreserved_keywords import UnreservedKeyword, unreserved_keywords
 
 PRELIMINARY = g4.read_file(Path(g4.__file__).parents[1].joinpath("preliminary.g4"))
 
@@ -32,21 +32,23 @@ def programs(count: int) -> list[tuple[str, str]]:
 
 def test_a_keyword_read_as_a_name_everywhere_is_suspected() -> None:
     """TRUE, which nobody declares or assigns, is named with its readers."""
-    assert suspects(programs(4), lexer_of(without_true())) == [Suspect("TRUE", 4, 2)]
+    assert unreserved_keywords(programs(4), lexer_of(without_true())) == [
+        UnreservedKeyword("TRUE", 4, 2)
+    ]
 
 
 def test_a_known_keyword_is_not_suspected() -> None:
     """Under a grammar that reserves TRUE it is no name at all."""
-    assert suspects(programs(4), lexer_of(PRELIMINARY)) == []
+    assert unreserved_keywords(programs(4), lexer_of(PRELIMINARY)) == []
 
 
 def test_a_variable_that_somebody_assigns_is_not_suspected() -> None:
     """One assignment anywhere makes a word a variable."""
     assigned = [*programs(4), ("origin 1", "DEF Q()\nTRUE=1\nEND\n")]
-    assert suspects(assigned, lexer_of(without_true())) == []
+    assert unreserved_keywords(assigned, lexer_of(without_true())) == []
 
 
 def test_one_origin_is_not_enough_where_there_are_two() -> None:
     """A word that only one origin reads may be that author's."""
     programs_of_two = [("a", text) for _, text in programs(4)] + [("b", "DEF Q()\nEND\n")]
-    assert suspects(programs_of_two, lexer_of(without_true())) == []
+    assert unreserved_keywords(programs_of_two, lexer_of(without_true())) == []

@@ -7,9 +7,8 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
-from recovery.clustering.negative_score import judge_of
+from recovery.clustering.negative_score import negative_counter, required_tokens
 from recovery.negatives.negatives import Negative, NegativeSet
-from recovery.negatives.required_tokens import used_by
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR))
 
@@ -17,7 +16,7 @@ RECOGNIZER = Recognizer(read_file(GRAMMAR))
 def used(*edits: Edit) -> list[set[str]]:
     wider = edited(RECOGNIZER, edits)
     assert wider is not None
-    return [{wider.lexer.names[kind] for kind in kinds} for kinds in used_by(edits, wider)]
+    return [{wider.lexer.names[kind] for kind in kinds} for kinds in required_tokens(edits, wider)]
 
 
 @pytest.mark.parametrize(
@@ -32,23 +31,23 @@ def used(*edits: Edit) -> list[set[str]]:
         ("expression", set()),
     ],
 )
-def test_what_all_that_is_let_in_has(text: str, tokens: set[str]) -> None:
+def test_what_all_that_is_newly_accepted_has(text: str, tokens: set[str]) -> None:
     """What is optional within a text, or one of several, is not in all that the text reads."""
     assert [tokens] == used(Insert("halt", (1, 2), text))
 
 
 def test_each_place_counts_for_itself() -> None:
-    """Of several edits one is enough to let a program in; leaving out needs no token at all."""
+    """Of several edits one is enough to accept a program; leaving out needs no token at all."""
     edits = (AddToken("BRAKES"), AddAlternative("brake", "BRAKES"), Widen("brake", (1, 1), "HALT"))
     assert [{"BRAKES"}, {"HALT"}] == used(*edits)
     assert [set[str]()] == used(MakeOptional("wait", (1, 2), 1))
 
 
 def test_no_program_is_missed() -> None:
-    """The judge finds every program that reading all of them finds."""
+    """The count includes every program that reading all of them finds."""
     lines = ("WAIT 1", "HALT HALT", "LIN P1,P2", "BRAKE 5", "A=1,2")
     programs = [Negative(None, f"DEF A()\n{line}\nEND\n", "", "parse") for line in lines]
-    judge = judge_of(RECOGNIZER.grammar, programs)
+    count_negatives = negative_counter(RECOGNIZER.grammar, programs)
     everything = NegativeSet(programs)
     for edit in (
         Insert("assignment", (1, 4), "(',' INTEGER)?"),
@@ -59,4 +58,4 @@ def test_no_program_is_missed() -> None:
         wider = edited(RECOGNIZER, [edit])
         assert wider is not None
         assert len(everything.accepted(wider)) == 1
-        assert judge([edit]) >= 1
+        assert count_negatives([edit]) >= 1
