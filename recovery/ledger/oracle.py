@@ -20,11 +20,11 @@ from recovery.negatives.tokens import SourceLine, lines
 
 __all__ = [
     "CommandOracle",
+    "ExampleProgram",
     "Oracle",
     "OracleAnswer",
     "OracleError",
     "OracleVerdict",
-    "TestProgram",
     "as_bytes",
     "programs_of",
     "reason_to_ask",
@@ -40,7 +40,7 @@ class OracleError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class TestProgram:
+class ExampleProgram:
     """An example of a construct as a module of its own.
 
     ``name`` is at most 24 characters and the name of its first routine or data list, as a
@@ -74,7 +74,7 @@ class Oracle(Protocol):
 
     name: str
 
-    def ask(self, program: TestProgram) -> OracleAnswer | None:
+    def ask(self, program: ExampleProgram) -> OracleAnswer | None:
         """The answer; ``None`` where this oracle has none for the program. Raises `OracleError`."""
         ...
 
@@ -92,7 +92,7 @@ class CommandOracle:
         self._command = tuple(command)
         self._timeout = timeout
 
-    def ask(self, program: TestProgram) -> OracleAnswer:
+    def ask(self, program: ExampleProgram) -> OracleAnswer:
         """Run the command in a folder of its own that holds the program and nothing else."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, program.file_name)
@@ -124,14 +124,14 @@ class CommandOracle:
 # ----------------------------------------------------------------------------- test programs
 
 
-def programs_of(construct: Construct) -> tuple[TestProgram, ...]:
+def programs_of(construct: Construct) -> tuple[ExampleProgram, ...]:
     """The examples of a construct as modules, ``C0012_1`` and so on, those to accept first."""
     out = []
     for place, text in enumerate((*construct.accept, *construct.reject), 1):
         name = f"C{construct.number or 0:04}_{place}"  # does not show what is expected
         digest = hashlib.sha256(text.encode()).hexdigest()
         is_accept = place <= len(construct.accept)
-        out.append(TestProgram(name, _renamed(text, name), digest, construct.id, is_accept))
+        out.append(ExampleProgram(name, _renamed(text, name), digest, construct.id, is_accept))
     return tuple(out)
 
 
@@ -164,7 +164,7 @@ def _with(line: SourceLine, old: str, new: str) -> str:
     return text
 
 
-def as_bytes(program: TestProgram) -> bytes:
+def as_bytes(program: ExampleProgram) -> bytes:
     """The file as a controller holds it: CRLF, and cp1252 where that can say it."""
     text = program.text.replace("\r\n", "\n").replace("\n", "\r\n")
     try:

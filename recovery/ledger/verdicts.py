@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from recovery.ledger.oracle import OracleAnswer, OracleError, TestProgram, as_bytes
+from recovery.ledger.oracle import ExampleProgram, OracleAnswer, OracleError, as_bytes
 from support.files.atomic_write import write_together
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
@@ -50,7 +50,7 @@ release = ""   # such as KSS 8.6.7, OfficeLite
 """
 
 
-def write_bundle(programs: Sequence[TestProgram], folder: Path) -> list[Path]:
+def write_bundle(programs: Sequence[ExampleProgram], folder: Path) -> list[Path]:
     """Write programs, README and an empty form into a folder; returns what was written.
 
     Raises `OracleError` where the folder holds a form already, which may be half filled.
@@ -66,7 +66,7 @@ def write_bundle(programs: Sequence[TestProgram], folder: Path) -> list[Path]:
     return write_together(files)
 
 
-def _entry(program: TestProgram) -> str:
+def _entry(program: ExampleProgram) -> str:
     return (
         f'[[program]]\nfile = "{program.file_name}"\nconstruct = "{program.construct}"\n'
         f'sha256 = "{program.digest}"\nanswer = ""\n'
@@ -110,7 +110,7 @@ class RecordedOracle:
         """How many programs have an answer."""
         return len(self._answers)
 
-    def ask(self, program: TestProgram) -> OracleAnswer | None:
+    def ask(self, program: ExampleProgram) -> OracleAnswer | None:
         """What was recorded about the program."""
         return self._answers.get(program.digest)
 

@@ -10,9 +10,9 @@ from grammar.notation.edits import AddToken
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.oracle import (
     CommandOracle,
+    ExampleProgram,
     OracleAnswer,
     OracleError,
-    TestProgram,
     as_bytes,
     programs_of,
     reason_to_ask,
@@ -32,7 +32,7 @@ class Fixed:
 
     name = "a fixed oracle"
 
-    def ask(self, program: TestProgram) -> OracleAnswer | None:
+    def ask(self, program: ExampleProgram) -> OracleAnswer | None:
         """What its text says."""
         if "GOOD" in program.text:
             return OracleAnswer(True)
@@ -84,7 +84,7 @@ def test_an_answer_outlives_the_number() -> None:
 def test_a_file_is_as_a_controller_holds_it() -> None:
     """Lines end with CRLF; cp1252 where it can say it, else UTF-8."""
     for text, expected in (("A\nÄ\r\n", b"A\r\n\xc4\r\n"), ("→\n", b"\xe2\x86\x92\r\n")):
-        assert expected == as_bytes(TestProgram("P", text, "", "", is_accept=True))
+        assert expected == as_bytes(ExampleProgram("P", text, "", "", is_accept=True))
 
 
 # ------------------------------------------------------------------------------- the command
@@ -96,7 +96,7 @@ def command(tmp_path: Path, body: str, timeout: float = 60.0) -> CommandOracle:
     return CommandOracle([sys.executable, str(script)], "the command", timeout)
 
 
-PROGRAM = TestProgram("C0001_1", "DEF C0001_1()\nEND\n", "", "", is_accept=True)
+PROGRAM = ExampleProgram("C0001_1", "DEF C0001_1()\nEND\n", "", "", is_accept=True)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,77 @@
+"""The same input gives the same record, whatever the processes and the hashes of Python."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.parser.lazy_automaton import Configuration
+from grammar.parser.recognizer import Recognizer, State
+from recovery.proposals.candidates import Candidate, CandidateFinder
+from recovery.proposals.edit_site import LinePattern
+from recovery.survey.survey import survey_texts
+
+DAMAGED = """DEFDAT ARM PUBLIC
+DECL GLOBAL FRAME gfBlockBase[:}([(t1[3]
+DECL E6POS XP1={X 1.0,Y 2[,Z ((3,A 0:.0}
+DECL INT nCount[2=]{{1
+GLOBAL REAL rSpeed=,=\x84\x93 1.5
+ENDDAT
+"""
+RECORD = """
+import json, sys
+from pathlib import Path
+from grammar.notation.g4 import read_file
+from recovery.analysis import analyse
+from recovery.survey.survey import survey
+found = survey([Path(sys.argv[1])], read_file(Path(sys.argv[2])), jobs=int(sys.argv[3]))
+record = analyse(found, [], grammar_name="KRL.g4")
+del record["seconds"], record["analysis_seconds"]
+print(json.dumps(record))
+"""
+
+
+def candidates(monkeypatch: pytest.MonkeyPatch, *, backwards: bool) -> list[Candidate]:
+    """Candidates for the first damaged line where the recogniser gives its sets in an order."""
+    given = Recognizer.sites
+
+    def in_order(recognizer: Recognizer, state: State) -> list[Configuration]:
+        found = given(recognizer, state)
+        return sorted(found, key=lambda c: (c[0], c[1].depth, c[1].positions()), reverse=backwards)
+
+    grammar = read_file(GRAMMAR)
+    found = survey_texts([("a.dat", DAMAGED)], grammar)
+    line = LinePattern(found.forms[found.files[0].failures[0].form], ())
+    with monkeypatch.context() as patched:
+        patched.setattr(Recognizer, "sites", in_order)
+        return CandidateFinder(Recognizer(grammar)).find_common([line], 105)
+
+
+def test_the_order_of_configurations_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Configurations come as a set of interned objects; its order changes with their addresses."""
+    forwards = candidates(monkeypatch, backwards=False)
+    assert forwards
+    assert forwards == candidates(monkeypatch, backwards=True)
+
+
+def test_records_agree_over_hash_seeds_and_processes(tmp_path: Path) -> None:
+    """Three seeds, one process and two: the record of damaged files is the same to the byte."""
+    for name in ("a.dat", "b.dat"):
+        text = DAMAGED if name == "a.dat" else DAMAGED.replace("[", "(")
+        (tmp_path / name).write_bytes(text.encode("cp1252", "replace"))
+    records = {
+        subprocess.run(
+            [sys.executable, "-c", RECORD, tmp_path, GRAMMAR, str(jobs)],
+            env=os.environ | {"PYTHONHASHSEED": str(seed)},
+            stdout=subprocess.PIPE,
+            check=True,
+        ).stdout
+        for seed, jobs in ((0, 1), (1, 2), (2, 1))
+    }
+    assert len(records) == 1
