@@ -22,7 +22,7 @@ from conformance.metamorphic.tree_rewriting import (
     with_routines,
 )
 from grammar.syntax import ast
-from grammar.syntax.formatter import layouter
+from grammar.syntax.formatter import formatter
 from grammar.syntax.walk import walk
 
 __all__ = ["LAWS"]
@@ -90,7 +90,7 @@ def _laid_out(program: Program, _random: Random) -> Program | None:
     """As `krl format` sets it."""
     texts = {}
     for source in program.case.sources:
-        found = layouter().layout(source.text, source.path)
+        found = formatter().layout(source.text, source.path)
         if not isinstance(found, str):
             return None
         texts[source.path] = found

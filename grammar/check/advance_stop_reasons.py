@@ -15,7 +15,7 @@ from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
-__all__ = ["Stop", "is_known_call", "stop_of"]
+__all__ = ["AdvanceStop", "is_known_call", "stop_of"]
 
 _IN_STEP = "it is read or set in step with the robot"
 _WAITS = "the program goes on when the robot has come to it"
@@ -24,7 +24,7 @@ _HARMLESS = frozenset({"BAS"})
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class AdvanceStop:
     """Why a statement stops the advance run: ``what`` of it, at the node ``where``.
 
     ``can_go_ahead``: whether CONTINUE makes sense, so that it is done ahead of the robot.
@@ -37,7 +37,7 @@ class Stop:
     can_go_ahead: bool
 
 
-def stop_of(context: Context, node: ast.Node, is_test: bool = False) -> Stop | None:
+def stop_of(context: Context, node: ast.Node, is_test: bool = False) -> AdvanceStop | None:
     """Why a statement stops, ``None`` where it does not; ``is_test`` asks for UNTIL of REPEAT."""
     waiting = _waiting(context, node)
     if waiting is not None:
@@ -60,25 +60,25 @@ def stop_of(context: Context, node: ast.Node, is_test: bool = False) -> Stop | N
     if not found:
         return None
     rules = tuple(dict.fromkeys(rule for its in found.values() for rule in its))
-    return Stop(where, " and ".join(found), _IN_STEP, rules, can_go_ahead=True)
+    return AdvanceStop(where, " and ".join(found), _IN_STEP, rules, can_go_ahead=True)
 
 
-def _waiting(context: Context, node: ast.Node) -> Stop | None:
+def _waiting(context: Context, node: ast.Node) -> AdvanceStop | None:
     match node:
         case ast.Halt():
-            return Stop(node, "HALT", _WAITS, ("ADV-04", "CTL-08"), can_go_ahead=False)
+            return AdvanceStop(node, "HALT", _WAITS, ("ADV-04", "CTL-08"), can_go_ahead=False)
         case ast.WaitSeconds():
-            return Stop(node, "WAIT SEC", _WAITS, ("ADV-04", "CTL-12"), can_go_ahead=False)
+            return AdvanceStop(node, "WAIT SEC", _WAITS, ("ADV-04", "CTL-12"), can_go_ahead=False)
         case ast.WaitFor():
-            return Stop(node, "WAIT FOR", _WAITS, ("ADV-04", "CTL-12"), can_go_ahead=True)
+            return AdvanceStop(node, "WAIT FOR", _WAITS, ("ADV-04", "CTL-12"), can_go_ahead=True)
         case ast.SignalOn(keyword=keyword) | ast.SignalOff(keyword=keyword):
             rules = ("ADV-07",) if keyword == "DIGIN" else ("ADV-04",)
             switch = "ON" if isinstance(node, ast.SignalOn) else "OFF"
-            return Stop(node, f"{keyword} {switch}", _IN_STEP, rules, can_go_ahead=False)
+            return AdvanceStop(node, f"{keyword} {switch}", _IN_STEP, rules, can_go_ahead=False)
         case ast.CallStatement(call=call):
             function = context.system.functions.get(call.name.key)
             if function is not None and function.stops and _is_system(context, call.name):
-                return Stop(node, function.name, _IN_STEP, function.stops, can_go_ahead=True)
+                return AdvanceStop(node, function.name, _IN_STEP, function.stops, can_go_ahead=True)
     return None
 
 

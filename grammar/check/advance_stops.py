@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grammar.check.advance_stop_reasons import Stop, is_known_call, stop_of
+from grammar.check.advance_stop_reasons import AdvanceStop, is_known_call, stop_of
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
-from grammar.check.control_flow_graph import Step, ways_through
+from grammar.check.control_flow_graph import FlowNode, flow_graph
 from grammar.check.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.syntax import ast
@@ -39,7 +39,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 class _Ahead:
     """What may come behind a motion before the next one: stops, and whether anything else may."""
 
-    stops: tuple[Step, ...]
+    stops: tuple[FlowNode, ...]
     is_open: bool
 
 
@@ -51,8 +51,8 @@ class _Routine:
         self._statements = [placed.statement for placed in routine.statements]
         self._continues = [node for node in self._statements if isinstance(node, ast.Continue)]
         self._spent = {line_of(context.source, node) + 1 for node in self._continues}
-        self._ways = ways_through(routine.node)
-        self._known: dict[tuple[ast.Node, bool], Stop | None] = {}
+        self._ways = flow_graph(routine.node)
+        self._known: dict[tuple[ast.Node, bool], AdvanceStop | None] = {}
 
     def notes(self) -> Iterator[Diagnostic]:
         for node in self._statements:
@@ -67,7 +67,7 @@ class _Routine:
 
     # ------------------------------------------------------------------------------ stops
 
-    def _stop(self, node: ast.Node | None, is_test: bool) -> Stop | None:
+    def _stop(self, node: ast.Node | None, is_test: bool) -> AdvanceStop | None:
         """Why a statement stops the advance run, CONTINUE left aside."""
         if node is None:
             return None
@@ -76,7 +76,7 @@ class _Routine:
             self._known[key] = stop_of(self._context, node, is_test)
         return self._known[key]
 
-    def _is_taken_back(self, stop: Stop) -> bool:
+    def _is_taken_back(self, stop: AdvanceStop) -> bool:
         return line_of(self._context.source, stop.where) in self._spent
 
     def _stops(self, node: ast.Node, is_test: bool) -> Iterator[Diagnostic]:
@@ -95,7 +95,7 @@ class _Routine:
 
     # ------------------------------------------------------------------------------ blends
 
-    def _blend(self, motion: Step) -> Iterator[Diagnostic]:
+    def _blend(self, motion: FlowNode) -> Iterator[Diagnostic]:
         """An approximated motion behind which the advance run stops before the next motion."""
         ahead = self._ahead(motion)
         if not ahead.stops:
@@ -115,8 +115,8 @@ class _Routine:
             reason=f"{how}, and the robot stops exactly at this point (message 1442 or 1123)",
         )
 
-    def _ahead(self, motion: Step) -> _Ahead:
-        found: list[Step] = []
+    def _ahead(self, motion: FlowNode) -> _Ahead:
+        found: list[FlowNode] = []
         is_open = False
         seen = {motion}
         todo = [motion]
@@ -135,7 +135,7 @@ class _Routine:
                     todo.append(step)
         return _Ahead(tuple(found), is_open)
 
-    def _is_boundary(self, step: Step) -> bool:
+    def _is_boundary(self, step: FlowNode) -> bool:
         """Whether the next motion begins here, or may begin in what is called here."""
         if step is self._ways.end or isinstance(step.statement, _MOTIONS | ast.Return):
             return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from grammar.check.constant_folding import constant
 from grammar.check.signal_direction import side_of
 from grammar.check.type_checker import TypeChecker
-from grammar.semantics.predefined import Variable
+from grammar.semantics.predefined import SystemVariable
 from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable
@@ -23,7 +23,7 @@ def assign(checker: TypeChecker, node: ast.Assignment) -> None:
         _check_limits(checker, variable, variable.limits, node)
 
 
-def _system_variable(checker: TypeChecker, node: ast.Expression) -> Variable | None:
+def _system_variable(checker: TypeChecker, node: ast.Expression) -> SystemVariable | None:
     """What is known of the variable of the controller that an expression is part of."""
     root = root_variable(node)
     if root is not None and root.name.text.startswith("$"):
@@ -49,7 +49,7 @@ def _check_writable(checker: TypeChecker, node: ast.Expression) -> None:
 
 
 def _check_limits(
-    checker: TypeChecker, variable: Variable, limits: tuple[int, int], node: ast.Assignment
+    checker: TypeChecker, variable: SystemVariable, limits: tuple[int, int], node: ast.Assignment
 ) -> None:
     value = constant(checker.context, node.value)
     if type(value) not in (int, float) or isinstance(value, str) or value is None:

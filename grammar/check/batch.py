@@ -28,7 +28,7 @@ from grammar.check.project_check import (
     read_part,
 )
 from grammar.check.result_cache import ProjectResult, read_result, result_record, state_of
-from grammar.check.suppression_comments import silenced
+from grammar.check.suppression_comments import apply_suppressions
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.link import File, link
 from support.files import archives
@@ -219,7 +219,7 @@ class _Project:
             size += len(content.data)
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
-            found += silenced(content.path, its, one.comments, self.options.wanted_codes)
+            found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
         files = len(self.contents) + len(self.unread) - len(skipped)
         return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), files, size, False)
 

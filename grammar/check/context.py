@@ -22,15 +22,15 @@ from grammar.syntax.ast import Node, Span
 from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies
 
-__all__ = ["Context", "Placed", "RoutineBody", "placed"]
+__all__ = ["Context", "PlacedStatement", "RoutineBody", "placed"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placed:
+class PlacedStatement:
     """A statement and the one that it stands in: a block, SWITCH or spline block."""
 
     statement: ast.Statement | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
-    inside: Placed | None
+    inside: PlacedStatement | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +44,7 @@ class RoutineBody:
     node: ast.Routine
     table: RoutineTable
     scope: Scope
-    statements: tuple[Placed, ...]
+    statements: tuple[PlacedStatement, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,14 +159,14 @@ class Context:
         )
 
 
-def placed(body: tuple[ast.Statement, ...]) -> tuple[Placed, ...]:
+def placed(body: tuple[ast.Statement, ...]) -> tuple[PlacedStatement, ...]:
     """All statements of a body with those they stand in, in the order of the text."""
-    found: list[Placed] = []
-    todo: list[tuple[Iterator[Any], Placed | None]] = [(iter(body), None)]
+    found: list[PlacedStatement] = []
+    todo: list[tuple[Iterator[Any], PlacedStatement | None]] = [(iter(body), None)]
     while todo:
         statements, inside = todo[-1]
         for statement in statements:
-            here = Placed(statement, inside)
+            here = PlacedStatement(statement, inside)
             found.append(here)
             if type(statement) in BODIES:
                 inner = tuple(bodies(statement))

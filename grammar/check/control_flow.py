@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from grammar.check.context import Context, Placed, RoutineBody
-from grammar.check.control_flow_graph import Step, ways_through
+from grammar.check.context import Context, PlacedStatement, RoutineBody
+from grammar.check.control_flow_graph import FlowNode, flow_graph
 from grammar.check.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.did_you_mean import did_you_mean
@@ -54,7 +54,7 @@ def _finding(
 
 
 def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    is_in_loop: dict[Placed | None, bool] = {None: False}
+    is_in_loop: dict[PlacedStatement | None, bool] = {None: False}
     for placed in routine.statements:
         statement, around = placed.statement, is_in_loop[placed.inside]
         is_in_loop[placed] = around or isinstance(statement, _LOOPS)
@@ -75,7 +75,7 @@ def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
 
 # ------------------------------------------------------------------------------- GOTO and labels
 
-_Labels = dict[str, list[Placed]]
+_Labels = dict[str, list[PlacedStatement]]
 
 
 def _labels(routine: RoutineBody) -> _Labels:
@@ -147,7 +147,7 @@ _BLOCKS: dict[type[ast.Node], str] = {
 def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     if routine.node.result is None:
         return
-    ways = ways_through(routine.node, lambda switch: _is_exhaustive(context, switch))
+    ways = flow_graph(routine.node, lambda switch: _is_exhaustive(context, switch))
     if ways.end in ways.reached():
         name = routine.node.name
         message = f"{name.text} can end without RETURN"
@@ -169,7 +169,7 @@ def _is_exhaustive(context: Context, switch: ast.Switch) -> bool:
 
 
 def _never_reached(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    ways = ways_through(routine.node)
+    ways = flow_graph(routine.node)
     reached = ways.reached()
     for step, before, inside in ways.steps:
         if step in reached or isinstance(step.statement, ast.Label | ast.Definition):
@@ -178,7 +178,7 @@ def _never_reached(context: Context, routine: RoutineBody) -> Iterator[Diagnosti
             yield _unreachable(context, step, before)
 
 
-def _unreachable(context: Context, step: Step, before: Step | None) -> Diagnostic:
+def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> Diagnostic:
     assert step.statement is not None
     assert before is not None, "the first statement of a block that is reached is reached"
     assert before.statement is not None

@@ -14,36 +14,36 @@ from dataclasses import dataclass, field
 from grammar.syntax import ast
 from grammar.syntax.walk import bodies, without_parentheses
 
-__all__ = ["Step", "Ways", "ways_through"]
+__all__ = ["FlowGraph", "FlowNode", "flow_graph"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class FlowNode:
     """A place in a routine: where its statement begins, or UNTIL of a REPEAT if ``is_test``."""
 
     statement: ast.Statement | None = None
     is_test: bool = False
-    after: list[Step] = field(default_factory=list)
+    after: list[FlowNode] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ways:
+class FlowGraph:
     """The ways through a routine from ``start`` to ``end``.
 
     ``steps`` are the places of its statements in the order of the text, each with that of the
     statement before it in the same list and that of the block it stands in.
     """
 
-    start: Step
-    end: Step
-    steps: tuple[tuple[Step, Step | None, Step | None], ...]
+    start: FlowNode
+    end: FlowNode
+    steps: tuple[tuple[FlowNode, FlowNode | None, FlowNode | None], ...]
 
-    def reached(self) -> frozenset[Step]:
+    def reached(self) -> frozenset[FlowNode]:
         """The places that some way from the start leads to."""
         return reachable(self.start)
 
 
-def reachable(start: Step) -> frozenset[Step]:
+def reachable(start: FlowNode) -> frozenset[FlowNode]:
     """All places that some way leads to, the first one included."""
     found = {start}
     todo = [start]
@@ -59,7 +59,7 @@ def reachable(start: Step) -> frozenset[Step]:
 IsExhaustive = Callable[[ast.Switch], bool]
 
 
-def ways_through(routine: ast.Routine, is_exhaustive: IsExhaustive = lambda _: False) -> Ways:
+def flow_graph(routine: ast.Routine, is_exhaustive: IsExhaustive = lambda _: False) -> FlowGraph:
     """The ways through a routine. A GOTO to a label that is not there leads nowhere."""
     return _Builder(is_exhaustive).build(routine)
 
@@ -76,34 +76,34 @@ class _Part:
     def __init__(
         self,
         statements: tuple[ast.Statement, ...],
-        at: Step,
-        behind: Step,
-        leave: Step | None,
-        inside: Step | None,
+        at: FlowNode,
+        behind: FlowNode,
+        leave: FlowNode | None,
+        inside: FlowNode | None,
     ) -> None:
         self.statements: Iterator[ast.Statement] = iter(statements)
         self.at = at
         self.behind = behind
         self.leave = leave
         self.inside = inside
-        self.before: Step | None = None
+        self.before: FlowNode | None = None
 
 
 class _Builder:
     def __init__(self, is_exhaustive: IsExhaustive) -> None:
         self._is_exhaustive = is_exhaustive
-        self._labels: dict[str, Step] = {}
-        self._jumps: list[tuple[Step, str]] = []
+        self._labels: dict[str, FlowNode] = {}
+        self._jumps: list[tuple[FlowNode, str]] = []
         self._parts: list[_Part] = []
-        self._steps: list[tuple[Step, Step | None, Step | None]] = []
+        self._steps: list[tuple[FlowNode, FlowNode | None, FlowNode | None]] = []
 
-    def build(self, routine: ast.Routine) -> Ways:
-        start, end = Step(), Step()
+    def build(self, routine: ast.Routine) -> FlowGraph:
+        start, end = FlowNode(), FlowNode()
         self._parts.append(_Part(routine.body, start, end, None, None))
         while self._parts:
             part = self._parts[-1]
             for statement in part.statements:
-                step = Step(statement)
+                step = FlowNode(statement)
                 self._steps.append((step, part.before, part.inside))
                 part.at.after.append(step)
                 part.at = part.before = step
@@ -115,35 +115,35 @@ class _Builder:
         for step, label in self._jumps:
             if label in self._labels:
                 step.after.append(self._labels[label])
-        return Ways(start, end, tuple(self._steps))
+        return FlowGraph(start, end, tuple(self._steps))
 
-    def _enter(self, part: _Part, step: Step, statement: ast.Statement) -> bool:
+    def _enter(self, part: _Part, step: FlowNode, statement: ast.Statement) -> bool:
         """Lead on from a statement; tells whether a block was begun."""
         match statement:
             case ast.Label(name=name):
                 self._labels.setdefault(name.key, step)
             case ast.Goto(label=label):
                 self._jumps.append((step, label.key))
-                part.at = Step()
+                part.at = FlowNode()
             case ast.Return():
-                part.at = Step()
+                part.at = FlowNode()
             case ast.Exit() if part.leave is not None:
                 step.after.append(part.leave)
-                part.at = Step()
+                part.at = FlowNode()
             case ast.If() | ast.Switch():
-                part.at = Step()
+                part.at = FlowNode()
                 for body in reversed(self._branches(statement, step, part.at)):
                     self._parts.append(_Part(body, step, part.at, part.leave, step))
                 return True
             case ast.For(body=body) | ast.While(body=body) | ast.Loop(body=body):
-                part.at = behind = Step()
+                part.at = behind = FlowNode()
                 if not _is_endless(statement):
                     step.after.append(behind)
                 self._parts.append(_Part(body, step, step, behind, step))
                 return True
             case ast.Repeat(body=body):
-                part.at = behind = Step()
-                test = Step(statement, is_test=True)
+                part.at = behind = FlowNode()
+                test = FlowNode(statement, is_test=True)
                 test.after.append(step)
                 if not _is_endless(statement):
                     test.after.append(behind)
@@ -152,7 +152,7 @@ class _Builder:
         return False
 
     def _branches(
-        self, statement: ast.If | ast.Switch, step: Step, behind: Step
+        self, statement: ast.If | ast.Switch, step: FlowNode, behind: FlowNode
     ) -> list[tuple[ast.Statement, ...]]:
         """What is chosen from; where nothing may be chosen, a way leads past it."""
         if isinstance(statement, ast.If):

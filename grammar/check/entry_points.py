@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grammar.check.advance_stop_reasons import is_known_call
-from grammar.check.context import Context, Placed, RoutineBody
-from grammar.check.control_flow_graph import Step, ways_through
+from grammar.check.context import Context, PlacedStatement, RoutineBody
+from grammar.check.control_flow_graph import FlowNode, flow_graph
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
@@ -123,7 +123,7 @@ def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
             yield context.finding("first-motion", motion, message)
 
 
-def _sets_up(placed: Placed) -> bool:
+def _sets_up(placed: PlacedStatement) -> bool:
     """Whether a statement sets up the motions of a program."""
     match placed.statement:
         case ast.CallStatement(
@@ -135,9 +135,9 @@ def _sets_up(placed: Placed) -> bool:
 
 def _first_motions(context: Context, routine: RoutineBody) -> list[ast.Motion]:
     """The motions that may be the first, in the order of the text; none where calls may move."""
-    ways = ways_through(routine.node)
+    ways = flow_graph(routine.node)
     found: list[ast.Motion] = []
-    seen: set[Step] = {ways.start}
+    seen: set[FlowNode] = {ways.start}
     todo = [ways.start]
     while todo and len(seen) < _FARTHEST_LOOK:
         for step in todo.pop().after:

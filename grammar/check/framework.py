@@ -24,7 +24,7 @@ from grammar.check import (
 )
 from grammar.check.constant_folding import Value
 from grammar.check.context import Context
-from grammar.check.undeclared_names import Reference
+from grammar.check.undeclared_names import UnresolvedName
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
@@ -68,7 +68,7 @@ class Findings:
     """What the check of one file found; ``references`` are names that other files may declare."""
 
     diagnostics: tuple[Diagnostic, ...]
-    references: tuple[Reference, ...]
+    references: tuple[UnresolvedName, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

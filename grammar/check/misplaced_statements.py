@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from grammar.check.context import Context, Placed, RoutineBody
+from grammar.check.context import Context, PlacedStatement, RoutineBody
 from grammar.check.statement_heads import head
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax import ast
@@ -84,7 +84,7 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             yield context.finding("workspace-in-submit", node, message)
 
 
-def _is_in_spline(placed: Placed) -> bool:
+def _is_in_spline(placed: PlacedStatement) -> bool:
     return placed.inside is not None and isinstance(placed.inside.statement, ast.SplineBlock)
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.framework import Findings, check_module
-from grammar.check.suppression_comments import Silencer, silencers
+from grammar.check.suppression_comments import SuppressionComment, suppression_comments
 from grammar.diagnostics.diagnostic import Region, diagnose, in_order
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
@@ -83,7 +83,7 @@ class FileResult:
     skipped: str | None = None
     table: ModuleTable | None = None
     lines: Mapping[int, str] | None = None
-    comments: tuple[Silencer, ...] = ()
+    comments: tuple[SuppressionComment, ...] = ()
     words: frozenset[str] | None = None
 
 
@@ -94,7 +94,7 @@ class _Tree:
     syntax: ast.Module | None
     table: ModuleTable
     source: Source
-    comments: tuple[Silencer, ...]
+    comments: tuple[SuppressionComment, ...]
 
 
 #: By project, then by the index of the file in it.
@@ -136,11 +136,11 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
         return FileResult(skipped=decoded), None
     source = Source(decoded.text, path)
     if options.syntax_only and not builder().failures.find(source.text):
-        return FileResult(comments=silencers(source)), None
+        return FileResult(comments=suppression_comments(source)), None
     tree = builder().read(source.text, path)
     if not isinstance(tree, ast.Module):
         return _failed(tree, source), None
-    comments = silencers(source)
+    comments = suppression_comments(source)
     if options.syntax_only:
         return FileResult(comments=comments), None
     table = table_of(tree)
@@ -151,7 +151,10 @@ def _failed(failures: list[SyntaxFailure], source: Source) -> FileResult:
     found = tuple(syntax_findings(failures, source))
     lines = _lines(source, (one.region.line for one in found))
     return FileResult(
-        Findings(found, ()), lines=lines, comments=silencers(source), words=words_of(source.text)
+        Findings(found, ()),
+        lines=lines,
+        comments=suppression_comments(source),
+        words=words_of(source.text),
     )
 
 

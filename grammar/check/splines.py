@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar.check.context import Context, Placed
+from grammar.check.context import Context, PlacedStatement
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax import ast
 
@@ -26,7 +26,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
                     yield context.finding("spl-outside-block", motion, message)
 
 
-def _is_inside(placed: Placed) -> bool:
+def _is_inside(placed: PlacedStatement) -> bool:
     """Whether a statement stands in a spline block."""
     return placed.inside is not None and isinstance(placed.inside.statement, ast.SplineBlock)
 

@@ -10,21 +10,21 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.diagnostics.suppression import Malformed, Suppression, suppression, unsuppressed
 from grammar.syntax.source import Source
 
-__all__ = ["Silencer", "silenced", "silencers"]
+__all__ = ["SuppressionComment", "apply_suppressions", "suppression_comments"]
 
 # Most files have no such comment, and looking at each comment takes time.
 _MARK = re.compile(r";[ \t]*krl[ \t]*:", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
-class Silencer:
+class SuppressionComment:
     """A comment that silences, or is meant to, and where it stands."""
 
     what: Suppression | Malformed
     region: Region
 
 
-def silencers(source: Source) -> tuple[Silencer, ...]:
+def suppression_comments(source: Source) -> tuple[SuppressionComment, ...]:
     """The comments of a file that silence something, or are meant to."""
     if not _MARK.search(source.text):
         return ()
@@ -33,14 +33,16 @@ def silencers(source: Source) -> tuple[Silencer, ...]:
         what = suppression(comment.text, comment.line)
         if what is not None:
             end = comment.column + len(comment.text)
-            found.append(Silencer(what, Region(comment.line, comment.column, comment.line, end)))
+            found.append(
+                SuppressionComment(what, Region(comment.line, comment.column, comment.line, end))
+            )
     return tuple(found)
 
 
-def silenced(
+def apply_suppressions(
     path: str,
     diagnostics: Iterable[Diagnostic],
-    comments: Sequence[Silencer],
+    comments: Sequence[SuppressionComment],
     sought: tuple[str, ...] = ("",),
 ) -> list[Diagnostic]:
     """The findings of a file that no comment silences, and what is wrong with the comments.

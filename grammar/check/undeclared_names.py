@@ -2,7 +2,7 @@
 
 A look-up says `NotFound` where the whole project is at hand. Real backups seldom are whole, so what
 decides then is whether what could declare this very name has been read, and whether it is a slip of
-a name that is seen there: a file gives its `Reference`s, and `of_project` grades all of them.
+a name that is seen there: a file gives its `UnresolvedName`s, and `of_project` grades all of them.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from grammar.semantics.types import SCALARS
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
-__all__ = ["Reference", "check", "of_project", "references"]
+__all__ = ["UnresolvedName", "check", "of_project", "references"]
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class UnresolvedName:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
     ``region`` is the first place of ``count``. ``near`` are names seen there that it may be a slip
@@ -142,7 +142,7 @@ _SERIES = 3
 _MOST_MODULES = 2
 
 
-def references(context: Context) -> tuple[Reference, ...]:
+def references(context: Context) -> tuple[UnresolvedName, ...]:
     """The names in a file that other files may declare, in the order of their first places."""
     uses: dict[tuple[Space, str], list[Use]] = {}
     for use in context.resolution.open_uses:
@@ -150,7 +150,7 @@ def references(context: Context) -> tuple[Reference, ...]:
             uses.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
     return tuple(
-        Reference(
+        UnresolvedName(
             space,
             some[0].name.text,
             context.source.path,
@@ -203,14 +203,14 @@ def _is_all_read(context: Context, use: Use) -> bool:
     return False
 
 
-def of_project(found: Iterable[Reference]) -> Iterator[Diagnostic]:
+def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
     what is a slip of a name that is seen there, or that is used again and again and comes from
     elsewhere itself; one note for each name that remains.
     """
-    uses: dict[tuple[Space, str], list[Reference]] = {}
+    uses: dict[tuple[Space, str], list[UnresolvedName]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
@@ -231,7 +231,7 @@ def of_project(found: Iterable[Reference]) -> Iterator[Diagnostic]:
             yield _from_elsewhere(some, count)
 
 
-def _undeclared(reference: Reference, near: Sequence[str]) -> Diagnostic:
+def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:
     severity: Severity = "error" if reference.is_all_read else "warning"
     slug = _SLUGS[reference.space]
     message = f"no {_WORDS[reference.space]} is called {reference.name}"
@@ -241,7 +241,7 @@ def _undeclared(reference: Reference, near: Sequence[str]) -> Diagnostic:
     return diagnose(slug, reference.path, reference.region, message, severity=severity, fix=fix)
 
 
-def _from_elsewhere(some: Sequence[Reference], count: int) -> Diagnostic:
+def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:
     first = min(some, key=lambda reference: (reference.path, reference.region))
     uses_of_it = "used once" if count == 1 else f"used {count} times"
     if first.is_system:

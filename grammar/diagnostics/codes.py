@@ -14,14 +14,14 @@ from functools import cache
 from importlib import resources
 from typing import Literal, get_args
 
-__all__ = ["Code", "Severity", "by_code", "by_slug", "code", "of_message"]
+__all__ = ["DiagnosticCode", "Severity", "by_code", "by_slug", "code", "of_message"]
 
 #: From the gravest to the mildest. An error is what the controller refuses.
 Severity = Literal["error", "warning", "note"]
 
 
 @dataclass(frozen=True, slots=True)
-class Code:
+class DiagnosticCode:
     """What a code means: ``title`` says what is wrong, ``explanation`` why, in sentences.
 
     ``severity`` is that of a finding of which nothing else is known; ``rules`` are IDs.
@@ -36,28 +36,28 @@ class Code:
 
 
 @cache
-def by_slug() -> Mapping[str, Code]:
+def by_slug() -> Mapping[str, DiagnosticCode]:
     """All codes by their slugs, in the order of the table."""
     table = resources.files(__package__).joinpath("codes.tsv").read_text(encoding="utf-8")
     found = {}
     for row in table.splitlines()[1:]:
         name, slug, severity, rules, title, explanation = row.split("\t")
         (known,) = (word for word in get_args(Severity) if word == severity)
-        found[slug] = Code(name, slug, known, title, explanation, tuple(rules.split()))
+        found[slug] = DiagnosticCode(name, slug, known, title, explanation, tuple(rules.split()))
     return found
 
 
 @cache
-def by_code() -> Mapping[str, Code]:
+def by_code() -> Mapping[str, DiagnosticCode]:
     """The same by their codes."""
     return {entry.code: entry for entry in by_slug().values()}
 
 
-def code(slug: str) -> Code:
+def code(slug: str) -> DiagnosticCode:
     """The code with this slug; raises `KeyError`, which can only be a mistake of ours."""
     return by_slug()[slug]
 
 
-def of_message(number: int) -> Code | None:
+def of_message(number: int) -> DiagnosticCode | None:
     """The code of a message of the controller, where findings have it."""
     return by_code().get(f"KSS{number}")

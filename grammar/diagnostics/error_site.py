@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from grammar.diagnostics.diagnostic import Fix, Region
-from grammar.diagnostics.open_blocks import Opened
+from grammar.diagnostics.open_blocks import OpenBlock
 from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
 
-__all__ = ["Site"]
+__all__ = ["ErrorSite"]
 
 # Of a longer line only what is near the failure is looked at.
 _LONGEST_LINE = 2_000
@@ -19,12 +19,12 @@ _TOKEN = re.compile(r'"[^"]*"|[$#]?\w+|:=|==|<>|!=|<=|>=|=<|=>|&&|\|\||//|\S')
 
 
 @dataclass(frozen=True, eq=False)
-class Site:
+class ErrorSite:
     """A failure, and what stands around it."""
 
     failure: SyntaxFailure
     source: Source
-    block: Opened | None
+    block: OpenBlock | None
 
     @cached_property
     def code(self) -> str:

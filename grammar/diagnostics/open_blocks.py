@@ -14,18 +14,18 @@ from dataclasses import dataclass
 from grammar.blocks import BLOCKS, CLOSERS
 from grammar.syntax.source import Source
 
-__all__ = ["Opened", "innermost", "lead", "open_blocks"]
+__all__ = ["OpenBlock", "innermost", "lead", "open_blocks"]
 
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Opened:
+class OpenBlock:
     """A block that is open: its word, its line from 1, and the block around it."""
 
     word: str
     line: int
-    outer: Opened | None
+    outer: OpenBlock | None
 
     @property
     def closer(self) -> str:
@@ -39,19 +39,19 @@ def lead(line: str) -> str:
     return found[1].upper() if found else ""
 
 
-def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, Opened | None]:
+def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | None]:
     """The innermost block that is open before each of some lines, from 1."""
     wanted = set(lines)
     last = max(wanted, default=0)
-    found: dict[int, Opened | None] = {}
-    block: Opened | None = None
+    found: dict[int, OpenBlock | None] = {}
+    block: OpenBlock | None = None
     opened: Counter[str] = Counter()
     for number, text in enumerate(source.lines[:last], 1):
         if number in wanted:
             found[number] = block
         word = lead(text)
         if word in BLOCKS:
-            block = Opened(word, number, block)
+            block = OpenBlock(word, number, block)
             opened[word] += 1
         elif any(opened[opener] for opener in CLOSERS.get(word, ())):
             is_closed = False
@@ -62,7 +62,7 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, Opened | None
     return found | {number: block for number in wanted if number > len(source.lines)}
 
 
-def innermost(block: Opened | None, words: Iterable[str]) -> Opened | None:
+def innermost(block: OpenBlock | None, words: Iterable[str]) -> OpenBlock | None:
     """The innermost open block of one of some kinds."""
     wanted = set(words)
     while block is not None and block.word not in wanted:

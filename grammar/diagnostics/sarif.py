@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Any
 from urllib.parse import quote
 
-from grammar.diagnostics.codes import Code, by_code
+from grammar.diagnostics.codes import DiagnosticCode, by_code
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, in_order
 
 __all__ = ["sarif"]
@@ -33,7 +33,7 @@ def sarif(diagnostics: Iterable[Diagnostic], version: str) -> dict[str, Any]:
     return {"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
-def _rule(code: Code) -> dict[str, Any]:
+def _rule(code: DiagnosticCode) -> dict[str, Any]:
     return {
         "id": code.code,
         "name": "".join(word.capitalize() for word in code.slug.split("-")),

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
-from grammar.diagnostics.error_site import Site
+from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
-from grammar.diagnostics.open_blocks import Opened, innermost, lead, open_blocks
+from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
@@ -36,7 +36,7 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
     told = [failure for failure in failures if not failure.follows] or list(failures)
     shown = told[:MOST_TOLD]
     blocks = open_blocks(source, (failure.line for failure in shown))
-    found = [_finding(Site(failure, source, blocks[failure.line])) for failure in shown]
+    found = [_finding(ErrorSite(failure, source, blocks[failure.line])) for failure in shown]
     if len(told) > len(shown):
         message = f"{len(told) - len(shown):,} more lines that cannot be read are not told"
         found.append(diagnose("too-large", source.path, found[-1].region, message))
@@ -54,7 +54,7 @@ class _Mistake:
     region: Region | None = None
 
 
-def _finding(site: Site) -> Diagnostic:
+def _finding(site: ErrorSite) -> Diagnostic:
     failure = site.failure
     region = _offending(site)
     if failure.reason is not None:
@@ -74,7 +74,7 @@ def _finding(site: Site) -> Diagnostic:
     )
 
 
-def _offending(site: Site) -> Region:
+def _offending(site: ErrorSite) -> Region:
     """The offending token; at the end of a text, its last line that says something."""
     failure, source = site.failure, site.source
     if failure.text:
@@ -89,7 +89,7 @@ def _offending(site: Site) -> Region:
     return Region(line, column, line, column)
 
 
-def _unexpected(site: Site) -> _Mistake:
+def _unexpected(site: ErrorSite) -> _Mistake:
     words = in_words(site.failure.expected)
     reason = f"expected: {words}" if words else ""
     if not site.failure.text:
@@ -99,7 +99,7 @@ def _unexpected(site: Site) -> _Mistake:
     return _Mistake(f"{_shown(site)} cannot stand here", reason=reason)
 
 
-def _shown(site: Site) -> str:
+def _shown(site: ErrorSite) -> str:
     """The offending token as written, as far as it fits into a message."""
     text = site.failure.text.strip()
     cut = f"{text[:_LONGEST_TOKEN]}…" if len(text) > _LONGEST_TOKEN else text
@@ -109,7 +109,7 @@ def _shown(site: Site) -> str:
 # ----------------------------------------------------------------------------------------- blocks
 
 
-def _blocks(site: Site) -> _Mistake | None:
+def _blocks(site: ErrorSite) -> _Mistake | None:
     """A block that is not closed, or closed and never opened."""
     if not site.failure.text:
         return None if site.block is None else _not_closed(site, site.block)
@@ -142,13 +142,13 @@ def _blocks(site: Site) -> _Mistake | None:
 #: The parts of a block that are no ends of it.
 
 
-def _outermost(block: Opened) -> Opened:
+def _outermost(block: OpenBlock) -> OpenBlock:
     while block.outer is not None:
         block = block.outer
     return block
 
 
-def _not_closed(site: Site, block: Opened) -> _Mistake:
+def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
     place = f"{block.word} on line {block.line}"
     slug = "endloop-missing" if block.word == "LOOP" else "syntax"
     return _Mistake(
@@ -159,7 +159,7 @@ def _not_closed(site: Site, block: Opened) -> _Mistake:
     )
 
 
-def _end_in_two_words(site: Site) -> _Mistake | None:
+def _end_in_two_words(site: ErrorSite) -> _Mistake | None:
     closer = f"END{site.word(1)}"
     if not site.word(1) or not (closer in CLOSERS or closer in _FOREIGN):
         return None
@@ -178,7 +178,7 @@ _FOREIGN = {
 }  # fmt: skip
 
 
-def _foreign(site: Site) -> _Mistake | None:
+def _foreign(site: ErrorSite) -> _Mistake | None:
     """A word of another language in place of one of KRL."""
     word = site.word(0)
     if site.place > 1 or site.expects("INTEGER"):
@@ -200,7 +200,7 @@ def _foreign(site: Site) -> _Mistake | None:
 # ------------------------------------------------------------------------------- signs and words
 
 
-def _signs(site: Site) -> _Mistake | None:
+def _signs(site: ErrorSite) -> _Mistake | None:
     """Signs that mean something else in KRL, or nothing."""
     text, place = site.text, site.place
     if text == "=" and site.expects("=="):
@@ -238,7 +238,7 @@ _OF_C = {
 }  # fmt: skip
 
 
-def _words(site: Site) -> _Mistake | None:
+def _words(site: ErrorSite) -> _Mistake | None:
     """A word too many, too few, or in the wrong order."""
     text, place = site.text, site.place
     if site.failure.rule == "ifStatement" and site.expects("THEN"):
@@ -263,7 +263,7 @@ def _words(site: Site) -> _Mistake | None:
     return None
 
 
-def _ends(site: Site) -> _Mistake | None:
+def _ends(site: ErrorSite) -> _Mistake | None:
     """A line that ends too early."""
     if not site.is_at_end:
         return None
@@ -278,7 +278,7 @@ def _ends(site: Site) -> _Mistake | None:
 # -------------------------------------------------------------------------- names, declarations
 
 
-def _declarations(site: Site) -> _Mistake | None:
+def _declarations(site: ErrorSite) -> _Mistake | None:
     """Declarations with what belongs elsewhere, or without what they need."""
     text, rule, is_data = site.text, site.failure.rule, _is_data(site)
     if not is_data and text == "=" and rule == "declaration":
@@ -302,7 +302,7 @@ def _declarations(site: Site) -> _Mistake | None:
     return None
 
 
-def _names(site: Site) -> _Mistake | None:
+def _names(site: ErrorSite) -> _Mistake | None:
     """Names that are none, and statements where none can be."""
     text, place = site.text, site.place
     is_name = site.expects("NAME") and not site.expects("INTEGER") and not site.expects("HALT")
@@ -320,7 +320,7 @@ def _names(site: Site) -> _Mistake | None:
     return None
 
 
-def _opens_statement(site: Site) -> bool:
+def _opens_statement(site: ErrorSite) -> bool:
     if site.text in statements():
         return True
     if not _BEGINNING.match(site.text) or _is_keyword(site.text):
@@ -328,12 +328,12 @@ def _opens_statement(site: Site) -> bool:
     return site.text not in names() and "=" in site.words[site.place :]
 
 
-def _is_name(site: Site, place: int) -> bool:
+def _is_name(site: ErrorSite, place: int) -> bool:
     word = site.word(place)
     return bool(_WORD.fullmatch(word)) and not _is_keyword(word)
 
 
-def _is_data(site: Site) -> bool:
+def _is_data(site: ErrorSite) -> bool:
     return innermost(site.block, ("DEFDAT",)) is not None
 
 
@@ -347,7 +347,7 @@ def _is_keyword(word: str) -> bool:
 
 
 #: In this order: the first that knows the mistake tells it.
-_KNOWN: tuple[Callable[[Site], _Mistake | None], ...] = (
+_KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
     _foreign,
     _signs,

@@ -30,7 +30,6 @@ __all__ = [
     "AddAlternative",
     "AddRule",
     "AddToken",
-    "Comment",
     "Edit",
     "Insert",
     "MakeOptional",
@@ -39,6 +38,7 @@ __all__ = [
     "RemoveElement",
     "RemoveRule",
     "Replace",
+    "SetComment",
     "Widen",
     "apply",
     "describe",
@@ -96,7 +96,7 @@ class Replace:
 class AddRule:
     """Add a rule, given as text from its name to ``;``, after the rule ``after``.
 
-    ``comment`` goes above it, as in `Comment`.
+    ``comment`` goes above it, as in `SetComment`.
     """
 
     after: str
@@ -105,7 +105,7 @@ class AddRule:
 
 
 @dataclass(frozen=True, slots=True)
-class Comment:
+class SetComment:
     """Give a rule the comment ``text``, without slashes, instead of the one it has."""
 
     rule: str
@@ -153,7 +153,7 @@ class RemoveRule:
 EditOfRule = (
     Insert | Widen | MakeOptional | Replace | AddAlternative | RemoveAlternative | RemoveElement
 )
-Edit = EditOfRule | AddRule | AddToken | Comment | Preamble | RemoveRule
+Edit = EditOfRule | AddRule | AddToken | SetComment | Preamble | RemoveRule
 
 
 def apply(grammar: Grammar, edits: Sequence[Edit]) -> Grammar:
@@ -175,7 +175,7 @@ def _apply(grammar: Grammar, edit: Edit) -> Grammar:
             grown = with_rule(grammar, _rule(grammar, after), text)
             added = grown.rules[grammar.rules.index(grammar.by_name[after]) + 1]
             return commented(grown, added, comment) if comment else grown
-        case Comment(rule=name, text=text):
+        case SetComment(rule=name, text=text):
             return commented(grammar, _rule(grammar, name), text)
         case Preamble(text=text):
             return with_preamble(grammar, text)
@@ -221,7 +221,7 @@ _KINDS: dict[str, type[Edit]] = {
     "add-alternative": AddAlternative,
     "add-rule": AddRule,
     "add-token": AddToken,
-    "comment": Comment,
+    "comment": SetComment,
     "preamble": Preamble,
     "remove-alternative": RemoveAlternative,
     "remove-element": RemoveElement,
@@ -268,7 +268,7 @@ def describe(grammar: Grammar, edit: Edit) -> str:
     match edit:
         case AddToken(name=name):
             return f"reserve {name}"
-        case Comment(rule=rule):
+        case SetComment(rule=rule):
             return f"{rule}: its comment"
         case Preamble():
             return "the opening comment"

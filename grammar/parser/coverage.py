@@ -23,10 +23,10 @@ from functools import cached_property
 
 from grammar.notation.addresses import Address, element_at, sequences, spelled
 from grammar.notation.model import Alternative, Element, Grammar, Group, Reference, Repeat, Rule
-from grammar.parser.ordered_network import FIRST, LAST, Step, WrittenRule, written
+from grammar.parser.ordered_network import FIRST, LAST, OrderedAutomaton, Step, ordered_automaton
 from grammar.parser.tree import Outline, Tree
 
-__all__ = ["Branch", "Coverage", "Share", "branches"]
+__all__ = ["Branch", "GrammarCoverage", "Share", "branches"]
 
 _HOW_OFTEN: Mapping[str, tuple[str, ...]] = {
     "?": ("absent", "present"),
@@ -83,14 +83,16 @@ class _Match:
     places: tuple[Address, ...]
 
 
-class Coverage:
+class GrammarCoverage:
     """What the trees added so far exercise of one grammar; ``words`` as told above."""
 
     def __init__(self, grammar: Grammar, words: Collection[str] = ()) -> None:
         self.grammar = grammar
         self._words = frozenset(words)
         self._rules = {rule.name: rule for rule in grammar.rules if not rule.is_lexer}
-        self._written = {name: written(grammar, rule) for name, rule in self._rules.items()}
+        self._written = {
+            name: ordered_automaton(grammar, rule) for name, rule in self._rules.items()
+        }
         self._matches: dict[tuple[str, tuple[str, ...]], _Match] = {}
         self._alternatives: set[tuple[str, int]] = set()
         self._branches: set[Branch] = set()
@@ -233,7 +235,7 @@ def _how_often(operator: str, rounds: int) -> str:
 _Steps = tuple["_Steps", Step] | None
 
 
-def _way(automaton: WrittenRule, symbols: Sequence[str]) -> list[Step]:
+def _way(automaton: OrderedAutomaton, symbols: Sequence[str]) -> list[Step]:
     """The steps from the first state to the last that read the symbols, the best of all."""
     threads: list[tuple[int, _Steps]] = [(FIRST, None)]
     for symbol in symbols:
@@ -252,7 +254,7 @@ def _way(automaton: WrittenRule, symbols: Sequence[str]) -> list[Step]:
 
 
 def _reached(
-    automaton: WrittenRule, threads: Sequence[tuple[int, _Steps]]
+    automaton: OrderedAutomaton, threads: Sequence[tuple[int, _Steps]]
 ) -> Iterator[tuple[int, _Steps]]:
     """Every state that is reached without reading, each once, the best way first."""
     seen = set()
@@ -270,7 +272,7 @@ def _reached(
 
 
 def branches(grammar: Grammar, words: Collection[str] = ()) -> Iterator[Branch]:
-    """Every context-dependent branch of a grammar, rule by rule; ``words`` as in `Coverage`."""
+    """Every context-dependent branch of a grammar; ``words`` as in `GrammarCoverage`."""
     for rule in grammar.rules:
         if rule.is_lexer:
             continue

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from grammar.notation.model import Grammar
 from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack
 from grammar.parser.lexer import Lexer
-from grammar.parser.ordered_network import written
+from grammar.parser.ordered_network import ordered_automaton
 
 __all__ = ["Action", "Begin", "Derivation", "Deriver"]
 
@@ -89,7 +89,7 @@ class _Rules:
         for rule in grammar.rules:
             if not rule.is_lexer:
                 base = self._entry[rule.name] = len(moves)
-                automaton = written(grammar, rule)
+                automaton = ordered_automaton(grammar, rule)
                 for state in range(len(automaton.steps)):
                     found = automaton.moves(state)
                     moves.append((rule.name, [m and (m[0], base + m[1]) for m in found]))

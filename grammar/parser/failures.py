@@ -7,7 +7,7 @@ in which state. Three guesses, the first that lets the next line be read wins:
    the shortest run of tokens at the failure (``FOR I=1 TO 9 STEP 2`` still opens its loop);
 2. the line is dropped: the state before it;
 3. the place is another than it seems, because something before it was not understood: a state in
-   which some line of some program begins (`Anchors`).
+   which some line of some program begins (`LineStates`).
 
 Lines that can only be read because of guess 3, and the closers of openers that were dropped,
 *follow* from an earlier failure and are marked so.
@@ -29,7 +29,7 @@ from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
 
-__all__ = ["Context", "Failure", "FailureFinder", "Form"]
+__all__ = ["Failure", "FailureContext", "FailureFinder", "Form"]
 
 # A failing line is tried again without 1, 2, 3 … tokens; on enormous lines only so far.
 _LONGEST_GAP = 64
@@ -52,7 +52,7 @@ class Form:
 
 
 @dataclass(frozen=True, slots=True)
-class Context:
+class FailureContext:
     """What the grammar was doing at a failure.
 
     ``rule`` is the innermost rule that cannot end there, ``rules`` the way to it from the start
@@ -97,7 +97,7 @@ class _Broken:
     mended: Spot | None  # guess 1
 
 
-class Anchors:
+class LineStates:
     """States in which a line can begin, from the shortest programs through every rule."""
 
     def __init__(self, recognizer: Recognizer) -> None:
@@ -123,7 +123,7 @@ class FailureFinder:
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
         self._reader = LineReader(recognizer)
-        self._contexts: dict[tuple[Core, Tail], Context] = {}
+        self._contexts: dict[tuple[Core, Tail], FailureContext] = {}
         self._forget()
 
     def _forget(self) -> None:
@@ -134,8 +134,8 @@ class FailureFinder:
         self._resumed: dict[tuple[object, ...], Spot] = {}
 
     @cached_property
-    def _anchors(self) -> Anchors:
-        return Anchors(self.recognizer)
+    def _anchors(self) -> LineStates:
+        return LineStates(self.recognizer)
 
     def find(self, text: str) -> list[Failure]:
         """Failures in the order of the file; empty where the text is a program."""
@@ -150,7 +150,7 @@ class FailureFinder:
             self._forget()
         return list(self._failures(text, lexemes, kinds))
 
-    def context(self, state: State) -> Context:
+    def context(self, state: State) -> FailureContext:
         """Rule, rule stack and expected set in the state before an offending token."""
         key = (state.core, state.tail)
         found = self._contexts.get(key)
@@ -257,7 +257,7 @@ class FailureFinder:
 
     # -------------------------------------------------------------------------- context
 
-    def _context(self, state: State) -> Context:
+    def _context(self, state: State) -> FailureContext:
         recognizer = self.recognizer
         final, rule_of = recognizer.network.final, recognizer.network.rule
         ways: list[tuple[int, ...]] = []
@@ -272,7 +272,7 @@ class FailureFinder:
         rules = tuple(rule_of[p] for p in shared) or (recognizer.grammar.start,)
         display = recognizer.lexer.display
         expected = tuple(sorted(display[k] for k in recognizer.expected(state)))
-        return Context(rules[-1], rules, expected)
+        return FailureContext(rules[-1], rules, expected)
 
 
 def _lead(lexemes: Sequence[str]) -> str:

@@ -15,7 +15,7 @@ from typing import Literal as OneOf
 from grammar.notation.addresses import Address
 from grammar.notation.model import Alternative, CharSet, Element, Grammar, Group, Repeat, Rule
 
-__all__ = ["FIRST", "LAST", "Sign", "Step", "WrittenRule", "written"]
+__all__ = ["FIRST", "LAST", "OrderedAutomaton", "Sign", "Step", "ordered_automaton"]
 
 #: States of every rule.
 FIRST, LAST = 0, 1
@@ -40,7 +40,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenRule:
+class OrderedAutomaton:
     """``steps[state]`` are the steps out of a state in order, `FIRST` and `LAST` among them."""
 
     steps: tuple[tuple[Step, ...], ...]
@@ -68,11 +68,11 @@ class WrittenRule:
         return list(found)
 
 
-def written(grammar: Grammar, rule: Rule) -> WrittenRule:
+def ordered_automaton(grammar: Grammar, rule: Rule) -> OrderedAutomaton:
     """The automaton of one parser rule."""
     building = _Building(grammar)
     building.choice(rule.alternatives, FIRST, LAST, ())
-    return WrittenRule(tuple(map(tuple, building.steps)))
+    return OrderedAutomaton(tuple(map(tuple, building.steps)))
 
 
 class _Building:

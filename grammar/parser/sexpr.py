@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
-from grammar.parser.tree import Node, Token, Tree
+from grammar.parser.tree import ParseNode, Token, Tree
 
 __all__ = ["Expression", "ExpressionError", "Shortener", "read", "write"]
 
@@ -54,16 +54,16 @@ class Shortener:
         """The tree of a program."""
         return self._of(tree.root)
 
-    def _of(self, node: Node) -> Expression:
+    def _of(self, node: ParseNode) -> Expression:
         children = [child for child in node.children if not _says_nothing(child)]
         only = children[0] if len(children) == 1 else None
-        if isinstance(only, Node):
+        if isinstance(only, ParseNode):
             return self._of(only)
         if isinstance(only, Token) and not self._is_known(node.rule, only):
             return only.text
         shown: list[Expression] = [node.rule]
         for before, child, after in _with_neighbours(children):
-            if isinstance(child, Node):
+            if isinstance(child, ParseNode):
                 shown.append(self._of(child))
             elif not self._is_known(node.rule, child) and not (
                 child.text in _SEPARATORS and _are_items(before, after)
@@ -89,7 +89,7 @@ def _needed(grammar: Grammar, elements: Iterable[Element]) -> Iterator[str]:
                 yield from _needed(grammar, [item])
 
 
-def _says_nothing(child: Node | Token) -> bool:
+def _says_nothing(child: ParseNode | Token) -> bool:
     """Whether it is line ends only, or the end of the file, or nothing at all."""
     if isinstance(child, Token):
         return child.kind in (_LINE_END, "EOF")
@@ -98,15 +98,16 @@ def _says_nothing(child: Node | Token) -> bool:
 
 
 def _with_neighbours(
-    children: Sequence[Node | Token],
-) -> Iterator[tuple[Node | Token | None, Node | Token, Node | Token | None]]:
+    children: Sequence[ParseNode | Token],
+) -> Iterator[tuple[ParseNode | Token | None, ParseNode | Token, ParseNode | Token | None]]:
     return zip([None, *children], children, [*children[1:], None], strict=False)
 
 
-def _are_items(*children: Node | Token | None) -> bool:
+def _are_items(*children: ParseNode | Token | None) -> bool:
     """Whether all are there, and none is a bracket or separator itself."""
     return all(
-        isinstance(child, Node) or (child is not None and child.text not in _BRACKETS | _SEPARATORS)
+        isinstance(child, ParseNode)
+        or (child is not None and child.text not in _BRACKETS | _SEPARATORS)
         for child in children
     )
 

@@ -39,19 +39,19 @@ from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sexpr import ExpressionError, Shortener, read, write
 
-__all__ = ["Case", "CaseError", "CaseReader", "main", "read_cases"]
+__all__ = ["CaseReader", "SyntaxCase", "SyntaxCaseError", "main", "read_cases"]
 
 _BAR = re.compile(r"={3,}")
 _RULE = re.compile(r"-{3,}")
 _MARK = ":error"
 
 
-class CaseError(Exception):
+class SyntaxCaseError(Exception):
     """The text holds no cases; the message names the line."""
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class SyntaxCase:
     """One case. ``lines`` are where its expectation stands: the first line and the one after it."""
 
     title: str
@@ -61,24 +61,26 @@ class Case:
     lines: tuple[int, int]
 
 
-def read_cases(text: str) -> list[Case]:
-    """The cases of a file; raises `CaseError` where it is not built as told above."""
+def read_cases(text: str) -> list[SyntaxCase]:
+    """The cases of a file; raises `SyntaxCaseError` where it is not built as told above."""
     lines = text.split("\n")
     bars = [i for i, line in enumerate(lines) if _BAR.fullmatch(line.rstrip())]
     if len(bars) % 2 or "".join(lines[: bars[0] if bars else None]).strip():
-        raise CaseError("line 1: cases begin with a title between two bars of =")
+        raise SyntaxCaseError("line 1: cases begin with a title between two bars of =")
     cases = []
     ends = [*bars[2::2], len(lines)]
     for above, below, end in zip(bars[::2], bars[1::2], ends, strict=False):
         title, *marks = (line.strip() for line in lines[above + 1 : below])
         if not title or marks not in ([], [_MARK]):
-            raise CaseError(f"line {above + 2}: a title, and {_MARK} below it or nothing")
+            raise SyntaxCaseError(f"line {above + 2}: a title, and {_MARK} below it or nothing")
         rules = [i for i in range(below + 1, end) if _RULE.fullmatch(lines[i].rstrip())]
         if len(rules) != 1:
-            raise CaseError(f"line {below + 1}: between source and expectation stands one bar of -")
+            raise SyntaxCaseError(
+                f"line {below + 1}: between source and expectation stands one bar of -"
+            )
         source = "\n".join(lines[below + 1 : rules[0]]).strip("\n") + "\n"
         expected = "\n".join(lines[rules[0] + 1 : end]).strip()
-        cases.append(Case(title, source, bool(marks), expected, (rules[0] + 1, end)))
+        cases.append(SyntaxCase(title, source, bool(marks), expected, (rules[0] + 1, end)))
     return cases
 
 
@@ -89,7 +91,7 @@ class CaseReader:
         self._parser = Parser(recognizer)
         self._shortener = Shortener(recognizer.grammar)
 
-    def outcome(self, case: Case) -> tuple[bool, str]:
+    def outcome(self, case: SyntaxCase) -> tuple[bool, str]:
         """Whether the source is an error, and that error or the tree, as text."""
         tree = self._parser.parse(case.source)
         if isinstance(tree, Stop):
@@ -97,7 +99,7 @@ class CaseReader:
             return True, f"{tree.line}:{tree.column} {token}"
         return False, write(self._shortener.expression(tree))
 
-    def difference(self, case: Case) -> str | None:
+    def difference(self, case: SyntaxCase) -> str | None:
         """What the source gives where that is not what is expected, else ``None``."""
         is_error, found = self.outcome(case)
         if is_error != case.is_error:
@@ -138,7 +140,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 path.write_text(reader.updated(text), encoding="utf-8", newline="\n")
                 text = path.read_text(encoding="utf-8")
             cases = read_cases(text)
-        except (OSError, ValueError, CaseError) as error:
+        except (OSError, ValueError, SyntaxCaseError) as error:
             sys.stderr.write(f"grammar.parser.syntax_cases: {path}: {error}\n")
             return 2
         for case in cases:

@@ -3,8 +3,8 @@
 A tree is kept in two halves. An `Outline` is a tree without its text: a rule and what it consists
 of. What lies on one line and is built alike shares its outline, in one file and across files, so
 that a megabyte needs few of them and is parsed in a fraction of a second. The `Tree` adds the
-tokens. `Node` and `Token` are views of both, made when they are asked for; two views of the same
-place are equal. Work that depends on the rules alone can be done once for each outline and
+tokens. `ParseNode` and `Token` are views of both, made when they are asked for; two views of the
+same place are equal. Work that depends on the rules alone can be done once for each outline and
 remembered, and chains of rules (`Outline.inner`) cost nothing to pass.
 
 Every token of the text is in the tree, and what the lexer skips (comments, folds, blanks) lies in
@@ -21,7 +21,7 @@ from functools import cached_property
 
 from grammar.parser.lexer import Lexer
 
-__all__ = ["Node", "Outline", "Token", "Tree"]
+__all__ = ["Outline", "ParseNode", "Token", "Tree"]
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 
@@ -88,7 +88,7 @@ class Token:
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class ParseNode:
     """A rule in a tree: its outline, and the index of its first token.
 
     The tokens from ``first`` to before ``stop`` are its own; a rule that read nothing has none, and
@@ -110,19 +110,19 @@ class Node:
         return self.first + self.outline.width
 
     @property
-    def inner(self) -> Node:
+    def inner(self) -> ParseNode:
         """The node behind a chain of rules that have one rule and nothing else in them."""
         outline = self.outline.inner
-        return self if outline is self.outline else Node(self.tree, outline, self.first)
+        return self if outline is self.outline else ParseNode(self.tree, outline, self.first)
 
     @property
-    def children(self) -> list[Node | Token]:
+    def children(self) -> list[ParseNode | Token]:
         """What the rule consists of, in order; made anew whenever it is asked for."""
         tree, at = self.tree, self.first
-        found: list[Node | Token] = []
+        found: list[ParseNode | Token] = []
         for child in self.outline.children:
             if isinstance(child, Outline):
-                found.append(Node(tree, child, at))
+                found.append(ParseNode(tree, child, at))
                 at += child.width
             else:
                 found.append(Token(tree, at))
@@ -140,13 +140,13 @@ class Node:
         start, end = self.span
         return self.tree.text[start:end]
 
-    def walk(self) -> Iterator[Node | Token]:
+    def walk(self) -> Iterator[ParseNode | Token]:
         """The node and everything below it, in the order of the text."""
-        todo: list[Node | Token] = [self]
+        todo: list[ParseNode | Token] = [self]
         while todo:
             here = todo.pop()
             yield here
-            if isinstance(here, Node):
+            if isinstance(here, ParseNode):
                 todo += reversed(here.children)
 
 
@@ -166,9 +166,9 @@ class Tree:
     is_unique: bool
 
     @property
-    def root(self) -> Node:
+    def root(self) -> ParseNode:
         """The start rule."""
-        return Node(self, self.outline, 0)
+        return ParseNode(self, self.outline, 0)
 
     @property
     def tokens(self) -> list[Token]:

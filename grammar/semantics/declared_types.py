@@ -8,7 +8,7 @@ What is not known, a type of a package that is not at hand or a size that only r
 from __future__ import annotations
 
 from grammar.semantics.scopes import Found, Scope
-from grammar.semantics.symbols import Kind, SignalSymbol, Symbol, TypeSymbol, WrittenType
+from grammar.semantics.symbols import Kind, SignalSymbol, Symbol, TypeReference, TypeSymbol
 from grammar.semantics.types import BOOL, INT, UNKNOWN, Array, Enumeration, Member, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.references import Space
@@ -50,7 +50,7 @@ class DeclaredTypes:
             return self._signal(symbol, scope)
         return UNKNOWN if symbol.type is None else self.written(symbol.type, scope)
 
-    def written(self, written: WrittenType, scope: Scope) -> Type:
+    def written(self, written: TypeReference, scope: Scope) -> Type:
         """The type that is named so in a scope."""
         answer = scope.find(Space.TYPE, written.key)
         element = self.of(answer) if isinstance(answer, Found) else UNKNOWN

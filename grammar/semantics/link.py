@@ -38,7 +38,7 @@ from grammar.semantics.scopes import (
     Reason,
     Scope,
     SystemScope,
-    Veiled,
+    UnreadableDataList,
     nearest,
 )
 from grammar.semantics.symbol_table import table_of
@@ -173,7 +173,7 @@ class Project:
         outer: Outer = self._globals.near(module.folder)
         data = self.data_of(module)
         if data is not None:
-            outer = self.scope(data) if data.table else Veiled(outer, data.words)
+            outer = self.scope(data) if data.table else UnreadableDataList(outer, data.words)
         return Scope(module, None, module.table.table, outer, module.table.externals)
 
     def _misses(self, module: Module) -> bool:

@@ -26,7 +26,14 @@ from grammar.semantics.types import (
     Type,
 )
 
-__all__ = ["Function", "Message", "Parameter", "Release", "System", "Variable"]
+__all__ = [
+    "Message",
+    "PredefinedFunction",
+    "PredefinedParameter",
+    "Release",
+    "System",
+    "SystemVariable",
+]
 
 #: A release of the controller's software, KSS: 8.6 is ``(8, 6)``.
 Release = tuple[int, int]
@@ -36,7 +43,7 @@ _T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
-class Variable:
+class SystemVariable:
     """A variable of the controller.
 
     ``type`` is `UNKNOWN` where no controller-written declaration was at hand; sizes of arrays are
@@ -69,7 +76,7 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class PredefinedParameter:
     """A parameter of a predefined function."""
 
     name: str
@@ -78,7 +85,7 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Function:
+class PredefinedFunction:
     """A predefined routine; ``result`` is ``None`` where it has no value.
 
     ``has_more`` tells that further arguments of any type may follow. ``stops`` are the rules that
@@ -87,7 +94,7 @@ class Function:
 
     name: str
     result: Type | None
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[PredefinedParameter, ...]
     has_more: bool
     stops: tuple[str, ...]
     source: tuple[str, ...]
@@ -181,7 +188,7 @@ class System:
         return System((int(found[1]), int(found[2])))
 
     @property
-    def variables(self) -> Mapping[str, Variable]:
+    def variables(self) -> Mapping[str, SystemVariable]:
         """Variables, those of a delivered ``$config.dat`` included (`Variable.file`)."""
         return self._variables
 
@@ -206,7 +213,7 @@ class System:
         return any(key in tiers() for key in self._types.cell(type_.name, "source").split())
 
     @property
-    def functions(self) -> Mapping[str, Function]:
+    def functions(self) -> Mapping[str, PredefinedFunction]:
         """Functions and procedures that no file declares."""
         return self._functions
 
@@ -235,14 +242,14 @@ class System:
             element, tuple(int(size) if size.isdigit() else None for size in _split(sizes))
         )
 
-    def _variable(self, row: _Row) -> Variable:
+    def _variable(self, row: _Row) -> SystemVariable:
         type_name, _, side = row["type"].partition(" ")
         is_signal = type_name == "SIGNAL"
         access = row["access"]
         low, _, high = row["range"].partition("..")
         ways, _, stops = row["stops"].partition(" ")
         rules = tuple(stops.split())
-        return Variable(
+        return SystemVariable(
             name=row["name"],
             type=BOOL if is_signal else self._typed(type_name, row["size"]),
             signal=_SIDES[side] if is_signal else None,
@@ -272,9 +279,9 @@ class System:
             return Structure(name, members, is_open)
         return UNKNOWN
 
-    def _function(self, row: _Row) -> Function:
+    def _function(self, row: _Row) -> PredefinedFunction:
         parameters = _split(row["parameters"], ";")
-        return Function(
+        return PredefinedFunction(
             name=row["name"],
             result=self._named(row["result"]) if row["result"] else None,
             parameters=tuple(self._parameter(text) for text in parameters if text != "..."),
@@ -284,10 +291,10 @@ class System:
             meaning=row["meaning"].removeprefix("-"),
         )
 
-    def _parameter(self, text: str) -> Parameter:
+    def _parameter(self, text: str) -> PredefinedParameter:
         mode, type_name, word = text.split()
         name, sizes = _indexed(word)
-        return Parameter(name, self._typed(type_name, sizes), mode == "OUT")
+        return PredefinedParameter(name, self._typed(type_name, sizes), mode == "OUT")
 
 
 _SIDES: Mapping[str, Literal["inputs", "outputs", "unconnected"]] = {

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Protocol
 
-from grammar.semantics.predefined import Function, System
+from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.symbols import (
     Access,
     Kind,
@@ -44,7 +44,7 @@ __all__ = [
     "Reason",
     "Scope",
     "SystemScope",
-    "Veiled",
+    "UnreadableDataList",
     "nearest",
 ]
 
@@ -255,7 +255,7 @@ def _given(kind: Kind, name: str, type_: Type | None) -> Symbol:
     return Symbol(kind, name, _NO_SPAN, Access.GLOBAL, given=type_)
 
 
-def _routine(function: Function) -> RoutineSymbol:
+def _routine(function: PredefinedFunction) -> RoutineSymbol:
     parameters = tuple(
         ParameterSymbol(
             Kind.PARAMETER,
@@ -350,7 +350,7 @@ class _Near:
 
 
 @dataclass(frozen=True, slots=True)
-class Veiled:
+class UnreadableDataList:
     """What is seen through a data list that cannot be read: it may declare any of its words."""
 
     outer: Outer

@@ -21,8 +21,8 @@ from grammar.semantics.symbols import (
     SignalSymbol,
     Symbol,
     Table,
+    TypeReference,
     TypeSymbol,
-    WrittenType,
 )
 from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
@@ -86,7 +86,7 @@ def _routine_table(routine: ast.Routine, is_main: bool) -> RoutineTable:
         routine.name.text,
         routine.name.span,
         access,
-        WrittenType(result.name.text, result.indices) if result else None,
+        TypeReference(result.name.text, result.indices) if result else None,
         parameters=parameters,
     )
     return RoutineTable(symbol, scope.table())
@@ -124,11 +124,11 @@ def _parameters(
     routine: ast.Routine, declarations: list[ast.VariableDeclaration]
 ) -> tuple[ParameterSymbol, ...]:
     """The parameters of a routine, with the types that the declarations in its body give them."""
-    types: dict[str, WrittenType] = {}
+    types: dict[str, TypeReference] = {}
     if routine.parameters:
         for declaration in declarations:
             for declarator in declaration.declarators:
-                written = WrittenType(declaration.type.text, declarator.indices)
+                written = TypeReference(declaration.type.text, declarator.indices)
                 types.setdefault(declarator.name.key, written)
     found = []
     for parameter in routine.parameters:
@@ -180,7 +180,7 @@ class _Scope:
                 name.text,
                 name.span,
                 self._access[declaration.is_global],
-                WrittenType(declaration.type.text, declarator.indices),
+                TypeReference(declaration.type.text, declarator.indices),
                 declarator.value if is_constant else None,
             ),
         )
@@ -214,7 +214,7 @@ class _Scope:
         access, members = self._access[node.is_global], dict[str, Symbol]()
         for group in node.groups:
             for declarator in group.declarators:
-                written = WrittenType(group.type.text, declarator.indices)
+                written = TypeReference(group.type.text, declarator.indices)
                 name = declarator.name
                 self._put(members, Symbol(Kind.MEMBER, name.text, name.span, access, written))
         self._type(Kind.STRUCTURE, node.name, access, members)
@@ -241,12 +241,12 @@ class _Scope:
                 parameter.name.text if parameter.name else "",
                 (parameter.name or parameter).span,
                 Access.ROUTINE,
-                WrittenType(parameter.type.text, parameter.indices),
+                TypeReference(parameter.type.text, parameter.indices),
                 mode=parameter.mode or "OUT",
             )
             for parameter in node.parameters
         )
-        result = WrittenType(node.result.name.text, node.result.indices) if node.result else None
+        result = TypeReference(node.result.name.text, node.result.indices) if node.result else None
         kind = Kind.EXTERNAL if node.keyword in {"EXT", "EXTFCT"} else Kind.ROUTINE
         name = node.name
         self.add(
@@ -263,7 +263,7 @@ class _Scope:
                 name.text,
                 name.span,
                 self._access[False],
-                WrittenType(node.type.text, node.declarator.indices),
+                TypeReference(node.type.text, node.declarator.indices),
                 module=node.path[-1].key,
                 source=node.source,
             ),

@@ -36,8 +36,8 @@ __all__ = [
     "SignalSymbol",
     "Symbol",
     "Table",
+    "TypeReference",
     "TypeSymbol",
-    "WrittenType",
 ]
 
 Indices = tuple[ast.Expression | None, ...]
@@ -75,7 +75,7 @@ class Access(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenType:
+class TypeReference:
     """A type as a declaration names it; ``indices`` of an array, with its sizes as written."""
 
     name: str
@@ -100,7 +100,7 @@ class Symbol:
     name: str
     span: Span
     access: Access
-    type: WrittenType | None = None
+    type: TypeReference | None = None
     value: ast.Expression | None = None
     given: Type | None = None
 

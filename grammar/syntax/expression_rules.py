@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
-from grammar.syntax.node_plans import Draft, Part, Rule, Value, separated, value_of, values_of
+from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, separated, value_of, values_of
 
 __all__ = ["EXPRESSION_RULES", "literal", "type_name"]
 
@@ -60,19 +60,19 @@ _LITERALS: Mapping[str, Callable[[Span, str], ast.Node]] = {
 }
 
 
-def _name(draft: Draft, parts: Sequence[Part]) -> Value:
+def _name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.Name, parts, parts[0].first)
 
 
-def _position_type(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _position_type(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return parts[0].value
 
 
-def _type(draft: Draft, parts: Sequence[Part]) -> Value:
+def _type(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(_type_of, parts, parts[0].first)
 
 
-def type_name(draft: Draft, parts: Sequence[Part]) -> Value:
+def type_name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """What an external function gives, where it is one."""
     chosen = [part for part in parts if part.symbol in ("type", "index")]
     if not chosen:
@@ -80,7 +80,7 @@ def type_name(draft: Draft, parts: Sequence[Part]) -> Value:
     return draft.over(ast.TypeName, chosen, chosen[0].value, value_of(chosen, "index"))
 
 
-def literal(draft: Draft, parts: Sequence[Part]) -> Value:
+def literal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """A literal as its node; whatever else stands there is what it came to."""
     (only,) = parts
     make = _LITERALS.get(only.symbol)
@@ -104,15 +104,15 @@ _OPERATORS = {
 }
 
 
-def _operator(part: Part) -> Value:
+def _operator(part: DraftPart) -> Value:
     return part.value if part.symbol == "relation" else _OPERATORS.get(part.symbol, part.symbol)
 
 
-def _relation(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _relation(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return _operator(parts[0])
 
 
-def _infix(draft: Draft, parts: Sequence[Part]) -> Value:
+def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """Operators of equal rank join from left to right."""
     value = parts[0].value
     for operator, right in zip(parts[1::2], parts[2::2], strict=True):
@@ -122,19 +122,19 @@ def _infix(draft: Draft, parts: Sequence[Part]) -> Value:
     return value
 
 
-def _prefix(draft: Draft, parts: Sequence[Part]) -> Value:
+def _prefix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(ast.Unary, parts, _operator(parts[0]), parts[1].value)
 
 
-def _primary(draft: Draft, parts: Sequence[Part]) -> Value:
+def _primary(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(ast.Parenthesised, parts, parts[1].value)
 
 
-def _variable(draft: Draft, parts: Sequence[Part]) -> Value:
+def _variable(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     first = parts[0].first
     value = draft.node(ast.Variable, first, parts[0].stop, parts[0].value)
     for part in parts[1:]:
@@ -145,25 +145,25 @@ def _variable(draft: Draft, parts: Sequence[Part]) -> Value:
     return value
 
 
-def _index(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _index(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return separated(parts[1:-1])
 
 
-def _arguments(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _arguments(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return separated(parts) if parts else ()
 
 
-def _argument(draft: Draft, parts: Sequence[Part]) -> Value:
+def _argument(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(ast.ChannelName, parts, parts[1].value)
 
 
-def _aggregate(draft: Draft, parts: Sequence[Part]) -> Value:
+def _aggregate(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.Aggregate, parts, value_of(parts, "name"), values_of(parts, "component"))
 
 
-def _component(draft: Draft, parts: Sequence[Part]) -> Value:
+def _component(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(
         ast.Component, parts, parts[0].value, value_of(parts, "index"), parts[-1].value
     )

@@ -31,7 +31,7 @@ from grammar.syntax.spacing import Gap, Setting, Spacing, set_line
 from grammar.syntax.unparse import indent
 from grammar.syntax.walk import same
 
-__all__ = ["LayoutDefect", "Layouter", "layouter"]
+__all__ = ["Formatter", "FormatterDefect", "formatter"]
 
 _ROUTINES = frozenset({"procedure", "function"})
 # Set as tables, or by the controller's own templates: nothing between their tokens changes.
@@ -43,17 +43,17 @@ _PLAIN = Setting(Gap.FREE, Gap.FREE, False)
 _BLANKS = " \t"
 
 
-class LayoutDefect(Exception):
+class FormatterDefect(Exception):
     """Setting out a text would change more than its layout: a defect of ours."""
 
 
 @cache
-def layouter() -> Layouter:
-    """The layouter for the grammar in force; loaded once a process."""
-    return Layouter(builder())
+def formatter() -> Formatter:
+    """The formatter for the grammar in force; loaded once a process."""
+    return Formatter(builder())
 
 
-class Layouter:
+class Formatter:
     """Sets out texts; remembers what it has worked out."""
 
     def __init__(self, reader: Builder) -> None:
@@ -66,7 +66,7 @@ class Layouter:
     def layout(self, text: str, path: str = "") -> str | list[SyntaxFailure]:
         """The text set out, or why it cannot be: its syntax failures.
 
-        Raises `LayoutDefect` rather than give a text that says something else.
+        Raises `FormatterDefect` rather than give a text that says something else.
         """
         tree = self._reader.parser.parse(text)
         if isinstance(tree, Tree):
@@ -78,7 +78,7 @@ class Layouter:
             return before
         after = self._reader.read(laid_out, path)
         if isinstance(after, list) or not same(before, after) or _rest(text) != _rest(laid_out):
-            raise LayoutDefect(f"{path}: setting it out would change what it says")
+            raise FormatterDefect(f"{path}: setting it out would change what it says")
         return laid_out
 
     def set_out(self, tree: Tree) -> str:

@@ -23,7 +23,7 @@ from grammar.syntax.ast import Span
 __all__ = [
     "MAX_DEPTH",
     "Draft",
-    "Part",
+    "DraftPart",
     "Plan",
     "Rule",
     "TooDeep",
@@ -53,7 +53,7 @@ class TooDeep(Exception):
         self.first = first
 
 
-class Part(NamedTuple):
+class DraftPart(NamedTuple):
     """A child of a rule: a token by its name, its value its slot, or a rule and what it came to.
 
     ``first`` and ``stop`` are indices of tokens, as in a tree.
@@ -86,7 +86,7 @@ class Draft:
         self._depths.append(depth)
         return self._width + len(self._steps) - 1
 
-    def over(self, make: Callable[..., object], parts: Sequence[Part], *values: Value) -> int:
+    def over(self, make: Callable[..., object], parts: Sequence[DraftPart], *values: Value) -> int:
         """A step whose span is that of ``parts``."""
         return self.node(make, parts[0].first, parts[-1].stop, *values)
 
@@ -137,7 +137,7 @@ class Plan:
 
 
 #: What a rule of the grammar comes to, given what it consists of.
-Rule = Callable[[Draft, Sequence[Part]], Value]
+Rule = Callable[[Draft, Sequence[DraftPart]], Value]
 
 
 def draft(
@@ -149,7 +149,7 @@ def draft(
     have but one child, a rule. Raises `TooDeep`.
     """
     plan = Draft(outline.width)
-    top: list[Part] = []
+    top: list[DraftPart] = []
     frames = [_Frame(outline, 0, top, chains)]
     while frames:
         frame = frames[-1]
@@ -164,11 +164,11 @@ def draft(
                 frames.append(_Frame(child, at, frame.parts, chains))
             else:
                 frame.at += 1
-                frame.parts.append(Part(names[child], at, at, at + 1))
+                frame.parts.append(DraftPart(names[child], at, at, at + 1))
         else:
             frames.pop()
             value = rules[frame.inner.rule](plan, frame.parts)
-            frame.above.append(Part(frame.outline.rule, value, frame.first, frame.at))
+            frame.above.append(DraftPart(frame.outline.rule, value, frame.first, frame.at))
     return plan.plan(top[0].value)
 
 
@@ -178,13 +178,13 @@ class _Frame:
     __slots__ = ("above", "at", "first", "inner", "outline", "parts", "place")
 
     def __init__(
-        self, outline: Outline, first: int, above: list[Part], chains: frozenset[str]
+        self, outline: Outline, first: int, above: list[DraftPart], chains: frozenset[str]
     ) -> None:
         self.outline = outline
         self.inner = _inner(outline, chains)
         self.first = self.at = first
         self.above = above
-        self.parts: list[Part] = []
+        self.parts: list[DraftPart] = []
         self.place = 0
 
 
@@ -218,22 +218,22 @@ def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
 # -------------------------------------------------------------------------- choices from the parts
 
 
-def value_of(parts: Sequence[Part], symbol: str) -> Value:
+def value_of(parts: Sequence[DraftPart], symbol: str) -> Value:
     """What the first part of this kind came to; ``None`` where there is none."""
     return next((part.value for part in parts if part.symbol == symbol), None)
 
 
-def values_of(parts: Sequence[Part], symbol: str) -> tuple[Value, ...]:
+def values_of(parts: Sequence[DraftPart], symbol: str) -> tuple[Value, ...]:
     """What all parts of this kind came to, in their order."""
     return tuple(part.value for part in parts if part.symbol == symbol)
 
 
-def has(parts: Sequence[Part], symbol: str) -> bool:
+def has(parts: Sequence[DraftPart], symbol: str) -> bool:
     """Whether there is a part of this kind."""
     return any(part.symbol == symbol for part in parts)
 
 
-def after(parts: Sequence[Part], symbol: str) -> Value:
+def after(parts: Sequence[DraftPart], symbol: str) -> Value:
     """What the part two after a keyword came to, an equals sign between; ``None`` without it."""
     for place, part in enumerate(parts):
         if part.symbol == symbol:
@@ -241,7 +241,7 @@ def after(parts: Sequence[Part], symbol: str) -> Value:
     return None
 
 
-def separated(parts: Sequence[Part]) -> tuple[Value, ...]:
+def separated(parts: Sequence[DraftPart]) -> tuple[Value, ...]:
     """What commas separate, ``None`` for what is left out."""
     items: list[Value] = [None]
     for part in parts:

@@ -15,7 +15,7 @@ from dataclasses import fields
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.expression_rules import EXPRESSION_RULES, literal, type_name
-from grammar.syntax.node_plans import Draft, Part, Rule, Value, after, has, value_of, values_of
+from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, after, has, value_of, values_of
 
 __all__ = ["CHAINS", "RULES"]
 
@@ -23,23 +23,23 @@ __all__ = ["CHAINS", "RULES"]
 # ----------------------------------------------------------------------------------- declarations
 
 
-def _enumeration(draft: Draft, parts: Sequence[Part]) -> Value:
+def _enumeration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     constants = values_of(parts, "enumerator")
     return draft.over(
         ast.Enumeration, parts, has(parts, "GLOBAL"), value_of(parts, "name"), constants
     )
 
 
-def _structure(draft: Draft, parts: Sequence[Part]) -> Value:
+def _structure(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     groups = values_of(parts, "memberGroup")
     return draft.over(ast.Structure, parts, has(parts, "GLOBAL"), value_of(parts, "name"), groups)
 
 
-def _member_group(draft: Draft, parts: Sequence[Part]) -> Value:
+def _member_group(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.MemberGroup, parts, parts[0].value, values_of(parts, "declarator"))
 
 
-def _signal(draft: Draft, parts: Sequence[Part]) -> Value:
+def _signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     places = values_of(parts, "variable")
     if not places:
         places = (literal(draft, parts[-1:]),)
@@ -48,28 +48,28 @@ def _signal(draft: Draft, parts: Sequence[Part]) -> Value:
     return draft.over(ast.Signal, parts, *flags, value_of(parts, "name"), first, last)
 
 
-def _external(draft: Draft, parts: Sequence[Part]) -> Value:
+def _external(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     parameters = value_of(parts, "externalParameters") or ()
     result, name = type_name(draft, parts), value_of(parts, "name")
     return draft.over(ast.External, parts, parts[0].symbol, result, name, parameters)
 
 
-def _external_parameter(draft: Draft, parts: Sequence[Part]) -> Value:
+def _external_parameter(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     selected = (value_of(parts, symbol) for symbol in ("name", "index", "parameterMode"))
     return draft.over(ast.ExternalParameter, parts, parts[0].value, *selected)
 
 
-def _parameter(draft: Draft, parts: Sequence[Part]) -> Value:
+def _parameter(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     selected = (value_of(parts, symbol) for symbol in ("index", "parameterMode"))
     return draft.over(ast.Parameter, parts, parts[0].value, *selected)
 
 
-def _channel(draft: Draft, parts: Sequence[Part]) -> Value:
+def _channel(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     name, interface = values_of(parts, "name")
     return draft.over(ast.ChannelDefinition, parts, name, interface, parts[-1].value)
 
 
-def _importation(draft: Draft, parts: Sequence[Part]) -> Value:
+def _importation(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     selected = (value_of(parts, symbol) for symbol in ("type", "declarator"))
     path = values_of(parts, "name")
     return draft.over(
@@ -77,7 +77,7 @@ def _importation(draft: Draft, parts: Sequence[Part]) -> Value:
     )
 
 
-def _initialised_declarator(draft: Draft, parts: Sequence[Part]) -> Value:
+def _initialised_declarator(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(_with_value, parts, parts[0].value, parts[2].value)
@@ -90,7 +90,7 @@ def _with_value(span: Span, plain: ast.Declarator, value: ast.Expression) -> ast
 # ------------------------------------------------------------------------------------- statements
 
 
-def _statement(draft: Draft, parts: Sequence[Part]) -> Value:
+def _statement(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """What can be done: a call is an expression too, and becomes a statement here."""
     (only,) = parts
     if only.symbol == "call":
@@ -98,12 +98,12 @@ def _statement(draft: Draft, parts: Sequence[Part]) -> Value:
     return only.value
 
 
-def _wait(draft: Draft, parts: Sequence[Part]) -> Value:
+def _wait(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     kind = ast.WaitFor if parts[1].symbol == "FOR" else ast.WaitSeconds
     return draft.over(kind, parts, parts[2].value)
 
 
-def _cyclic_signal(draft: Draft, parts: Sequence[Part]) -> Value:
+def _cyclic_signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     keyword = parts[0].symbol
     if parts[1].symbol == "OFF":
         return draft.over(ast.SignalOff, parts, keyword, parts[2].value)
@@ -111,11 +111,11 @@ def _cyclic_signal(draft: Draft, parts: Sequence[Part]) -> Value:
     return draft.over(ast.SignalOn, parts, keyword, parts[2].value, *options)
 
 
-def _brake(draft: Draft, parts: Sequence[Part]) -> Value:
+def _brake(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.Brake, parts, parts[1].symbol if len(parts) > 1 else None)
 
 
-def _interrupt(draft: Draft, parts: Sequence[Part]) -> Value:
+def _interrupt(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     expressions = values_of(parts, "expression")
     if has(parts, "DECL"):
         number, condition = expressions
@@ -125,21 +125,21 @@ def _interrupt(draft: Draft, parts: Sequence[Part]) -> Value:
     return draft.over(ast.InterruptSwitch, parts, parts[1].symbol, value_of(parts, "expression"))
 
 
-def _trigger(draft: Draft, parts: Sequence[Part]) -> Value:
+def _trigger(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     place = value_of(parts, "place")
     assert isinstance(place, tuple)
     delay, action = after(parts, "DELAY"), value_of(parts, "triggerAction")
     return draft.over(ast.Trigger, parts, *place, delay, action, after(parts, "PRIO"))
 
 
-def _place(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _place(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return parts[0].symbol, parts[2].value, has(parts, "ONSTART")
 
 
 # ---------------------------------------------------------------------------------------- motions
 
 
-def _motion(draft: Draft, parts: Sequence[Part]) -> Value:
+def _motion(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     targets = values_of(parts, "target")
     criteria = value_of(parts, "approximation") or (("C_SPL",) if has(parts, "C_SPL") else ())
     return draft.over(
@@ -155,7 +155,7 @@ def _motion(draft: Draft, parts: Sequence[Part]) -> Value:
     )
 
 
-def _spline_item(draft: Draft, parts: Sequence[Part]) -> Value:
+def _spline_item(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     keyword, *rest = parts
     if not rest:
         return keyword.value
@@ -172,7 +172,7 @@ def _spline_item(draft: Draft, parts: Sequence[Part]) -> Value:
 # --------------------------------------------------------------------------------- which for which
 
 
-def _only(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _only(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """A rule that is a choice between others."""
     (only,) = parts
     return only.value
@@ -181,13 +181,13 @@ def _only(_draft: Draft, parts: Sequence[Part]) -> Value:
 def _all(symbol: str) -> Rule:
     """A rule that is a list."""
 
-    def rule(_draft: Draft, parts: Sequence[Part]) -> Value:
+    def rule(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
         return values_of(parts, symbol)
 
     return rule
 
 
-def _symbol(_draft: Draft, parts: Sequence[Part]) -> Value:
+def _symbol(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """A rule that is a choice between keywords."""
     return parts[0].symbol
 
@@ -203,7 +203,7 @@ def _in_order(kind: type[ast.Node]) -> Rule:
     """A rule that has the fields of its node in their order; those at the end may be left out."""
     count = len(fields(kind)) - 1
 
-    def rule(draft: Draft, parts: Sequence[Part]) -> Value:
+    def rule(draft: Draft, parts: Sequence[DraftPart]) -> Value:
         values = [part.value for part in parts if part.symbol[0].islower()]
         return draft.over(kind, parts, *values, *[None] * (count - len(values)))
 

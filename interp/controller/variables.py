@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any, Final, Protocol
 
-from grammar.semantics.predefined import System, Variable
+from grammar.semantics.predefined import System, SystemVariable
 from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
 from interp.controller.profile import Profile, ProfileError
 from interp.port.requests import Path, Value
@@ -93,7 +93,7 @@ class Variables:
 
     # ------------------------------------------------------------------------------- the tables
 
-    def entry(self, name: str) -> Variable | None:
+    def entry(self, name: str) -> SystemVariable | None:
         """What the tables say of a variable."""
         return self._release.variables.get(name) or self._newest.variables.get(name)
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from grammar.semantics.predefined import Parameter, System
+from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.types import (
     AXES,
     BOOL,
@@ -206,7 +206,7 @@ class Builtin:
 
     name: str
     function: Callable[..., Outcome]
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[PredefinedParameter, ...]
     has_more: bool
     changes_more: bool
     result: Type | None

@@ -68,7 +68,7 @@ def format_programs(
 
 def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     """Format one file, and say on one line what is not as it should be."""
-    from grammar.syntax.formatter import LayoutDefect, layouter
+    from grammar.syntax.formatter import FormatterDefect, formatter
     from support.files.decode import decode
     from support.files.discovery import Skipped, read
 
@@ -77,8 +77,8 @@ def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     if isinstance(found, Skipped) or isinstance(data, Skipped) or isinstance(source, str):
         return _complain(found.path, f"skipped: {source}", _Outcome.SKIPPED)
     try:
-        text = layouter().layout(source.text, found.path)
-    except LayoutDefect as defect:
+        text = formatter().layout(source.text, found.path)
+    except FormatterDefect as defect:
         return _complain(found.path, f"left alone, please report it: {defect}", _Outcome.LEFT)
     if isinstance(text, list):
         first = text[0]

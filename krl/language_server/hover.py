@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from conformance.suite.registry import registry
 from grammar.diagnostics.diagnostic import Region
-from grammar.semantics.predefined import Function, System, Variable
+from grammar.semantics.predefined import PredefinedFunction, System, SystemVariable
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, Symbol
 from grammar.syntax import ast
@@ -168,7 +168,7 @@ def _predefined(key: str) -> str | None:
     return "\n\n".join([f"`{key}`", *rules]) if rules else None
 
 
-def _variable(variable: Variable) -> list[str]:
+def _variable(variable: SystemVariable) -> list[str]:
     lines = [f"```krl\n{variable.type} {variable.name}\n```"]
     if variable.meaning not in ("", "-"):
         lines.append(variable.meaning)
@@ -183,7 +183,7 @@ def _variable(variable: Variable) -> list[str]:
     return lines
 
 
-def _function(function: Function) -> list[str]:
+def _function(function: PredefinedFunction) -> list[str]:
     listed = ", ".join(
         f"{one.name}:{'OUT' if one.is_out else 'IN'} {one.type}" for one in function.parameters
     )

@@ -18,7 +18,7 @@ from pygls.uris import from_fs_path, to_fs_path
 
 from grammar.diagnostics.diagnostic import Diagnostic, Region
 from grammar.semantics.symbols import Kind
-from grammar.syntax.formatter import LayoutDefect, layouter
+from grammar.syntax.formatter import FormatterDefect, formatter
 from grammar.syntax.source import Source
 from krl.language_server.hover import Outline, definition, hover, outline
 from krl.language_server.workspace import Looked, OpenProject
@@ -172,8 +172,8 @@ class _Desk:
         if source is None:
             return None
         try:
-            text = layouter().layout(source.text, source.path)
-        except LayoutDefect:
+            text = formatter().layout(source.text, source.path)
+        except FormatterDefect:
             return None
         if not isinstance(text, str) or text == source.text:
             return None

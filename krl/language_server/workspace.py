@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grammar.check.framework import Checked, check_module, check_project
-from grammar.check.suppression_comments import silenced, silencers
+from grammar.check.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
@@ -153,4 +153,4 @@ def _read(path: str, text: str) -> _Read:
 def _kept(source: Source, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Findings that are wanted and that no comment silences."""
     wanted = [one for one in found if one.code.startswith(_SOUGHT)]
-    return tuple(silenced(source.path, wanted, silencers(source), _SOUGHT))
+    return tuple(apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT))

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from grammar.parser.failures import Context, FailureFinder
+from grammar.parser.failures import FailureContext, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import find_causes
@@ -42,7 +42,7 @@ class Cluster:
 
     id: str
     title: str
-    context: Context
+    context: FailureContext
     line: LinePattern
     example: Member
     members: tuple[Member, ...]
@@ -69,7 +69,7 @@ class Clusters:
     order: tuple[tuple[Cluster, int], ...]
     cluster_of: dict[tuple[str, int], str]
     lines: tuple[LinePattern, ...]
-    contexts: tuple[Context, ...]
+    contexts: tuple[FailureContext, ...]
 
 
 def text_on_disk(file: SurveyedFile) -> str:
@@ -170,7 +170,7 @@ class _FailingLines:
 
     def _context(
         self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]
-    ) -> Context:
+    ) -> FailureContext:
         return finder.context(self.recognizer.run(self.recognizer.restore(before), kinds)[0])
 
 

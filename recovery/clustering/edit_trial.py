@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from grammar.notation.edits import AddRule, AddToken, Comment, Edit, Preamble, RemoveRule, apply
+from grammar.notation.edits import AddRule, AddToken, Edit, Preamble, RemoveRule, SetComment, apply
 from grammar.notation.model import GrammarError
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.network import is_left_recursive, network_of, with_rule
@@ -65,7 +65,7 @@ def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
     return frozenset(
         e.rule
         for e in edits
-        if not isinstance(e, AddToken | AddRule | RemoveRule | Comment | Preamble)
+        if not isinstance(e, AddToken | AddRule | RemoveRule | SetComment | Preamble)
     )
 
 

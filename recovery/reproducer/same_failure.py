@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from grammar.parser.failures import Context, FailureFinder
+from grammar.parser.failures import FailureContext, FailureFinder
 from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer
 from recovery.reproducer.rendering import FRAME, AbstractToken, TokenRenderer
@@ -39,7 +39,7 @@ def failure_mode(
     kinds: Sequence[int],
     meant: Sequence[str | None],
     index: int,
-    context: Context,
+    context: FailureContext,
 ) -> FailureMode:
     """How the line of these tokens fails at ``index``."""
     line_kind = recognizer.line_kind

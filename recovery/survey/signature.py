@@ -13,7 +13,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from grammar.parser.failures import Context, Form
+from grammar.parser.failures import FailureContext, Form
 from grammar.parser.lexer import ERROR, Lexer
 from recovery.survey.failing_line import FailingLine
 from recovery.tuning import (
@@ -171,7 +171,7 @@ class SignatureBuilder:
             if word in self._keywords and self._stands_out(form, place, word)
         )
 
-    def signature(self, failed: FailingLine, form: Form, context: Context) -> Signature:
+    def signature(self, failed: FailingLine, form: Form, context: FailureContext) -> Signature:
         """The shape of a failure."""
         kinds, index = form.kinds, form.index
         meant = dict(self.keywords(failed, form))

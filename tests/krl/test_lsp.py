@@ -15,7 +15,7 @@ pytest.importorskip("pygls")
 
 from pygls.lsp.client import LanguageClient  # noqa: E402 - only where it is installed
 
-from grammar.syntax.formatter import layouter  # noqa: E402 - behind the one above
+from grammar.syntax.formatter import formatter  # noqa: E402 - behind the one above
 
 PROGRAM = """DEF Cell()
   ; »ä𝄞« before the name
@@ -164,7 +164,7 @@ def test_symbols_are_listed(heard: _Heard) -> None:
 
 def test_formatting_is_that_of_krl_format(heard: _Heard) -> None:
     """A file is set out as `krl format` sets it out."""
-    assert layouter().layout(PROGRAM) == heard.set_out
+    assert formatter().layout(PROGRAM) == heard.set_out
     assert PROGRAM != heard.set_out
 
 

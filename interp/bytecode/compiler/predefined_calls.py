@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
-from grammar.semantics.predefined import Parameter, System
+from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
@@ -115,7 +115,7 @@ class PredefinedCalls:
         self,
         name: str,
         argument: ast.Expression | None,
-        parameter: Parameter | None,
+        parameter: PredefinedParameter | None,
         *,
         is_builtin: bool,
     ) -> Argument:
@@ -200,12 +200,12 @@ class PredefinedCalls:
 
 
 def _paired(
-    arguments: Sequence[ast.Expression | None], parameters: Sequence[Parameter]
-) -> Iterator[tuple[ast.Expression | None, Parameter | None]]:
+    arguments: Sequence[ast.Expression | None], parameters: Sequence[PredefinedParameter]
+) -> Iterator[tuple[ast.Expression | None, PredefinedParameter | None]]:
     for place, argument in enumerate(arguments):
         yield argument, parameters[place] if place < len(parameters) else None
 
 
-def _fits(node: ast.Call, parameters: Sequence[Parameter], has_more: bool) -> bool:
+def _fits(node: ast.Call, parameters: Sequence[PredefinedParameter], has_more: bool) -> bool:
     count = len(node.arguments)
     return count >= len(parameters) and (count == len(parameters) or has_more)

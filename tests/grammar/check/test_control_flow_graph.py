@@ -2,26 +2,26 @@
 
 import pytest
 
-from grammar.check.control_flow_graph import Step, Ways, ways_through
+from grammar.check.control_flow_graph import FlowGraph, FlowNode, flow_graph
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 
 
-def ways(*lines: str, is_exhaustive: bool = False) -> Ways:
+def ways(*lines: str, is_exhaustive: bool = False) -> FlowGraph:
     module = read_module("\n".join(["DEF A()", *lines, "END", ""]))
     assert isinstance(module, ast.Module)
     assert isinstance(module.content, ast.Program)
-    return ways_through(module.content.routines[0], lambda _: is_exhaustive)
+    return flow_graph(module.content.routines[0], lambda _: is_exhaustive)
 
 
-def shape(found: Ways) -> dict[str, list[str]]:
+def shape(found: FlowGraph) -> dict[str, list[str]]:
     """What can come after each place, statements by their kinds, meeting places left out."""
 
-    def name(step: Step) -> str:
+    def name(step: FlowNode) -> str:
         kind = type(step.statement).__name__
         return f"{kind} test" if step.is_test else kind
 
-    def after(step: Step) -> list[str]:
+    def after(step: FlowNode) -> list[str]:
         names: list[str] = []
         for following in step.after:
             if following is found.end:

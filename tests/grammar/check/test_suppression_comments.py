@@ -1,6 +1,6 @@
 """Comments that silence findings."""
 
-from grammar.check.suppression_comments import silenced, silencers
+from grammar.check.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.syntax.source import Source
 
@@ -10,7 +10,7 @@ def finding(slug: str, line: int) -> Diagnostic:
 
 
 def kept(text: str, *found: Diagnostic, sought: tuple[str, ...] = ("",)) -> list[tuple[int, str]]:
-    told = silenced("A.src", found, silencers(Source(text, "A.src")), sought)
+    told = apply_suppressions("A.src", found, suppression_comments(Source(text, "A.src")), sought)
     return sorted((one.region.line, one.code) for one in told)
 
 

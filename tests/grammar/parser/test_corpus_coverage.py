@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from grammar.notation.model import Grammar
-from grammar.parser.coverage import Coverage
+from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
@@ -33,8 +33,10 @@ def trees(krl_recognizer: Recognizer, corpus: Mapping[Path, str]) -> list[Tree]:
     return found
 
 
-def coverage(grammar: Grammar, trees: Iterable[Tree], words: Collection[str] = ()) -> Coverage:
-    found = Coverage(grammar, words)
+def coverage(
+    grammar: Grammar, trees: Iterable[Tree], words: Collection[str] = ()
+) -> GrammarCoverage:
+    found = GrammarCoverage(grammar, words)
     for tree in trees:
         found.add(tree)
     return found

@@ -19,11 +19,11 @@ from grammar.notation.model import (
 )
 from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser import coverage as measuring
-from grammar.parser.coverage import Branch, Coverage, Share, branches
+from grammar.parser.coverage import Branch, GrammarCoverage, Share, branches
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from grammar.parser.tree import Node, Tree
+from grammar.parser.tree import ParseNode, Tree
 
 WORDS = "".join(f"{word} : '{word}' ;\n" for word in "ABCDE") + "COMMA : ',' ;\n"
 SPACE = "SPACE : ' ' -> skip ;\n"
@@ -33,9 +33,11 @@ def grammar_of(*rules: str) -> Grammar:
     return read("grammar T;\n" + "".join(f"{rule} ;\n" for rule in rules) + WORDS + SPACE)
 
 
-def covered_by(grammar: Grammar, texts: Iterable[str], words: Sequence[str] = ()) -> Coverage:
+def covered_by(
+    grammar: Grammar, texts: Iterable[str], words: Sequence[str] = ()
+) -> GrammarCoverage:
     parser = Parser(Recognizer(grammar))
-    coverage = Coverage(grammar, words)
+    coverage = GrammarCoverage(grammar, words)
     for text in texts:
         tree = parser.parse(text)
         assert isinstance(tree, Tree), text
@@ -135,7 +137,7 @@ def test_rules_of_words_count_once() -> None:
     assert Share(4, 5) == coverage.branches
     assert ["x is never D"] == [coverage.describe(branch) for branch in coverage.uncovered]
     assert Share(2, 6) == covered_by(grammar, ["A C B"]).branches
-    unused = Coverage(grammar, ["x"])
+    unused = GrammarCoverage(grammar, ["x"])
     assert [
         "s 1.1: x is never there",
         "s 1.3: x is never there",
@@ -206,19 +208,19 @@ def in_rounds(
         yield (), 0, symbols
 
 
-def first_way(grammar: Grammar, node: Node) -> Met:
-    symbols = [c.rule if isinstance(c, Node) else c.kind for c in node.children]
+def first_way(grammar: Grammar, node: ParseNode) -> Met:
+    symbols = [c.rule if isinstance(c, ParseNode) else c.kind for c in node.children]
     ways = through(grammar, grammar.by_name[node.rule].alternatives, (), symbols)
     return next(met for met, left in ways if not left)
 
 
-def taken_in(grammar: Grammar, node: Node) -> set[Branch]:
+def taken_in(grammar: Grammar, node: ParseNode) -> set[Branch]:
     """The branches that one node takes."""
     met = first_way(grammar, node)
     taken = {Branch(node.rule, at, None, what) for sign, at, what in met if sign == "taken" and at}
     places = [at for sign, at, _ in met if sign == "symbol"]
     for child, at in zip(node.children, places, strict=True):
-        if isinstance(child, Node):
+        if isinstance(child, ParseNode):
             number = first_way(grammar, child)[0][2]
             taken.add(Branch(node.rule, at, child.rule, number))
     return taken
@@ -242,7 +244,7 @@ def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int)
             tree = parser.parse(text)
             assert isinstance(tree, Tree)
             for node in tree.root.walk():
-                if isinstance(node, Node):
+                if isinstance(node, ParseNode):
                     expected |= taken_in(grammar, node)
         every = set(branches(grammar))
         found = every - set(covered_by(grammar, texts).uncovered)
@@ -273,7 +275,7 @@ def test_long_sequences(monkeypatch: pytest.MonkeyPatch) -> None:
     texts = ["A C " * 5_000]
     found = covered_by(grammar, texts).uncovered
     assert ["s 1.1: (x | C)* is always there", "s 1.1: (x | C)* never comes just once"] == [
-        Coverage(grammar).describe(branch) for branch in found[:2]
+        GrammarCoverage(grammar).describe(branch) for branch in found[:2]
     ]
     for name in ("_LONGEST_REMEMBERED", "_MOST_REMEMBERED"):
         monkeypatch.setattr(measuring, name, 1)

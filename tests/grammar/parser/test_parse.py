@@ -26,7 +26,7 @@ from grammar.parser.lazy_automaton import Stack
 from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
-from grammar.parser.tree import Node, Token, Tree
+from grammar.parser.tree import ParseNode, Token, Tree
 
 #: A tree as a test writes it: a rule and what it was made of, tokens as their names.
 Plain = tuple[object, ...]
@@ -45,8 +45,8 @@ def parsed(parser: Parser, text: str) -> Tree:
     return tree
 
 
-def plain(node: Node) -> Plain:
-    below = [plain(c) if isinstance(c, Node) else c.kind for c in node.children]
+def plain(node: ParseNode) -> Plain:
+    below = [plain(c) if isinstance(c, ParseNode) else c.kind for c in node.children]
     return (node.rule, *below)
 
 
@@ -114,7 +114,7 @@ def test_where_tokens_are(parser: Parser) -> None:
 def test_where_nodes_are(parser: Parser) -> None:
     """A node knows its tokens and its text, with the comments within and not those around."""
     tree = parsed(parser, "DEF A() ; one\nIF X THEN ; two\nEXIT ; three\nENDIF ; four\nEND ; five")
-    nodes = {n.rule: n for n in tree.root.walk() if isinstance(n, Node)}
+    nodes = {n.rule: n for n in tree.root.walk() if isinstance(n, ParseNode)}
     block = nodes["ifStatement"]
     assert block.text == "IF X THEN ; two\nEXIT ; three\nENDIF"
     assert (5, 12) == (block.first, block.stop)
@@ -135,11 +135,11 @@ def test_nodes_nest(trees: Mapping[Path, Tree]) -> None:
     """The children of a node lie side by side, from its first token to its last."""
     for tree in trees.values():
         for node in tree.root.walk():
-            if isinstance(node, Node):
+            if isinstance(node, ParseNode):
                 at = node.first
                 for child in node.children:
-                    assert at == (child.first if isinstance(child, Node) else child.index)
-                    at = child.stop if isinstance(child, Node) else at + 1
+                    assert at == (child.first if isinstance(child, ParseNode) else child.index)
+                    at = child.stop if isinstance(child, ParseNode) else at + 1
                 assert node.stop == at
 
 
@@ -158,7 +158,7 @@ def test_lines_built_alike_share_their_outline(parser: Parser) -> None:
         node.outline
         for text in texts
         for node in parsed(parser, text).root.walk()
-        if isinstance(node, Node) and node.rule == "assignment"
+        if isinstance(node, ParseNode) and node.rule == "assignment"
     ]
     assert 3 == len(found)
     assert 1 == len(set(found))
@@ -167,13 +167,13 @@ def test_lines_built_alike_share_their_outline(parser: Parser) -> None:
 def test_inner_passes_chains_of_rules(parser: Parser) -> None:
     """From an expression the way leads at once to the first rule that has more than a rule."""
     tree = parsed(parser, "DEF A()\nX=1+Y[2]\nEND\n")
-    nodes = [node for node in tree.root.walk() if isinstance(node, Node)]
+    nodes = [node for node in tree.root.walk() if isinstance(node, ParseNode)]
     inner = [(n.inner.rule, n.inner.text) for n in nodes if n.rule == "expression"]
     assert [("sum", "1+Y[2]"), ("literal", "2")] == inner
     for node in nodes:
         while node.inner != node:
             (child,) = node.children
-            assert isinstance(child, Node)
+            assert isinstance(child, ParseNode)
             assert node.inner == child.inner
             node = child  # noqa: PLW2901 - one step down the chain
 
@@ -183,7 +183,7 @@ def test_a_rule_that_reads_nothing_is_there() -> None:
     rules = ["s : a b EOF", "a : A?", "b : a C a"]
     assert ("s", ("a",), ("b", ("a",), "C", ("a",)), "EOF") == tree_of(rules, "C")
     tree = parsed(Parser(Recognizer(grammar_of(*rules))), " C ")
-    found = [n for n in tree.root.walk() if isinstance(n, Node) and n.rule == "a"]
+    found = [n for n in tree.root.walk() if isinstance(n, ParseNode) and n.rule == "a"]
     assert [(0, 0), (0, 0), (1, 1)] == [(n.first, n.stop) for n in found]
     assert [(1, 1), (1, 1), (3, 3)] == [n.span for n in found]
 

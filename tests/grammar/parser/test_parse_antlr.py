@@ -14,7 +14,7 @@ from grammar._generated.KRLParser import KRLParser
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from grammar.parser.tree import Node, Tree
+from grammar.parser.tree import ParseNode, Tree
 
 #: A rule and how many children it has, or a token: kind, text, line, column, offset.
 Item = tuple[object, ...]
@@ -49,7 +49,7 @@ def antlr_items(text: str) -> Iterator[Item]:
 def items(tree: Tree) -> Iterator[Item]:
     """Our tree in the same form."""
     for x in tree.root.walk():
-        if isinstance(x, Node):
+        if isinstance(x, ParseNode):
             yield x.rule, len(x.children)
         else:
             yield x.kind, x.text, x.line, x.column, x.offset

@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from grammar.notation.g4 import read as read_grammar
-from grammar.parser.coverage import Coverage
+from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sexpr import Expression, ExpressionError, Shortener, read, write
-from grammar.parser.syntax_cases import Case, CaseError, CaseReader, main, read_cases
+from grammar.parser.syntax_cases import CaseReader, SyntaxCase, SyntaxCaseError, main, read_cases
 from grammar.parser.tree import Tree
 
 TOPICS = sorted(Path(__file__).parents[1].joinpath("syntax_cases").glob("*.txt"))
@@ -41,7 +41,7 @@ def reader(krl_recognizer: Recognizer) -> CaseReader:
 @pytest.mark.parametrize(
     "case", [case for _, case in CASES], ids=[f"{topic}: {case.title}" for topic, case in CASES]
 )
-def test_syntax(reader: CaseReader, case: Case) -> None:
+def test_syntax(reader: CaseReader, case: SyntaxCase) -> None:
     """The source gives the tree, or stops at the token, that stands below it."""
     assert case.expected
     difference = reader.difference(case)
@@ -68,7 +68,7 @@ def test_every_alternative_has_a_case(
     krl_recognizer: Recognizer, trees: Sequence[tuple[str, Tree]]
 ) -> None:
     """Each alternative of each rule of the grammar in force is read by some case."""
-    coverage = Coverage(krl_recognizer.grammar)
+    coverage = GrammarCoverage(krl_recognizer.grammar)
     for _, tree in trees:
         coverage.add(tree)
     assert [] == coverage.unused_alternatives
@@ -231,8 +231,8 @@ END
 def test_how_cases_are_read() -> None:
     """A case is a title, perhaps a mark, the source without blank lines around it, and the rest."""
     assert [
-        Case("one", "DEF A()\nEND\n", False, "(procedure A)", (8, 11)),
-        Case("two", "DEF A()\n\nHALT HALT\nEND\n", True, "3:6 HALT", (20, 22)),
+        SyntaxCase("one", "DEF A()\nEND\n", False, "(procedure A)", (8, 11)),
+        SyntaxCase("two", "DEF A()\n\nHALT HALT\nEND\n", True, "3:6 HALT", (20, 22)),
     ] == read_cases(GOOD)
     assert [] == read_cases("\n")
 
@@ -250,7 +250,7 @@ def test_how_cases_are_read() -> None:
 )
 def test_what_are_no_cases(text: str, message: str) -> None:
     """The message says what is missing, and on which line."""
-    with pytest.raises(CaseError) as error:
+    with pytest.raises(SyntaxCaseError) as error:
         read_cases(text)
     assert message == str(error.value)
 

@@ -13,8 +13,8 @@ from grammar.semantics.symbols import (
     RoutineSymbol,
     SignalSymbol,
     Symbol,
+    TypeReference,
     TypeSymbol,
-    WrittenType,
 )
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
@@ -63,7 +63,7 @@ def test_place_of_a_declaration() -> None:
 def test_variables_of_one_declaration_share_its_type() -> None:
     """Each declarator has its own array sizes and the type that is written once."""
     table = in_list("DECL REAL SPEED, LIMITS[3,2]")
-    assert WrittenType("REAL") == found(table, Space.VALUE, "SPEED").type
+    assert TypeReference("REAL") == found(table, Space.VALUE, "SPEED").type
     written = found(table, Space.VALUE, "LIMITS").type
     assert written is not None
     assert written.indices is not None
@@ -116,7 +116,7 @@ def test_parameter_takes_its_type_from_the_body() -> None:
     routine = table.routines[0].routine
     assert ["IN", "OUT", "OUT"] == [parameter.mode for parameter in routine.parameters]
     written = [parameter.type for parameter in routine.parameters]
-    assert [WrittenType("INT"), WrittenType("CHAR", (None,)), None] == written
+    assert [TypeReference("INT"), TypeReference("CHAR", (None,)), None] == written
     assert () == table.routines[0].table.duplicates
     assert Kind.PARAMETER is local(table, "COUNT").kind
 
@@ -124,7 +124,7 @@ def test_parameter_takes_its_type_from_the_body() -> None:
 def test_array_parameter_whose_declaration_has_no_brackets() -> None:
     """SCO-07: the brackets of the head make an array of what the body declares without them."""
     table = in_routine("DECL INT LIST", head="DEF JOB(LIST[,]:OUT)")
-    assert WrittenType("INT", (None, None)) == local(table, "LIST").type
+    assert TypeReference("INT", (None, None)) == local(table, "LIST").type
 
 
 def test_parameter_declared_twice_in_the_body() -> None:
@@ -132,7 +132,7 @@ def test_parameter_declared_twice_in_the_body() -> None:
     table = in_routine("DECL INT COUNT", "DECL REAL COUNT", head="DEF JOB(COUNT:IN)")
     (duplicate,) = table.routines[0].table.duplicates
     assert (Kind.PARAMETER, Kind.VARIABLE) == (duplicate.first.kind, duplicate.second.kind)
-    assert WrittenType("INT") == local(table, "COUNT").type
+    assert TypeReference("INT") == local(table, "COUNT").type
 
 
 def test_parameter_named_twice() -> None:
@@ -218,7 +218,7 @@ def test_external_routine_has_a_signature() -> None:
     assert isinstance(work, RoutineSymbol)
     signature = [(p.type.name, p.mode) for p in work.parameters if p.type]
     assert [("TASK_T", "IN"), ("REAL", "OUT")] == signature
-    assert (Kind.EXTERNAL, Kind.EXTERNAL, WrittenType("INT")) == (work.kind, size.kind, size.type)
+    assert (Kind.EXTERNAL, Kind.EXTERNAL, TypeReference("INT")) == (work.kind, size.kind, size.type)
 
 
 def test_routine_of_the_controller_is_no_external_one() -> None:
@@ -288,7 +288,7 @@ def test_tables_can_be_kept() -> None:
     kept = pickle.loads(pickle.dumps(table))
     assert isinstance(kept, ModuleTable)
     (parameter,) = kept.routines[0].routine.parameters
-    assert ("X", "IN", WrittenType("INT")) == (parameter.name, parameter.mode, parameter.type)
+    assert ("X", "IN", TypeReference("INT")) == (parameter.name, parameter.mode, parameter.type)
     assert parameter is kept.routines[0].table.find(Space.VALUE, "X")
     assert (table.calls, table.span) == (kept.calls, kept.span)
 

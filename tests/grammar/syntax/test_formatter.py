@@ -15,7 +15,7 @@ from grammar.parser.sentences import Sentences, Speller
 from grammar.parser.tree import Tree
 from grammar.syntax import ast
 from grammar.syntax.build import builder, read_module
-from grammar.syntax.formatter import LayoutDefect, Layouter, layouter
+from grammar.syntax.formatter import Formatter, FormatterDefect, formatter
 from grammar.syntax.source import Source
 from grammar.syntax.walk import same
 
@@ -24,7 +24,7 @@ SENTENCES, SPELLER = Sentences(KRL), Speller(KRL)
 
 
 def laid_out(text: str) -> str:
-    found = layouter().layout(text)
+    found = formatter().layout(text)
     assert isinstance(found, str), found
     return found
 
@@ -233,13 +233,13 @@ def test_lines_and_their_ends_stay() -> None:
 
 def test_syntax_errors_are_told() -> None:
     """A text that is no program is not set out: its failures are given."""
-    found = layouter().layout("DEF A()\nx=(\nEND\n", "a.src")
+    found = formatter().layout("DEF A()\nx=(\nEND\n", "a.src")
     assert isinstance(found, list)
     assert [("a.src", 2)] == [(failure.path, failure.line) for failure in found]
 
 
 def test_what_would_say_something_else_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Were the layouter wrong, it would raise rather than give the text."""
+    """Were the formatter wrong, it would raise rather than give the text."""
     text = "DEF A()\nx=1 ;c\nEND\n"
     for wrong in (
         "DEF A()\nx=2 ;c\nEND\n",
@@ -247,9 +247,9 @@ def test_what_would_say_something_else_is_refused(monkeypatch: pytest.MonkeyPatc
         "DEF A()\nx=1 ;c\nEND",
         "END",
     ):
-        monkeypatch.setattr(Layouter, "set_out", lambda _self, _tree, wrong=wrong: wrong)
-        with pytest.raises(LayoutDefect):
-            layouter().layout(text)
+        monkeypatch.setattr(Formatter, "set_out", lambda _self, _tree, wrong=wrong: wrong)
+        with pytest.raises(FormatterDefect):
+            formatter().layout(text)
 
 
 def test_deep_blocks() -> None:

@@ -12,7 +12,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.parser.sentences import Sentences, Speller
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
-from grammar.syntax.formatter import layouter
+from grammar.syntax.formatter import formatter
 from grammar.syntax.unparse import expression, indent, unparse
 from grammar.syntax.walk import same
 
@@ -64,7 +64,7 @@ def comes_back(text: str) -> None:
     again = module_of(printed)
     assert same(module, again), printed
     assert printed == unparse(again)
-    assert printed == layouter().layout(printed)
+    assert printed == formatter().layout(printed)
 
 
 def test_what_it_looks_like() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from grammar.notation import g4
-from grammar.notation.edits import AddAlternative, AddToken, Comment, Edit, Insert, Widen
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, SetComment, Widen
 from recovery.ledger.baseline import Corpora
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.evaluation import Evaluation, evaluate, losses
@@ -218,7 +218,7 @@ def test_an_example_may_show_another_reading() -> None:
 
 def test_wording_needs_no_evidence() -> None:
     """Comments and layout may change without a ground and without an example."""
-    words = edited(Comment("literal", "What is written out."), evidence=Evidence(), accept=())
+    words = edited(SetComment("literal", "What is written out."), evidence=Evidence(), accept=())
     assert () == refusals(replace(words, reject=()))
     assert 2 == len(refusals(edited(AddToken("X"), evidence=Evidence(), accept=(), reject=())))
 

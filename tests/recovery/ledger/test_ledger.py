@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from grammar.notation import g4
-from grammar.notation.edits import AddAlternative, AddToken, Comment, Edit, Insert
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, SetComment
 from recovery.ledger.construct import Construct, Effect, Evidence, LedgerError
 from recovery.ledger.construct_file import text_of
 from recovery.ledger.ledger import Ledger, findings, grown, in_force, preliminary_of, replay
@@ -179,7 +179,7 @@ def test_what_does_not_hold_is_a_line(tmp_path: Path, change: dict[str, object],
 
 def test_wording_needs_no_evidence(tmp_path: Path) -> None:
     """A construct that changes a comment has nothing to show."""
-    words = replace(construct(1, "AAA", Comment("literal", "So.")), evidence=Evidence())
+    words = replace(construct(1, "AAA", SetComment("literal", "So.")), evidence=Evidence())
     assert [] == checked(written(tmp_path, replace(words, accept=(), reject=())))
 
 
