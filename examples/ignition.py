@@ -12,7 +12,7 @@ import sys
 
 from interp.robot.api.commands import MotionCommand, OutputCommand, Transaction
 from interp.robot.api.control_core import ControlCore
-from interp.robot.api.motions import Motions
+from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Approximation, Place, Settings
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
@@ -45,7 +45,7 @@ def main(robot_name: str) -> None:
     tracking = Tracking(arm, robot, machine, CYCLE, HOME)
 
     torch = Placement(base=Pose.of(x=450, y=-100, z=300), tool=Pose.of(z=150))
-    motions = Motions(
+    motions = MotionFactory(
         Settings(placement=torch, velocity=0.25, approximation=Approximation(cdis=20))
     )
     before_end = Place(key=1, kind="PATH", position=-80.0, delay=-20_000)

@@ -10,16 +10,16 @@ import numpy.typing as npt
 
 from interp.controller.motion_queue import PlannedPoint
 from interp.program.load import CheckedProgram
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import PathRecord
-from interp.session import Run, Setup
+from interp.session import RunResult, RunSetup
 
 __all__ = ["record_of"]
 
 Array = npt.NDArray[np.float64]
 
 
-def record_of(run: Run, program: CheckedProgram, setup: Setup) -> dict[str, Any]:
+def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> dict[str, Any]:
     """Outcome, trace, sources, path, limits and programmed points of a run.
 
     Times are µs, lengths mm in front of the robot's foot, speeds of axes deg/s or mm/s, that of the
@@ -82,7 +82,7 @@ def _tip(point: PlannedPoint) -> list[float]:
     return [round(value, 4) for value in (point.position.flange @ point.tool).position]
 
 
-def _limits(machine: Machine) -> dict[str, Any]:
+def _limits(machine: MachineData) -> dict[str, Any]:
     axes = (*machine.axes, *machine.externals)
     speeds = [axis.dynamics.velocity if axis.dynamics is not None else 0.0 for axis in axes]
     return {"axis_speeds": speeds, "speed": machine.velocity.path}

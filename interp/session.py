@@ -1,7 +1,7 @@
 """A session: a program, an executor, the controller and a robot put together, and what came of it.
 
-Everything that a run depends on is in its `Setup`; the same program and setup give the same trace,
-to the bit, on every executor and with every robot.
+Everything that a run depends on is in its `RunSetup`; the same program and setup give the same
+trace, to the bit, on every executor and with every robot.
 """
 
 from __future__ import annotations
@@ -22,7 +22,12 @@ from interp.program.load import CheckedProgram, Limits
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.data_list import DataListError
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDataError, read_machine
+from interp.robot.kinematics.machine_data import (
+    ROBOT_AXES,
+    MachineData,
+    MachineDataError,
+    read_machine,
+)
 from interp.robot.models import default_machine, model_file
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import RobotName, make_robot
@@ -32,7 +37,7 @@ from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
 
-__all__ = ["EXECUTORS", "Run", "Setup", "available", "machine_of_program", "run_program"]
+__all__ = ["EXECUTORS", "RunResult", "RunSetup", "available", "machine_of_program", "run_program"]
 
 #: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
 #: forearm level.
@@ -40,7 +45,7 @@ _UPRIGHT = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class RunSetup:
     """What a program is run with.
 
     ``routine`` is the one to begin with, by default the first of the first file; ``submit`` that of
@@ -59,18 +64,18 @@ class Setup:
     script: Script = field(default_factory=Script)
     routine: str | None = None
     submit: str | None = None
-    machine: Machine | None = None
+    machine: MachineData | None = None
     start: tuple[float, ...] | None = None
     is_full: bool = False
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
     patience: int = HOUR
     limits: Limits | None = None
-    make_robot: Callable[[Machine, int], Robot] | None = None
+    make_robot: Callable[[MachineData, int], Robot] | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class RunResult:
     """What came of a run: how it ended, the trace, and where the arm went.
 
     ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
@@ -80,18 +85,18 @@ class Run:
     outcome: RunOutcome
     events: Sequence[TraceEvent]
     path: PathRecord | None
-    machine: Machine
+    machine: MachineData
     start: tuple[float, ...]
     controller: Controller
 
 
 def run_program(
     prepared: Prepared | CheckedProgram,
-    setup: Setup,
+    setup: RunSetup,
     *,
     take: Callable[[TraceEvent], None] | None = None,
     on_time: Callable[[int], None] = lambda _now: None,
-) -> Run:
+) -> RunResult:
     """Run a program to its end, its fault or the end of its time.
 
     ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
@@ -137,14 +142,14 @@ def run_program(
     )
     outcome = _run(controller, setup, on_time)
     path = tracking.record() if robot.step else None
-    return Run(outcome, trace.events, path, machine, tuple(start), controller)
+    return RunResult(outcome, trace.events, path, machine, tuple(start), controller)
 
 
 #: Virtual time in µs from one report of progress to the next.
 _REPORT = 1_000_000
 
 
-def _run(controller: Controller, setup: Setup, on_time: Callable[[int], None]) -> RunOutcome:
+def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]) -> RunOutcome:
     now = moved = known = 0
     while True:
         now = min(now + _REPORT, setup.until)
@@ -158,7 +163,7 @@ def _run(controller: Controller, setup: Setup, on_time: Callable[[int], None]) -
             return outcome
 
 
-def machine_of_program(program: CheckedProgram, profile: Profile) -> Machine:
+def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData:
     """The arm of the project's own machine data, else that of the profile.
 
     Raises `LinkError` where the project has machine data of an arm that is not understood.
@@ -185,7 +190,7 @@ def machine_of_program(program: CheckedProgram, profile: Profile) -> Machine:
         raise LinkError(str(error)) from error
 
 
-def _home(values: Mapping[str, Value], machine: Machine) -> tuple[float, ...]:
+def _home(values: Mapping[str, Value], machine: MachineData) -> tuple[float, ...]:
     """$H_POS where the project has it and the arm can stand there, else upright."""
     home: Any = values.get("$H_POS")
     axes: tuple[float, ...] = _UPRIGHT

@@ -18,7 +18,7 @@ from interp.executors import Prepared, available
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
-    Code,
+    CodeHandle,
     Crash,
     DeclareInterrupt,
     End,
@@ -63,8 +63,8 @@ class _Known:
 
     interrupts: dict[int, DeclareInterrupt] = field(default_factory=dict)
     switched: dict[int, bool] = field(default_factory=dict)
-    actions: list[Code] = field(default_factory=list)
-    conditions: list[Code] = field(default_factory=list)
+    actions: list[CodeHandle] = field(default_factory=list)
+    conditions: list[CodeHandle] = field(default_factory=list)
 
     def note(self, request: Request) -> None:
         """Learn from a request."""
@@ -76,7 +76,7 @@ class _Known:
                     self.switched[number] = request.action in ("ON", "ENABLE")
             case SetTrigger():
                 self.actions.append(request.action)
-            case SwitchSignal(cycle=Code() as cycle):
+            case SwitchSignal(cycle=CodeHandle() as cycle):
                 self.actions.append(cycle)
             case SetCyclicFlag():
                 self.conditions.append(request.condition)
@@ -159,13 +159,13 @@ class _Driver:
             return True
         return False
 
-    def _enter(self, code: Code, depth: int, back: int) -> None:
+    def _enter(self, code: CodeHandle, depth: int, back: int) -> None:
         self.entered += 1
         self.inside.append((depth, back))
         self.trace.entered()
         self.executor.enter(code)
 
-    def _evaluate(self, code: Code) -> bool:
+    def _evaluate(self, code: CodeHandle) -> bool:
         outcome: object
         try:
             outcome = self.executor.evaluate(code, self.world.read)

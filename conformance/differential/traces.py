@@ -11,7 +11,7 @@ import dataclasses
 from typing import Any
 
 from interp.port.events import EVERY_KIND
-from interp.port.requests import At, Code, Path, Request, Value
+from interp.port.requests import At, CodeHandle, Path, Request, Value
 from interp.values.values import ArrayValue, EnumValue, StructureValue
 
 __all__ = ["Fact", "Trace", "place_of", "plain", "shown"]
@@ -81,7 +81,7 @@ class Trace:
         match value:
             case At() | None | str():
                 return value
-            case Code():
+            case CodeHandle():
                 return "CODE"
             case Exception():
                 return (type(value).__name__, str(value))

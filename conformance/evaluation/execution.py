@@ -32,7 +32,7 @@ from interp.executors import EXECUTORS, Prepared, available
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.program.load import CheckedProgram, Limits, load
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.models import default_machine
 from interp.robot.simulation.factory import ROBOTS, RobotName
 from interp.robot.simulation.robot import Robot
@@ -55,7 +55,7 @@ FRONT: Final = "grammar"
 #: What ``;@ profile:`` may be: a controller, and that its program begins with a coincidence run.
 PROFILES: Final = ("kss8", "kss8-bco", "kss5", "kss5-bco")
 MakeExecutor = Callable[[CheckedProgram, str | None, Limits, Sink | None], Executor]
-MakeRobot = Callable[[Machine, int], Robot]
+MakeRobot = Callable[[MachineData, int], Robot]
 
 #: So many statements a case may execute.
 _STATEMENTS: Final = 1_000_000
@@ -167,7 +167,7 @@ def _run(
     if executor is not None:
         program = _ThirdParty(program.program, executor)
     profile = _profile(case.profile)
-    wanted = session.Setup(
+    wanted = session.RunSetup(
         executor=setup.executor,
         robot=_robot(setup.robot),
         profile=profile,
@@ -192,7 +192,7 @@ def _robot(name: str) -> RobotName:
     return next(one for one in ROBOTS if one == name)
 
 
-def _machine(case: Case) -> Machine | None:
+def _machine(case: Case) -> MachineData | None:
     """The arm of the profile, read once; ``None`` where the case has machine data of its own."""
     has_own = any(one.path.lower() == "$machine.dat" for one in case.sources)
     return None if has_own else default_machine()
@@ -224,7 +224,7 @@ def _submit(case: Case) -> str | None:
     return names[0][: -len(".sub")] if names else None
 
 
-def _observed(done: session.Run, wanted: session.Setup) -> Observation:
+def _observed(done: session.RunResult, wanted: session.RunSetup) -> Observation:
     outcome = done.outcome
     return Observation(
         events=tuple(

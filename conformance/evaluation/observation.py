@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import PathRecord
 
 __all__ = ["Event", "Finding", "Observation"]
@@ -87,7 +87,7 @@ class Observation:
     cycle: int = 12_000
     is_exact: bool = True
     robot: str = "none"
-    machine: Machine | None = None
+    machine: MachineData | None = None
     watched: frozenset[str] | None = None
 
     def of_kind(self, *kinds: str) -> Iterable[Event]:

@@ -10,10 +10,10 @@ import numpy as np
 from conformance.sensitivity.planted_fault import Fault, Plant, constant, on, several
 from interp.controller.motions import MotionBuilder
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.path import targets_in_force
 from interp.robot.path.axis_path import JointLine
-from interp.robot.path.pose_path import Blend, Line
+from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning import blending, path_events, planned_arm, spline_blocks, tracks
 from interp.robot.planning.blending import Zone
@@ -153,7 +153,7 @@ def _scaled(**factors: float) -> Any:
 
 
 def _bulging(right: Any) -> Any:
-    def at(self: Line, u: Any) -> Any:
+    def at(self: StraightLine, u: Any) -> Any:
         positions, rotations = right(self, u)
         return positions + np.sin(np.pi * u)[:, None] * np.array([0.0, 0.0, 0.2]), rotations
 
@@ -201,7 +201,7 @@ _MOTIONS: Final = (
         on(Tracks, "programmed", lambda _: lambda self, _settings: self.limits),
     ),
     ("axes are 10 % faster than they can be", on(tracks, "axis_limits", _fast_axes)),
-    ("a straight line bulges by 0.2 mm", on(Line, "at", _bulging)),
+    ("a straight line bulges by 0.2 mm", on(StraightLine, "at", _bulging)),
     ("the first axis is out of step with the others", on(JointLine, "axes", _uneven)),
     (
         "CA counts nothing",
@@ -283,11 +283,11 @@ _TARGETS: Final = (
     ("the Turn of a target counts nothing", _ptp_target(turn=None)),
     (
         "bit 2 of the Status is the wrong way round",
-        on(Arm, "status", lambda right: lambda self, axes: right(self, axes) ^ 4),
+        on(Kinematics, "status", lambda right: lambda self, axes: right(self, axes) ^ 4),
     ),
     (
         "bit 0 of the Status is the wrong way round",
-        on(Arm, "status", lambda right: lambda self, axes: right(self, axes) ^ 1),
+        on(Kinematics, "status", lambda right: lambda self, axes: right(self, axes) ^ 1),
     ),
     (
         "$BASE counts nothing",

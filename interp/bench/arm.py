@@ -17,7 +17,7 @@ from interp.robot.api.commands import MotionCommand, Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Approximation, Motion, Settings, Target
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import ROBOTS, RobotName, make_robot

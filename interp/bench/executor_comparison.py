@@ -4,7 +4,7 @@ Executors that run the same program in the same world make the same requests and
 events, in the same order [design section 6]. `observe` writes both down as one list of steps,
 `difference` compares two such lists.
 
-What executors hand over as `Code` they number as they like. It is compared by what it does: a
+What executors hand over as `CodeHandle` they number as they like. It is compared by what it does: a
 `Prober` has conditions evaluated and actions entered, at requests drawn from a seed, as interrupts,
 triggers and cyclic signals would.
 """
@@ -19,11 +19,11 @@ from random import Random
 from typing import Any, Final
 
 from interp.bench.stub_world import StubWorld
-from interp.port.events import Event, Recorder, Sink
+from interp.port.events import ExecutorEvent, Recorder, Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
     At,
-    Code,
+    CodeHandle,
     Crash,
     DeclareInterrupt,
     End,
@@ -67,7 +67,7 @@ class Entered:
     depth: int
 
 
-Step = Event | Request | Evaluated | Entered
+Step = ExecutorEvent | Request | Evaluated | Entered
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Difference:
 class _Action:
     """Code that can be entered, and how deep the program was when it was handed over."""
 
-    code: Code
+    code: CodeHandle
     depth: int
 
 
@@ -112,7 +112,7 @@ class Prober:
     def __init__(self, seed: int, *, faults: bool = True) -> None:
         self._random = Random(seed)  # nobody's secret depends on it
         self._faults = faults
-        self._conditions: list[Code] = []
+        self._conditions: list[CodeHandle] = []
         self._actions: list[_Action] = []
         self._entered: list[_Action] = []
         self._depths: list[int] = []
@@ -227,7 +227,7 @@ def _alike(one: Any, other: Any) -> bool:
     if type(one) is not type(other):
         return False
     match one:
-        case Code():  # executors number them as they like
+        case CodeHandle():  # executors number them as they like
             return True
         case float():
             return one == other and math.copysign(1, one) == math.copysign(1, other)
@@ -258,14 +258,14 @@ def _names(kind: type) -> tuple[str, ...]:
     return tuple(one.name for one in fields(kind))
 
 
-def _evaluated(executor: Executor, code: Code, world: StubWorld) -> Value | RuntimeFailure:
+def _evaluated(executor: Executor, code: CodeHandle, world: StubWorld) -> Value | RuntimeFailure:
     try:
         return executor.evaluate(code, world.read)
     except RuntimeFailure as error:
         return error
 
 
-def _handed(request: Request) -> Iterator[tuple[Code, bool]]:
+def _handed(request: Request) -> Iterator[tuple[CodeHandle, bool]]:
     """The codes in a request, and whether each is an action."""
     match request:
         case DeclareInterrupt(condition=condition, action=action):
@@ -273,7 +273,7 @@ def _handed(request: Request) -> Iterator[tuple[Code, bool]]:
             yield action, True
         case SetTrigger(action=action):
             yield action, True
-        case SwitchSignal(cycle=Code() as cycle):
+        case SwitchSignal(cycle=CodeHandle() as cycle):
             yield cycle, True
         case SetCyclicFlag(condition=condition):
             yield condition, False

@@ -24,7 +24,7 @@ from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
 from interp.program.load import CheckedProgram, Routine, load_all
-from interp.session import Setup, run_program
+from interp.session import RunSetup, run_program
 from interp.values.faults import Fault, LinkError
 
 __all__ = [
@@ -184,7 +184,7 @@ def survey_profile() -> Profile:
     return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
 
 
-def run_main(main: MainProgram, setup: Setup, script: str = "") -> Ran:
+def run_main(main: MainProgram, setup: RunSetup, script: str = "") -> Ran:
     """Run a main program; ``script`` adds to what the person at the panel and the cell do.
 
     Raises `interp.controller.input_script.ScriptError` for a script that names what does not exist.

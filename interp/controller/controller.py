@@ -36,7 +36,7 @@ from interp.port import requests
 from interp.port.executor import Executor
 from interp.port.requests import Value
 from interp.robot.api.control_core import ControlCore, Switch
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["Controller"]
@@ -63,7 +63,7 @@ class Controller:
         sink: TaskSink,
         submit: Executor | None = None,
         submit_sink: TaskSink | None = None,
-        machine: Machine | None = None,
+        machine: MachineData | None = None,
         values: Mapping[str, Value] | None = None,
         tracking: Tracking | None = None,
     ) -> None:

@@ -9,7 +9,7 @@ from interp.controller.levels import Levels
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.state import ControllerState
 from interp.controller.tasks import ALWAYS, Answer, Task
-from interp.port.requests import Code, Path, SetCyclicFlag, SwitchSignal
+from interp.port.requests import CodeHandle, Path, SetCyclicFlag, SwitchSignal
 from interp.values.faults import Fault
 
 __all__ = ["CyclicEvaluation"]
@@ -29,7 +29,7 @@ class CyclicEvaluation:
         self._state = state
         self._advance = advance
         self._levels = levels
-        self._flags: dict[int, tuple[Task, Code]] = {}
+        self._flags: dict[int, tuple[Task, CodeHandle]] = {}
 
     def set_flag(self, task: Task, request: SetCyclicFlag) -> None:
         """$CYCFLAG[n] gets a condition, evaluated now and in every cycle [IOT-12].

@@ -28,7 +28,7 @@ __all__ = [
     "Answer",
     "Asked",
     "Assign",
-    "At",
+    "AtTime",
     "Becomes",
     "Cause",
     "Halted",
@@ -37,9 +37,9 @@ __all__ = [
     "Received",
     "Script",
     "ScriptError",
+    "ScriptStep",
     "Send",
     "Shown",
-    "Step",
     "Word",
 ]
 
@@ -62,7 +62,7 @@ Literal = bool | int | float | str | Word
 
 
 @dataclass(frozen=True, slots=True)
-class At:
+class AtTime:
     """``t=0.5``: a time, in µs."""
 
     time: int
@@ -101,7 +101,7 @@ class Received:
     text: str | None
 
 
-Cause = At | Becomes | Halted | Shown | Asked | Received
+Cause = AtTime | Becomes | Halted | Shown | Asked | Received
 
 # ------------------------------------------------------------------------------------- actions
 
@@ -141,7 +141,7 @@ Action = Assign | Press | Answer | Send
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ScriptStep:
     """A line: what causes it, how many µs later it acts, and what it does; ``at`` names it."""
 
     at: str
@@ -158,14 +158,14 @@ class Script:
     (`interp.controller.automatic_inputs`).
     """
 
-    steps: tuple[Step, ...] = ()
+    steps: tuple[ScriptStep, ...] = ()
     stop: int | None = None
     fulfils: int | None = None
 
     @staticmethod
     def read(text: str, name: str = "script") -> Script:
         """Read a script; raises `ScriptError`, which calls it by ``name``."""
-        steps: list[Step] = []
+        steps: list[ScriptStep] = []
         stop: int | None = None
         fulfils: int | None = None
         for number, line in enumerate(text.splitlines(), start=1):
@@ -256,7 +256,7 @@ class _Line:
 
     # --------------------------------------------------------------------------- the parts
 
-    def step(self) -> Step:
+    def step(self) -> ScriptStep:
         """A whole line."""
         cause = self._cause()
         delay = self.time() if self.take("AFTER") else 0
@@ -264,7 +264,7 @@ class _Line:
         while self.take(","):
             actions.append(self._action())
         self.finish()
-        return Step(self._at, cause, delay, tuple(actions))
+        return ScriptStep(self._at, cause, delay, tuple(actions))
 
     def time(self) -> int:
         """Seconds, as µs."""
@@ -282,7 +282,7 @@ class _Line:
     def _cause(self) -> Cause:
         if self.take("T"):
             self.need("=")
-            return At(self.time())
+            return AtTime(self.time())
         if not self.take("ON"):
             self.fail("a line begins with t=SECONDS, with on, with fulfil waits, or with stop at")
         if self.take("HALT"):

@@ -14,7 +14,7 @@ from typing import Final, Literal
 from grammar.semantics.predefined import System
 from grammar.semantics.types import Array, Structure
 from interp.controller.messages import own_fault
-from interp.port.requests import At, Code, DeclareInterrupt
+from interp.port.requests import At, CodeHandle, DeclareInterrupt
 from interp.values.values import ArrayValue, StructureValue, set_text, zero
 
 __all__ = ["Interrupt", "Interrupts", "interrupt_list", "is_usable", "module_name"]
@@ -41,8 +41,8 @@ class Interrupt:
     number: int
     at: At
     is_global: bool
-    condition: Code
-    action: Code
+    condition: CodeHandle
+    action: CodeHandle
     state: Literal["off", "on", "held"] = "off"
     was_true: bool = False
     has_come: bool = False
@@ -89,7 +89,7 @@ class Interrupts:
         )
         self._by_number = dict(sorted(self._by_number.items()))
 
-    def switch(self, action: str, number: int | None, holds: Callable[[Code], bool]) -> None:
+    def switch(self, action: str, number: int | None, holds: Callable[[CodeHandle], bool]) -> None:
         """ON, OFF, ENABLE or DISABLE; ``holds`` gives a condition as it is now."""
         if number is None:
             chosen = list(self)
@@ -123,7 +123,7 @@ class Interrupts:
             if one.is_global or one.depth < depth
         }
 
-    def watch(self, holds: Callable[[Code], bool], running: int) -> list[Interrupt]:
+    def watch(self, holds: Callable[[CodeHandle], bool], running: int) -> list[Interrupt]:
         """Look at all conditions once; gives those whose event has come now.
 
         ``running`` is how many routines are at work; faults where there are too many.

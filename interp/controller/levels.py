@@ -12,7 +12,7 @@ from interp.controller.motion_queue import MotionQueue
 from interp.controller.positions import Positions
 from interp.controller.state import ControllerState
 from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
-from interp.port.requests import At, Code, End, SwitchSignal
+from interp.port.requests import At, CodeHandle, End, SwitchSignal
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
 
@@ -36,7 +36,7 @@ class Levels:
         kind: LevelKind,
         priority: int,
         at: At,
-        code: Code,
+        code: CodeHandle,
         *,
         interrupt: Interrupt | None = None,
         call: CallCommand | None = None,

@@ -21,7 +21,16 @@ from interp.controller.positions import FramesInForce, Positions
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 from interp.controller.trace import path_text
-from interp.port.requests import At, Code, Move, MoveSpline, Path, SetTrigger, SplineStop, Value
+from interp.port.requests import (
+    At,
+    CodeHandle,
+    Move,
+    MoveSpline,
+    Path,
+    SetTrigger,
+    SplineStop,
+    Value,
+)
 from interp.robot.api.commands import (
     CallCommand,
     CoreEvent,
@@ -60,7 +69,7 @@ class TriggerCall:
     """The action of a trigger that is more than switching an output."""
 
     trigger: SetTrigger
-    action: Code
+    action: CodeHandle
 
 
 @dataclass(slots=True, eq=False)

@@ -14,15 +14,21 @@ from interp.controller.messages import message_fault, own_fault
 from interp.controller.positions import FramesInForce, pose_of, word_of
 from interp.controller.state import ControllerState
 from interp.controller.variables import Snapshot
-from interp.port import requests
-from interp.port.requests import At, Move, MoveSpline, SetTrigger, SplineStop, Value
+from interp.port.requests import (
+    At,
+    Move,
+    MoveSpline,
+    SetTrigger,
+    SplineRange,
+    SplineStop,
+    Value,
+)
 from interp.robot.arm import (
     Approximation,
     Motion,
     Place,
     Settings,
     SplinePart,
-    SplineRange,
     Target,
 )
 from interp.values.values import ArrayValue, StructureValue
@@ -145,8 +151,8 @@ class MotionBuilder:
                 case SplineStop(place, on_start, _):
                     stops.append(self._place("PATH", place, on_start, 0.0))
                     built.stops[stops[-1].key] = item
-                case requests.SplineRange(keyword, edge, value, on_start):
-                    ranges.append(SplineRange(keyword, edge, value, on_start))
+                case SplineRange():
+                    ranges.append(item)
         built.motion = replace(
             built.motion,
             number=self._next(),

@@ -18,9 +18,9 @@ from interp.controller.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import turn_of
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import fault
@@ -69,7 +69,9 @@ def word_of(value: Any) -> str:
 class FramesInForce:
     """$BASE, $TOOL, $ROBROOT and $IPO_MODE in the advance run and in the main run."""
 
-    def __init__(self, variables: Variables, machine: Machine | None, core: ControlCore) -> None:
+    def __init__(
+        self, variables: Variables, machine: MachineData | None, core: ControlCore
+    ) -> None:
         self._variables = variables
         self._machine = machine
         self._core = core

@@ -21,7 +21,7 @@ from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path, Value
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm as Kinematics
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import solve, turn_of
 from interp.values.faults import Fault, fault
 from interp.values.poses import Pose

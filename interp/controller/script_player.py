@@ -11,7 +11,7 @@ from interp.controller.input_script import (
     Answer,
     Asked,
     Assign,
-    At,
+    AtTime,
     Becomes,
     Cause,
     Halted,
@@ -20,9 +20,9 @@ from interp.controller.input_script import (
     Received,
     Script,
     ScriptError,
+    ScriptStep,
     Send,
     Shown,
-    Step,
     Word,
 )
 from interp.controller.operator_panel import OperatorPanel
@@ -48,13 +48,13 @@ class ScriptPlayer:
         self._variables = state.variables
         self._panel = panel
         self._channels = channels
-        self._steps: dict[Cause, list[Step]] = defaultdict(list)
+        self._steps: dict[Cause, list[ScriptStep]] = defaultdict(list)
         self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
         self._held: dict[Becomes, bool] = {}
-        self._ahead: list[Step] = []
+        self._ahead: list[ScriptStep] = []
         for step in script.steps:
             self._check(step)
-            if isinstance(step.cause, At):
+            if isinstance(step.cause, AtTime):
                 self._coming(step.cause.time + step.delay, step)
             else:
                 self._steps[step.cause].append(step)
@@ -94,7 +94,7 @@ class ScriptPlayer:
         for step in self._steps.get(cause, ()):
             self._coming(self._state.clock.now + step.delay, step)
 
-    def _coming(self, time: int, step: Step) -> None:
+    def _coming(self, time: int, step: ScriptStep) -> None:
         self._ahead.append(step)
         self._state.actions.add(time, partial(self._do, step))
 
@@ -117,7 +117,7 @@ class ScriptPlayer:
 
     # ------------------------------------------------------------------------- what is done
 
-    def _do(self, step: Step) -> None:
+    def _do(self, step: ScriptStep) -> None:
         self._ahead.remove(step)
         for action in step.actions:
             match action:
@@ -133,7 +133,7 @@ class ScriptPlayer:
                 case Send(channel, text):
                     self._channels.receive(channel, text)
 
-    def _check(self, step: Step) -> None:
+    def _check(self, step: ScriptStep) -> None:
         pairs = [(one.path, one.value) for one in step.actions if isinstance(one, Assign)]
         if isinstance(step.cause, Becomes):
             pairs.append((step.cause.path, step.cause.value))

@@ -13,7 +13,7 @@ from interp.controller.timers import Timers
 from interp.controller.trace import TaskName, Trace
 from interp.controller.variables import Variables
 from interp.port.requests import At, Path, Value
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.values.json_form import to_json
 from interp.values.values import EnumValue
 
@@ -35,7 +35,7 @@ class ControllerState:
         self,
         profile: Profile,
         trace: Trace,
-        machine: Machine | None,
+        machine: MachineData | None,
         values: Mapping[str, Value],
     ) -> None:
         self.profile = profile

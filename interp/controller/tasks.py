@@ -13,7 +13,7 @@ from typing import Final, Literal
 from interp.controller.interrupts import Interrupt, Interrupts
 from interp.controller.trace import TaskName, TaskSink
 from interp.port.executor import Executor, Reader
-from interp.port.requests import At, Code, Request, SetTrigger, SwitchSignal, Value
+from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
 
@@ -119,6 +119,6 @@ class Task:
             return self.blocked.request.at
         return self.level.at if self.level is not None else self.last_at
 
-    def holds(self, condition: Code, read: Reader) -> bool:
+    def holds(self, condition: CodeHandle, read: Reader) -> bool:
         """Whether a condition is TRUE now; ``read`` reads system variables. Raises `Fault`."""
         return self.executor.evaluate(condition, read) is True

@@ -1,25 +1,13 @@
-"""Debugging, the same on every executor: stops, steps, watches, block selection, going backwards.
-
-================ ===================================================================================
-module           what it is
-================ ===================================================================================
-`client`         who decides: what a debugger tells, and what it can be told to do
-`debugger`       an executor around another one, which stops between statements
-`conditions`     expressions over what is visible where a program has stopped
-`open_routines`  which routines are open, and in which activation
-`selection`      which lines a program can go on at
-`backward`       motions travelled so far, and how each of them is undone
-================ ===================================================================================
-"""
+"""Debugging on every executor: stops, steps, watches, block selection, backward motions."""
 
 from interp.debugging.client import (
     Backward,
     Breakpoint,
     Command,
-    Frame,
     Go,
     Select,
-    Step,
+    StackFrame,
+    StepCommand,
     Stop,
     Watch,
 )
@@ -31,10 +19,10 @@ __all__ = [
     "Client",
     "Command",
     "Debugger",
-    "Frame",
     "Go",
     "Select",
-    "Step",
+    "StackFrame",
+    "StepCommand",
     "Stop",
     "Watch",
 ]

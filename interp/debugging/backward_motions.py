@@ -16,13 +16,13 @@ from dataclasses import dataclass, field, replace
 from interp.port.requests import Invoke, Move, MoveEmily, MoveSpline, Request
 from interp.values.values import Value
 
-__all__ = ["Record"]
+__all__ = ["MotionRecord"]
 
 _ASYNCHRONOUS = "ASYPTP"
 
 
 @dataclass(slots=True)
-class Record:
+class MotionRecord:
     """The motions of a program, and how many of them have been travelled back.
 
     ``travelled`` are motions in their order. A relative motion has no target that could be gone

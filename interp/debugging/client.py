@@ -16,10 +16,10 @@ __all__ = [
     "Backward",
     "Breakpoint",
     "Command",
-    "Frame",
     "Go",
     "Select",
-    "Step",
+    "StackFrame",
+    "StepCommand",
     "Stop",
     "Watch",
 ]
@@ -53,7 +53,7 @@ class Watch:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class StackFrame:
     """A routine that is open: its name, and where it is."""
 
     name: str
@@ -85,7 +85,7 @@ class Go:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class StepCommand:
     """Go on by a statement: into calls, over them, or out of the routine.
 
     Actions of interrupts and triggers that come up meanwhile are stepped into only with ``into``.
@@ -112,4 +112,4 @@ class Backward:
     """
 
 
-Command = Go | Step | Select | Backward
+Command = Go | StepCommand | Select | Backward

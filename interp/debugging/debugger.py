@@ -12,14 +12,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from interp.debugging.backward_motions import Record
+from interp.debugging.backward_motions import MotionRecord
 from interp.debugging.client import (
     Backward,
     Breakpoint,
     Command,
-    Frame,
     Select,
-    Step,
+    StackFrame,
+    StepCommand,
     Stop,
     Watch,
 )
@@ -29,7 +29,7 @@ from interp.debugging.selection import reason_against
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
 from interp.port.inspection import Inspectable
-from interp.port.requests import At, Code, End, Fail, Move, MoveSpline, Request, Slice, Value
+from interp.port.requests import At, CodeHandle, End, Fail, Move, MoveSpline, Request, Slice, Value
 from interp.program.load import CheckedProgram, Limits
 from interp.program.statement_paths import routine_at, statement_lines
 from interp.values.faults import Fault, LinkError, RuntimeFailure
@@ -84,7 +84,7 @@ class Debugger:
         self._client = client
         self._read = read
         self.breakpoints: list[Breakpoint] = []
-        self.record = Record()
+        self.record = MotionRecord()
         self._watches: list[_Watched] = []
         self._stepping: _Stepping | None = None
         self._reason: Stop | None = None
@@ -118,7 +118,7 @@ class Debugger:
         """Stop before the next statement; may be called from another thread."""
         self._is_to_pause = True
 
-    def frames(self) -> tuple[Frame, ...]:
+    def frames(self) -> tuple[StackFrame, ...]:
         """The routines that are open, the one that runs first."""
         return self._sink.frames(self._at)
 
@@ -183,13 +183,13 @@ class Debugger:
                 return replace(request, at=self._at)
             self._since += 1
 
-    def enter(self, code: Code) -> None:
+    def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program goes on."""
         self._inside.append((self._inner.depth, self._given, self._own))
         self._given = self._own = None
         self._inner.enter(code)
 
-    def evaluate(self, code: Code, read: Reader) -> Value:
+    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition; nothing stops in it."""
         return self._inner.evaluate(code, read)
 
@@ -311,7 +311,7 @@ class Debugger:
         """Carry out a command; gives the motion that it wants travelled."""
         self._stepping = None
         match command:
-            case Step(way=way):
+            case StepCommand(way=way):
                 self._stepping = _Stepping(way, self._at.depth, len(self._inside))
             case Select(line=line):
                 self._select(line)

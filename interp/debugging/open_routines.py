@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from interp.debugging.client import Frame
+from interp.debugging.client import StackFrame
 from interp.port.events import Kind, Sink
 from interp.port.requests import At, Path, Value
 
@@ -54,11 +54,11 @@ class OpenRoutines:
         if self._sink is not None:
             self._sink.branch(at, way)
 
-    def frames(self, at: At) -> tuple[Frame, ...]:
+    def frames(self, at: At) -> tuple[StackFrame, ...]:
         """What is open when the program is at a place."""
-        found: list[Frame] = []
+        found: list[StackFrame] = []
         for name, called, _ in reversed(self._open[: at.depth + 1]):
-            found.append(Frame(name, at))
+            found.append(StackFrame(name, at))
             at = called
         return tuple(found)
 

@@ -16,7 +16,7 @@ from typing import Final, Literal, Protocol
 
 from interp.port.requests import At, Path, Value
 
-__all__ = ["EVERY_KIND", "Event", "Kind", "Recorder", "Sink", "wanting"]
+__all__ = ["EVERY_KIND", "ExecutorEvent", "Kind", "Recorder", "Sink", "wanting"]
 
 #: The words of the trace.
 Kind = Literal["line", "assign", "call", "return", "branch"]
@@ -56,7 +56,7 @@ def wanting(sink: Sink | None, kind: Kind) -> Sink | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class ExecutorEvent:
     """An event; ``name`` is that of a routine, ``way`` that of a branch, the rest of assignments.
 
     ``value`` shares nothing with the program's variables.
@@ -74,25 +74,25 @@ class Event:
 class Recorder:
     """A sink that keeps events, all by default, in their order."""
 
-    events: list[Event] = field(default_factory=list)
+    events: list[ExecutorEvent] = field(default_factory=list)
     kinds: frozenset[Kind] = EVERY_KIND
 
     def line(self, at: At) -> None:
         """A statement begins."""
-        self.events.append(Event("line", at))
+        self.events.append(ExecutorEvent("line", at))
 
     def assign(self, at: At, path: Path, value: Value | None) -> None:
         """A variable was assigned."""
-        self.events.append(Event("assign", at, path=path, value=value))
+        self.events.append(ExecutorEvent("assign", at, path=path, value=value))
 
     def call(self, at: At, name: str) -> None:
         """A routine is called."""
-        self.events.append(Event("call", at, name))
+        self.events.append(ExecutorEvent("call", at, name))
 
     def leave(self, at: At, name: str) -> None:
         """A routine has ended."""
-        self.events.append(Event("return", at, name))
+        self.events.append(ExecutorEvent("return", at, name))
 
     def branch(self, at: At, way: int) -> None:
         """A way was taken."""
-        self.events.append(Event("branch", at, way=way))
+        self.events.append(ExecutorEvent("branch", at, way=way))

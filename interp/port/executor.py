@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from interp.port.events import Sink
-from interp.port.requests import Code, Path, Request, Value
+from interp.port.requests import CodeHandle, Path, Request, Value
 from interp.values.faults import Fault
 
 __all__ = ["Executor", "Reader"]
@@ -33,7 +33,7 @@ class Executor(Protocol):
         """
         ...
 
-    def enter(self, code: Code) -> None:
+    def enter(self, code: CodeHandle) -> None:
         """Push a routine or action, which runs before the program goes on.
 
         Allowed between two requests only, and behind the End of the program as well, as long as the
@@ -42,7 +42,7 @@ class Executor(Protocol):
         """
         ...
 
-    def evaluate(self, code: Code, read: Reader) -> Value:
+    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition, without side effects and without a request.
 
         Raises `interp.values.faults.Fault`.

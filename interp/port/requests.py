@@ -5,7 +5,7 @@ next call of `interp.port.executor.Executor.advance`. Requests are plain data: t
 never nodes of a tree or places in an image, so that a controller cannot tell executors apart.
 
 Code that the controller may have run later (the condition of an interrupt, the action of a trigger)
-is handed over as a `Code`, which only the executor understands.
+is handed over as a `CodeHandle`, which only the executor understands.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = [
     "Asking",
     "At",
     "BrakeArm",
-    "Code",
+    "CodeHandle",
     "Confirm",
     "Continue",
     "Crash",
@@ -72,7 +72,7 @@ class At:
 
 
 @dataclass(frozen=True, slots=True)
-class Code:
+class CodeHandle:
     """A piece of program that can be entered or evaluated later, by its number in the executor."""
 
     number: int
@@ -126,7 +126,7 @@ class SetCyclicFlag(Asking):
     """
 
     number: int
-    condition: Code
+    condition: CodeHandle
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +199,10 @@ class Move(Asking):
 
 @dataclass(frozen=True, slots=True)
 class SplineRange:
-    """CONST_VEL or TIME_BLOCK in a spline block: its words, and the place or value."""
+    """CONST_VEL or TIME_BLOCK between segments of a block [SPL-05, SPL-10].
+
+    Its words as in the program; ``value`` is in mm or seconds.
+    """
 
     keyword: str
     edge: str
@@ -213,7 +216,7 @@ class SplineStop:
 
     place: float
     on_start: bool
-    condition: Code
+    condition: CodeHandle
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,7 +232,7 @@ class SetTrigger(Asking):
     place: float
     on_start: bool
     delay: float
-    action: Code
+    action: CodeHandle
     output: tuple[Path, Value] | None
     priority: int | None
 
@@ -265,8 +268,8 @@ class DeclareInterrupt(Asking):
 
     number: int
     is_global: bool
-    condition: Code
-    action: Code
+    condition: CodeHandle
+    action: CodeHandle
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,7 +302,7 @@ class SwitchSignal(Asking):
     keyword: str
     is_on: bool
     name: str
-    cycle: Code | None
+    cycle: CodeHandle | None
     delay: float | None
     minimum: float | None
     maximum: float | None

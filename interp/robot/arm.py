@@ -17,7 +17,7 @@ from typing import Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from interp.port.requests import At
+from interp.port.requests import At, SplineRange
 from interp.robot.kinematics.placement import Placement
 from interp.values.poses import Pose
 
@@ -32,7 +32,6 @@ __all__ = [
     "Samples",
     "Settings",
     "SplinePart",
-    "SplineRange",
     "Target",
 ]
 
@@ -92,16 +91,6 @@ class Place:
     position: float
     on_start: bool = False
     delay: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class SplineRange:
-    """CONST_VEL or TIME_BLOCK between segments of a block [SPL-05, SPL-10]; mm or seconds."""
-
-    keyword: str
-    edge: str
-    value: float | None
-    on_start: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from interp.program.variables import (
     untyped_result,
 )
 from interp.tree.expressions import Expressions
-from interp.tree.places import Local, Place, Remote, fresh, is_left_out, sized
+from interp.tree.places import LocalPlace, Place, SystemPlace, fresh, is_left_out, sized
 from interp.tree.run import Call, Steps
 from interp.values.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
 from interp.values.faults import LinkError, fault
@@ -77,11 +77,11 @@ class Calls(Expressions):
             return fresh(type_, name)
         if not is_in and is_variable(self.frame.unit, argument):
             place = yield from self.place(argument)
-            if isinstance(place, Remote):
+            if isinstance(place, SystemPlace):
                 return place
             if not is_referable(type_, place.type):
                 raise mismatched(type_)
-            return Local(place.parts, place.at, place.type, (name,))
+            return LocalPlace(place.parts, place.at, place.type, (name,))
         value = yield from self.value(argument, type_)
         made = fresh(sized(type_, value), name)
         made.set(value)
@@ -117,7 +117,7 @@ class Calls(Expressions):
             result, after = reply.result, reply.arguments
         else:
             values = [copied(value) for value in values]
-            paths = [place.path if isinstance(place, Remote) else None for place in places]
+            paths = [place.path if isinstance(place, SystemPlace) else None for place in places]
             result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
         for place, before, value in zip(places, values, after, strict=True):
             if place is not None and value is not None and value is not before:

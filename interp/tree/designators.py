@@ -24,8 +24,8 @@ from interp.program.variables import (
     untyped_value,
 )
 from interp.tree.names import find_text
-from interp.tree.places import Local, Place, Remote, element, member, of_type
-from interp.tree.run import Frame, Run, Steps
+from interp.tree.places import LocalPlace, Place, SystemPlace, element, member, of_type
+from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import LinkError, fault
 from interp.values.values import Value, copied, index
 
@@ -37,7 +37,7 @@ _MOST_SIGNALS = 8
 class Designators(ABC):
     """What designators mean in one frame."""
 
-    def __init__(self, run: Run, frame: Frame) -> None:
+    def __init__(self, run: ProgramState, frame: Frame) -> None:
         self.run = run
         self.frame = frame
 
@@ -64,7 +64,7 @@ class Designators(ABC):
             case ast.Subscript():
                 base = yield from self.place(node.base)
                 return (yield from self.element(base, node.indices))
-        return Local([(yield from self.value(node))], 0, UNKNOWN, ())
+        return LocalPlace([(yield from self.value(node))], 0, UNKNOWN, ())
 
     def element(self, base: Place, nodes: tuple[ast.Expression | None, ...]) -> Steps[Place]:
         """An element; an index left out, and all behind it, mean the rest of the array."""
@@ -80,7 +80,7 @@ class Designators(ABC):
         found = self.frame.unit.found(name)
         if found is None:
             if name.key.startswith("$"):  # another release may have it
-                return Remote((name.key,), UNKNOWN)
+                return SystemPlace((name.key,), UNKNOWN)
             raise LinkError(f"{name.text} is declared nowhere")
         return self.declared(found)
 
@@ -95,7 +95,7 @@ class Designators(ABC):
                 raise untyped(symbol.name)
             raise fault("uninitialised")  # its routine has ended
         if found.module is None or symbol.key.startswith("$"):
-            return Remote((symbol.key,), self.run.program.type_of(found))
+            return SystemPlace((symbol.key,), self.run.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
             if signals == _MOST_SIGNALS:
                 raise LinkError(f"the signal {symbol.name} leads nowhere")
@@ -106,28 +106,30 @@ class Designators(ABC):
             raise LinkError(f"{symbol.name} is no variable")
         return self.run.data[symbol]
 
-    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> Remote:
+    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemPlace:
         """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)``, an INT [IOT-03]."""
         assert found.module is not None, "the controller's signals are variables"
         unit = self.run.program.units[found.module]
-        ends: list[Remote] = []
+        ends: list[SystemPlace] = []
         for name, numbers in signal_ends(symbol):
             means = unit.found(name)
-            place = self.declared(means, signals + 1) if means else Remote((name.key,), UNKNOWN)
+            place = (
+                self.declared(means, signals + 1) if means else SystemPlace((name.key,), UNKNOWN)
+            )
             place = element(place, numbers) if numbers else place
-            if isinstance(place, Remote):
+            if isinstance(place, SystemPlace):
                 ends.append(place)
         if not ends:
-            return Remote((symbol.key,), BOOL)  # connected to nothing
+            return SystemPlace((symbol.key,), BOOL)  # connected to nothing
         if symbol.last is None:
             return replace(ends[0], is_indexed=False)
-        return Remote((*ends[0].path, "TO", ends[-1].path[-1]), INT)
+        return SystemPlace((*ends[0].path, "TO", ends[-1].path[-1]), INT)
 
     # ----------------------------------------------------------------------- access
 
     def read(self, place: Place) -> Steps[Value | None]:
         """What a place has, if anything."""
-        if isinstance(place, Local):
+        if isinstance(place, LocalPlace):
             return place.get()
         if not is_complete(place.type):
             raise untyped_value(place.path)
@@ -136,7 +138,7 @@ class Designators(ABC):
 
     def store(self, place: Place, value: Value) -> Steps[None]:
         """Assign a value to a place."""
-        if isinstance(place, Remote):
+        if isinstance(place, SystemPlace):
             yield Write(self.at(), place.path, of_type(place.type, value))
             return
         place.set(value)

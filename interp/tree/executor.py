@@ -15,7 +15,7 @@ from interp.port.executor import Reader
 from interp.port.inspection import Seen
 from interp.port.requests import (
     At,
-    Code,
+    CodeHandle,
     Crash,
     End,
     Fail,
@@ -29,7 +29,7 @@ from interp.program.load import CheckedProgram, Limits
 from interp.program.statement_paths import routine_at, way_to
 from interp.program.variables import MOST_CELLS, too_large
 from interp.tree.memory import fill_data
-from interp.tree.run import Call, Frame, Guard, Run, Steps
+from interp.tree.run import Call, Frame, Guard, ProgramState, Steps
 from interp.tree.statements import Resumed, Selected, Statements
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 
@@ -76,7 +76,7 @@ class TreeExecutor:
         *,
         beside: TreeExecutor | None = None,
     ) -> None:
-        self._run = Run(program, limits, sink, random)
+        self._run = ProgramState(program, limits, sink, random)
         if beside is not None:
             self._run.data, self._run.cells = beside._run.data, beside._data_cells
         else:
@@ -122,7 +122,7 @@ class TreeExecutor:
             self._open, self._is_asked = request, True
         return request
 
-    def enter(self, code: Code) -> None:
+    def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program goes on."""
         handed, run = self._run.handed(code), self._run
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
@@ -133,7 +133,7 @@ class TreeExecutor:
         self._open, self._is_asked, self._resumed, run.guard = None, False, None, Guard.OFF
         self._final = None
 
-    def evaluate(self, code: Code, read: Reader) -> Value:
+    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition; raises `interp.values.faults.Fault`.
 
         What a condition calls may compute and read; `LinkError` where it does more.

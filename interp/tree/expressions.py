@@ -22,7 +22,7 @@ from grammar.semantics.types import (
 )
 from grammar.syntax import ast
 from interp.tree.designators import Designators
-from interp.tree.places import Local, member
+from interp.tree.places import LocalPlace, member
 from interp.tree.run import Steps
 from interp.values.faults import LinkError, fault
 from interp.values.operators import apply, apply_unary
@@ -99,12 +99,12 @@ class Expressions(Designators):
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:
         type_ = self._structure(node, wanted)
         made = empty(type_)
-        whole = Local([made], 0, type_, ())
+        whole = LocalPlace([made], 0, type_, ())
         for component in node.components:
             place = member(whole, component.name.text)
             if component.indices:
                 place = yield from self.element(place, component.indices)
-            assert isinstance(place, Local), "a part of what was made here"
+            assert isinstance(place, LocalPlace), "a part of what was made here"
             place.set((yield from self.value(component.value, place.type)))
         return known(made)
 

@@ -16,8 +16,8 @@ from grammar.syntax import ast
 from interp.program.load import CheckedProgram, Unit
 from interp.program.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
 from interp.tree.calls import Calls
-from interp.tree.places import Local, Place, fresh
-from interp.tree.run import Frame, Run, at_once
+from interp.tree.places import LocalPlace, Place, fresh
+from interp.tree.run import Frame, ProgramState, at_once
 from interp.values.faults import LinkError
 from interp.values.values import Value, copied
 
@@ -28,7 +28,7 @@ __all__ = ["fill_data", "system_values"]
 class _Data:
     """The variables of all data lists, and how many scalars they can hold."""
 
-    places: dict[Symbol, Local] = field(default_factory=dict)
+    places: dict[Symbol, LocalPlace] = field(default_factory=dict)
     cells: int = 0
 
 
@@ -36,7 +36,7 @@ class _Data:
 _FILLED: WeakKeyDictionary[Project, _Data] = WeakKeyDictionary()
 
 
-def fill_data(run: Run) -> None:
+def fill_data(run: ProgramState) -> None:
     """Make the variables of all data lists.
 
     Raises `LinkError` and `Fault` where an initial value cannot be had. Those whose names begin
@@ -45,7 +45,7 @@ def fill_data(run: Run) -> None:
     filled = _filled(run.program)
     run.cells = filled.cells
     run.data = {
-        symbol: Local([copied(place.get())], 0, place.type, place.path)
+        symbol: LocalPlace([copied(place.get())], 0, place.type, place.path)
         for symbol, place in filled.places.items()
     }
 
@@ -67,7 +67,7 @@ def _filled(program: CheckedProgram) -> _Data:
         lists = list(data_lists(program))
         for unit, _ in lists:
             _declare(data, program, unit)
-        run = Run(program)
+        run = ProgramState(program)
         run.data = data.places
         for unit, content in lists:
             _initialise(run, unit, content)
@@ -83,7 +83,7 @@ def _declare(data: _Data, program: CheckedProgram, unit: Unit) -> None:
         data.places[found.symbol] = fresh(type_, found.symbol.key)
 
 
-def _initialise(run: Run, unit: Unit, content: ast.DataList) -> None:
+def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
     """Where errors are no obstacle, what cannot be had is left without a value."""
     scope = run.program.project.scope(unit.module)
     frame = Frame(unit, content.name.text, scope, {}, None, 0)
@@ -107,6 +107,6 @@ class _DataList(Calls):
     def give(self, target: ast.Expression, value: ast.Expression) -> None:
         """Give a variable or an element of one its first value."""
         place = at_once(self.place(target))
-        if not isinstance(place, Local):
+        if not isinstance(place, LocalPlace):
             raise LinkError("a value is given to what is declared elsewhere")
         place.set(at_once(self.value(value, place.type)))

@@ -1,6 +1,6 @@
 """Motions, triggers, interrupts and cyclic signals: statements that only ask the world.
 
-What is to be done or looked at later is handed over as a `interp.port.requests.Code`.
+What is to be done or looked at later is handed over as a `interp.port.requests.CodeHandle`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from interp.port.requests import (
 )
 from interp.program.reads import is_constant_output, signal_name
 from interp.tree.calls import Calls
-from interp.tree.places import Remote, of_type
+from interp.tree.places import SystemPlace, of_type
 from interp.tree.run import Steps
 from interp.values.faults import LinkError
 from interp.values.values import Value, copied, text_of
@@ -65,7 +65,7 @@ class Motions(Calls):
         for node in nodes:
             place = yield from self.place(node.target)
             value = of_type(place.type, (yield from self.value(node.value, place.type)))
-            if not isinstance(place, Remote):
+            if not isinstance(place, SystemPlace):
                 raise LinkError("WITH gives a value to what is no system variable")
             found.append((place.path, value))
         return tuple(found)
@@ -127,7 +127,7 @@ class Motions(Calls):
         if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return None
         place = yield from self.place(action.target)
-        if not isinstance(place, Remote):
+        if not isinstance(place, SystemPlace):
             return None
         value = yield from self.value(action.value, place.type)
         return place.path, of_type(place.type, value)

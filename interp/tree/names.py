@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from grammar.semantics.types import Type
-from interp.tree.places import Local, Place, element, member
+from interp.tree.places import LocalPlace, Place, element, member
 from interp.values.faults import Fault, LinkError
 from interp.values.values import Value
 
@@ -37,8 +37,8 @@ def find_text(text: str, find: Callable[[str], Place | None]) -> tuple[Type, Val
                 place = element(place, [int(one) for one in indices.split(",")])
             else:
                 place = member(place, name)
-            if not isinstance(place, Local):
+            if not isinstance(place, LocalPlace):
                 return None
     except (Fault, LinkError):  # there is no such part
         return None
-    return (place.type, place.get()) if isinstance(place, Local) else None
+    return (place.type, place.get()) if isinstance(place, LocalPlace) else None

@@ -1,8 +1,8 @@
-"""Where values are: places of the program's own data, and places of the world.
+"""Where values are: places of the program's own data, and system variables.
 
-A `Local` is an element of a list: of the one cell of a variable, of the members of a structure, of
-the elements of an array. So a reference to a part is a place like any other, and what is passed
-:OUT is the place itself [SCO-06].
+A `LocalPlace` is an element of a list: of the one cell of a variable, of the members of a
+structure, of the elements of an array. So a reference to a part is a place like any
+other, and what is passed :OUT is the place itself [SCO-06].
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from interp.values.values import (
 )
 
 __all__ = [
-    "Local",
+    "LocalPlace",
     "Place",
-    "Remote",
+    "SystemPlace",
     "element",
     "fresh",
     "is_left_out",
@@ -39,7 +39,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class Local:
+class LocalPlace:
     """A place of the program. ``path`` is what the routine that uses it calls it."""
 
     parts: list[Any]
@@ -64,8 +64,8 @@ class Local:
 
 
 @dataclass(frozen=True, slots=True)
-class Remote:
-    """A system variable or a part of one, which is asked for and told.
+class SystemPlace:
+    """A system variable or a part of one, which the controller reads and writes.
 
     ``is_indexed`` where the program has worked out an index in the path.
     """
@@ -75,7 +75,7 @@ class Remote:
     is_indexed: bool = False
 
 
-Place = Local | Remote
+Place = LocalPlace | SystemPlace
 
 
 def _check_elements(target: ArrayValue, value: ArrayValue) -> None:
@@ -93,16 +93,16 @@ def of_type(type_: Type, value: Value) -> Value:
     return converted(value, type_)
 
 
-def fresh(type_: Type, name: str) -> Local:
+def fresh(type_: Type, name: str) -> LocalPlace:
     """A variable without a value."""
     is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
-    return Local([None if is_open else empty(type_)], 0, type_, (name,))
+    return LocalPlace([None if is_open else empty(type_)], 0, type_, (name,))
 
 
 def is_left_out(place: Place) -> bool:
     """Whether it is an array parameter ``X[]`` that the caller left out, so that it has no size."""
     return (
-        isinstance(place, Local)
+        isinstance(place, LocalPlace)
         and isinstance(place.type, Array)
         and None in place.type.sizes
         and place.get() is None
@@ -122,25 +122,25 @@ def sized(type_: Type, value: Value) -> Type:
 def member(base: Place, name: str) -> Place:
     """``base.name``; faults `uninitialised` where there is nothing to take it of."""
     key = name.upper()
-    if isinstance(base, Remote):
+    if isinstance(base, SystemPlace):
         known = base.type.member(key) if isinstance(base.type, Structure) else None
-        return Remote((*base.path, key), known or UNKNOWN, base.is_indexed)
+        return SystemPlace((*base.path, key), known or UNKNOWN, base.is_indexed)
     whole = base.get()
     if not isinstance(whole, StructureValue):
         raise (
             fault("uninitialised") if whole is None else LinkError(f"{key} is a member of nothing")
         )
     at = member_place(whole.type, key)
-    return Local(whole.members, at, whole.type.members[at].type, (*base.path, key))
+    return LocalPlace(whole.members, at, whole.type.members[at].type, (*base.path, key))
 
 
 def element(base: Place, indices: Sequence[int]) -> Place:
     """``base[indices]``, or what is left of an array; faults `index`, `uninitialised`."""
     path = (*base.path, *indices)
-    if isinstance(base, Remote):
+    if isinstance(base, SystemPlace):
         is_whole = isinstance(base.type, Array) and len(base.type.sizes) == len(indices)
         left = base.type.element if is_whole and isinstance(base.type, Array) else UNKNOWN
-        return Remote(path, left, is_indexed=True)
+        return SystemPlace(path, left, is_indexed=True)
     whole = base.get()
     if not isinstance(whole, ArrayValue):
         raise fault("uninitialised") if whole is None else LinkError("an index of what is no array")
@@ -148,5 +148,5 @@ def element(base: Place, indices: Sequence[int]) -> Place:
         raise LinkError("an array has too many indices")
     if len(indices) < len(whole.sizes):
         part = whole.part(*indices)
-        return Local([part], 0, part.type, path)
-    return Local(whole.elements, whole.place(indices), whole.type.element, path)
+        return LocalPlace([part], 0, part.type, path)
+    return LocalPlace(whole.elements, whole.place(indices), whole.type.element, path)

@@ -16,14 +16,14 @@ from grammar.semantics.symbols import Symbol
 from grammar.semantics.types import Type
 from grammar.syntax import ast
 from interp.port.events import Sink, wanting
-from interp.port.requests import At, Code, Request, Slice
+from interp.port.requests import At, CodeHandle, Request, Slice
 from interp.program.load import CheckedProgram, Limits, Routine, Unit
 from interp.program.variables import cells_of_routine
-from interp.tree.places import Local, Place, Remote
+from interp.tree.places import LocalPlace, Place, SystemPlace
 from interp.values.builtins import Randomness
 from interp.values.faults import BudgetExhausted, LinkError
 
-__all__ = ["Call", "Frame", "Guard", "Handed", "Run", "Steps", "at_once"]
+__all__ = ["Call", "Frame", "Guard", "Handed", "ProgramState", "Steps", "at_once"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +61,7 @@ class Frame:
         Parameters that stand for a system variable do so still, if no index was worked out for it.
         """
         for symbol, place in list(self.variables.items()):
-            if not isinstance(place, Remote) or place.is_indexed:
+            if not isinstance(place, SystemPlace) or place.is_indexed:
                 del self.variables[symbol]
 
     def for_code(self, line: int) -> Frame:
@@ -71,7 +71,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Handed:
-    """What a `Code` stands for."""
+    """What a `CodeHandle` stands for."""
 
     node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
     frame: Frame
@@ -85,7 +85,7 @@ class Guard(Enum):
     NOW = 2
 
 
-class Run:
+class ProgramState:
     """The state of a program apart from its frames.
 
     ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold. The
@@ -105,7 +105,7 @@ class Run:
         self.calls, self.returns = wanting(sink, "call"), wanting(sink, "return")
         self.branches = wanting(sink, "branch")
         self.random = random or Randomness()
-        self.data: dict[Symbol, Local] = {}
+        self.data: dict[Symbol, LocalPlace] = {}
         self.depth = 0
         self.cells = 0
         self.guard = Guard.OFF
@@ -147,15 +147,15 @@ class Run:
         self,
         node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
         frame: Frame,
-    ) -> Code:
+    ) -> CodeHandle:
         """A piece of program to be run later, in this frame; always the same for the same."""
         number = self._numbers.setdefault((node, frame), len(self._codes))
         if number == len(self._codes):
             self._codes.append(Handed(node, frame))
-        return Code(number)
+        return CodeHandle(number)
 
-    def handed(self, code: Code) -> Handed:
-        """What a `Code` stands for."""
+    def handed(self, code: CodeHandle) -> Handed:
+        """What a `CodeHandle` stands for."""
         return self._codes[code.number]
 
 

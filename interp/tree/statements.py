@@ -17,7 +17,7 @@ from interp.port import requests
 from interp.port.requests import Poll, Wait, Write
 from interp.program.variables import is_complete
 from interp.tree.motions import Motions
-from interp.tree.places import Remote, fresh, is_left_out, of_type
+from interp.tree.places import SystemPlace, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.operators import apply
@@ -261,7 +261,7 @@ class Statements(Motions):
         place = yield from self.place(node.target)
         if is_left_out(place):
             raise fault("uninitialised")
-        if isinstance(place, Remote) and place.path[0] == "$CYCFLAG" and len(place.path) == 2:
+        if isinstance(place, SystemPlace) and place.path[0] == "$CYCFLAG" and len(place.path) == 2:
             condition = self.run.hand(node.value, self.frame)
             yield requests.SetCyclicFlag(self.at(), int(place.path[1]), condition)
             return

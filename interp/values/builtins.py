@@ -50,7 +50,7 @@ __all__ = [
     "BUILTINS",
     "FUNCTIONS",
     "WORLD",
-    "Builtin",
+    "PredefinedFunction",
     "Randomness",
     "Reply",
     "Surroundings",
@@ -198,7 +198,7 @@ def _word(type_name: str, name: str) -> EnumValue:
 
 
 @dataclass(frozen=True, slots=True)
-class Builtin:
+class PredefinedFunction:
     """A predefined function that only computes.
 
     ``changes_more`` tells that the arguments behind those of the table are passed :OUT too.
@@ -248,9 +248,9 @@ _ASKING: Mapping[str, Callable[..., Outcome]] = {
 }
 
 
-def _builtin(name: str) -> Builtin:
+def _builtin(name: str) -> PredefinedFunction:
     known_as = System.load().functions[name]
-    return Builtin(
+    return PredefinedFunction(
         name,
         _ASKING.get(name) or _COMPUTING[name],
         known_as.parameters,
@@ -262,7 +262,7 @@ def _builtin(name: str) -> Builtin:
 
 
 #: All predefined functions that only compute, by name.
-BUILTINS: Mapping[str, Builtin] = MappingProxyType(
+BUILTINS: Mapping[str, PredefinedFunction] = MappingProxyType(
     {name: _builtin(name) for name in sorted({*_COMPUTING, *_ASKING})}
 )
 

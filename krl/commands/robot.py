@@ -13,7 +13,7 @@ from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Arm
+    from interp.robot.kinematics.solver import Kinematics
     from interp.values.poses import Pose
 
 __all__ = ["app"]
@@ -79,7 +79,7 @@ class _Point:
     base: "Pose | None"
 
 
-def _arm(path: Path) -> "Arm":
+def _arm(path: Path) -> "Kinematics":
     """The arm of a $machine.dat; imports are late because they take longer than most commands."""
     from interp.robot.kinematics.data_list import DataListError
     from interp.robot.kinematics.machine_data import MachineDataError, read_machine
@@ -94,14 +94,14 @@ def _arm(path: Path) -> "Arm":
     except (DataListError, MachineDataError) as error:
         raise InputError(str(error)) from error
     with expected_extras():
-        from interp.robot.kinematics.solver import Arm
+        from interp.robot.kinematics.solver import Kinematics
     try:
-        return Arm(machine)
+        return Kinematics(machine)
     except MachineDataError as error:
         raise InputError(f"{path}: {error}") from error
 
 
-def _answer(arm: "Arm", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
+def _answer(arm: "Kinematics", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
     from interp.robot.kinematics.placement import Placement
     from interp.robot.kinematics.targets import solve
     from interp.values.faults import Fault

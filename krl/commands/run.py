@@ -21,7 +21,7 @@ from support.files.atomic_write import atomic_path
 if TYPE_CHECKING:
     from interp.controller.trace import TraceEvent
     from interp.program.load import CheckedProgram
-    from interp.session import Run, Setup
+    from interp.session import RunResult, RunSetup
 
 __all__ = ["run"]
 
@@ -116,11 +116,11 @@ def run(
     with _expected_errors():
         from interp.controller.input_script import Script
         from interp.controller.profile import Profile
-        from interp.session import Setup, available
+        from interp.session import RunSetup, available
 
         chosen = executor.value if executor is not None else available()[-1]
         script = Script() if io_script is None else Script.read(_text(io_script))
-        setup = Setup(
+        setup = RunSetup(
             executor=chosen,
             robot=robot.value,
             profile=Profile.load(profile),
@@ -190,7 +190,7 @@ def _check_targets(
             raise InputError(str(error)) from error
 
 
-def _performed(program: "CheckedProgram", setup: "Setup", trace: Path | None) -> "Run":
+def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None) -> "RunResult":
     """Run it with a progress bar, writing the trace as it comes."""
     from interp.session import run_program
 
@@ -223,9 +223,9 @@ def _tracing(file: Path | None) -> Iterator[TextIO | None]:
 
 
 def _write(
-    done: "Run",
+    done: "RunResult",
     program: "CheckedProgram",
-    setup: "Setup",
+    setup: "RunSetup",
     path: Path | None,
     html: Path | None,
     video: Path | None,
@@ -240,7 +240,7 @@ def _write(
         _film(done, video)
 
 
-def _film(done: "Run", target: Path) -> None:
+def _film(done: "RunResult", target: Path) -> None:
     from interp.robot.simulation.video import VideoError, frame_count, write_video
 
     assert done.path is not None
@@ -265,7 +265,7 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
             table.to_parquet(part, index=False)
 
 
-def _record(done: "Run", program: "CheckedProgram", setup: "Setup") -> dict[str, Any]:
+def _record(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> dict[str, Any]:
     """What the page of a run is made of; see `reports.run_page.write_run_page`."""
     from interp.run_record import record_of
 

@@ -15,7 +15,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.port.events import Event, Sink
+from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
 from interp.port.requests import DeclareInterrupt, End, Fail
 from interp.program.load import CheckedProgram, load
@@ -61,7 +61,9 @@ def _told(text: str, name: str = "N") -> list[object]:
     seen = _run(text)
     assert isinstance(seen.last, End), seen.last
     return [
-        to_json(one.value) for one in seen.steps if isinstance(one, Event) and name in one.path[:1]
+        to_json(one.value)
+        for one in seen.steps
+        if isinstance(one, ExecutorEvent) and name in one.path[:1]
     ]
 
 
@@ -256,7 +258,9 @@ def test_several_copies_in_one_call() -> None:
         "c[3]=1\nc[4]=1\nEND\n"
     )
     seen = _run(text)
-    values = [one.value for one in seen.steps if isinstance(one, Event) and one.path == ("N",)]
+    values = [
+        one.value for one in seen.steps if isinstance(one, ExecutorEvent) and one.path == ("N",)
+    ]
     assert [678, 3] == values
     assert isinstance(seen.last, Fail)
     assert "index" == getattr(seen.last.fault, "slug", None)

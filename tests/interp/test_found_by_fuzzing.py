@@ -13,9 +13,16 @@ from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.port.events import Event, Sink
+from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
-from interp.port.requests import Code, DeclareInterrupt, End, Fail, MoveSpline, SwitchInterrupt
+from interp.port.requests import (
+    CodeHandle,
+    DeclareInterrupt,
+    End,
+    Fail,
+    MoveSpline,
+    SwitchInterrupt,
+)
 from interp.program.load import load
 from interp.tree import TreeExecutor
 from interp.values.faults import Fault
@@ -71,7 +78,7 @@ def test_an_imported_variable_is_found_by_its_name(text: str, expected: bool) ->
         lib_dat=_LIB,
     )
     assert isinstance(seen.last, End)
-    told = [to_json(one.value) for one in seen.steps if isinstance(one, Event) and one.path]
+    told = [to_json(one.value) for one in seen.steps if isinstance(one, ExecutorEvent) and one.path]
     assert [expected] == told
 
 
@@ -150,7 +157,7 @@ def test_conditions_that_outlive_their_routine_find_no_variables(
     for make in _makers(_OUTLIVED.format(condition)):
         executor, world = make(None), StubWorld()
         seen: list[bool | str] = []
-        codes: list[Code] = []
+        codes: list[CodeHandle] = []
         request = executor.advance()
         while not isinstance(request, End):
             if isinstance(request, DeclareInterrupt):
@@ -162,7 +169,7 @@ def test_conditions_that_outlive_their_routine_find_no_variables(
         assert [while_it_runs, afterwards] == seen
 
 
-def _evaluated(executor: Executor, condition: Code) -> bool | str:
+def _evaluated(executor: Executor, condition: CodeHandle) -> bool | str:
     """The value of a condition while all outputs are TRUE, or the fault that it ends with."""
     try:
         return bool(executor.evaluate(condition, lambda _path: True))

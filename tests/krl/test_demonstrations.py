@@ -8,7 +8,7 @@ import pytest
 from interp.controller.input_script import Script
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared, available
-from interp.session import Run, Setup, run_program
+from interp.session import RunResult, RunSetup, run_program
 from krl.program_loading import load_program
 
 PROGRAMS = Path(__file__).parents[2] / "corpus" / "programs"
@@ -17,21 +17,21 @@ WAYS = [("tree", "none"), ("vm", "kinematic"), (available()[-1], "mujoco")]
 PARTS = 3
 
 
-def run(name: str, executor: str, robot: str, submit: str | None = None) -> Run:
+def run(name: str, executor: str, robot: str, submit: str | None = None) -> RunResult:
     file = PROGRAMS / name / "R1" / "Program" / f"{name}.src"
     script = Script.read(file.with_suffix(".io").read_text(encoding="utf-8"), f"{name}.io")
-    setup = Setup(executor, robot, script=script, submit=submit, is_full=True)  # type: ignore[arg-type]
+    setup = RunSetup(executor, robot, script=script, submit=submit, is_full=True)  # type: ignore[arg-type]
     return run_program(Prepared(load_program(file, strict=True)[0]), setup)
 
 
 @pytest.fixture(scope="module")
-def search() -> Run:
+def search() -> RunResult:
     """The search on the reference."""
     return run("search_demo", "tree", "none", "count_parts")
 
 
 @pytest.fixture(scope="module")
-def paper() -> Run:
+def paper() -> RunResult:
     """The example of the paper on the reference."""
     return run("paper_example", "tree", "none")
 
@@ -49,7 +49,9 @@ def outputs(events: Sequence[TraceEvent], number: int) -> list[tuple[int, bool]]
 
 
 @pytest.mark.parametrize(("executor", "robot"), WAYS[1:])
-def test_traces_are_the_same(search: Run, paper: Run, executor: str, robot: str) -> None:
+def test_traces_are_the_same(
+    search: RunResult, paper: RunResult, executor: str, robot: str
+) -> None:
     """Every executor and robot gives the trace of the tree without a robot, to the last line."""
     if robot == "mujoco":
         pytest.importorskip("mujoco")
@@ -61,21 +63,21 @@ def test_traces_are_the_same(search: Run, paper: Run, executor: str, robot: str)
         assert [event.line() for event in one.events] == [event.line() for event in other.events]
 
 
-def test_output_comes_20_ms_after_the_motion_starts(paper: Run) -> None:
+def test_output_comes_20_ms_after_the_motion_starts(paper: RunResult) -> None:
     """The trigger of the paper's example switches 20 ms after its motion has started, to the µs."""
     assert "end" == paper.outcome.ending
     second = of(paper.events, "motion_start")[1]
     assert (second.time + 20_000, True) == outputs(paper.events, 2)[0]
 
 
-def test_paper_example_is_blended(paper: Run) -> None:
+def test_paper_example_is_blended(paper: RunResult) -> None:
     """The line C_DIS of the paper's example goes over into the PTP behind it without a stop."""
     kinds = [event.kind for event in paper.events if event.kind.startswith("blend")]
     assert ["blend_start", "blend_apex", "blend_end"] == kinds
     assert [3] == [event.fields["motion"] for event in of(paper.events, "blend_apex")]
 
 
-def test_search_brakes_and_resumes(search: Run) -> None:
+def test_search_brakes_and_resumes(search: RunResult) -> None:
     """Each search ends by the interrupt: it brakes, goes back to its level, and moves no more."""
     assert "end" == search.outcome.ending
     assert PARTS == len(of(search.events, "brake")) == len(of(search.events, "resume"))
@@ -89,7 +91,7 @@ def test_search_brakes_and_resumes(search: Run) -> None:
     assert PARTS == len(started - ended)
 
 
-def test_part_is_found_where_it_was_touched(search: Run) -> None:
+def test_part_is_found_where_it_was_touched(search: RunResult) -> None:
     """The place that is taken is that of the touch, from which the arm has gone on a little."""
     found = [
         event.fields["value"]["Z"]
@@ -99,7 +101,7 @@ def test_part_is_found_where_it_was_touched(search: Run) -> None:
     assert [pytest.approx(255.0, abs=2.0)] * PARTS == found
 
 
-def test_triggers_on_the_blended_path(search: Run) -> None:
+def test_triggers_on_the_blended_path(search: RunResult) -> None:
     """The nozzle opens 60 mm before the blended point and closes 30 ms behind its blend."""
     events, blow = search.events, outputs(search.events, 3)
     assert [True, False] * PARTS == [value for _, value in blow]
@@ -110,7 +112,7 @@ def test_triggers_on_the_blended_path(search: Run) -> None:
         assert any(opened < apex < closed for apex in apexes)
 
 
-def test_submit_program_counts(search: Run) -> None:
+def test_submit_program_counts(search: RunResult) -> None:
     """The submit program shows 1, 2, 3 on its outputs, while the robot's program goes on."""
     counted = [event for event in of(search.events, "out") if event.fields["number"] in (11, 12)]
     assert {"submit"} == {event.task for event in counted}
@@ -122,6 +124,6 @@ def test_submit_program_counts(search: Run) -> None:
     assert [1] == shown[:1]
 
 
-def test_nothing_is_told(search: Run, paper: Run) -> None:
+def test_nothing_is_told(search: RunResult, paper: RunResult) -> None:
     """Neither program makes the controller tell a message."""
     assert [] == of(search.events, "message") + of(paper.events, "message")

@@ -26,7 +26,7 @@ from interp.bytecode.vm.threaded_code import Threads
 from interp.port.events import Sink
 from interp.port.executor import Reader
 from interp.port.inspection import Seen
-from interp.port.requests import Code, Crash, End, Fail, Request, Value, Write
+from interp.port.requests import CodeHandle, Crash, End, Fail, Request, Value, Write
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
@@ -151,7 +151,7 @@ class Machine:
             self._final = request
         return request
 
-    def enter(self, code: Code) -> None:
+    def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program goes on.
 
         It finds no variables where the routine that handed it over has ended.
@@ -168,7 +168,7 @@ class Machine:
         counter.guard = Guard.OFF
         self._open = _Open(self._threads.entries[number])
 
-    def evaluate(self, code: Code, read: Reader) -> Value:
+    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition; raises `interp.values.faults.Fault`."""
         state = self._state
         number, serial = self._parts_of(code, CodeKind.CONDITION)
@@ -292,7 +292,7 @@ class Machine:
         """The routine that the program began with has ended."""
         self._state.request = self._final = End(self._services.at())
 
-    def _parts_of(self, code: Code, kind: CodeKind) -> tuple[int, int]:
+    def _parts_of(self, code: CodeHandle, kind: CodeKind) -> tuple[int, int]:
         """The number of the code object, and the serial of the frame it was handed out in."""
         serial, number = divmod(code.number, len(self._program.codes))
         if self._program.codes[number].kind is not kind:

@@ -21,7 +21,7 @@ from interp.bytecode.program import (
     inputs_of,
 )
 from interp.port import requests
-from interp.port.requests import At, Code, Value
+from interp.port.requests import At, CodeHandle, Value
 
 __all__ = ["Makers", "Part"]
 
@@ -36,7 +36,7 @@ def _nothing(_inputs: Sequence[Value | None], _at: At) -> None:
 class Makers:
     """Makes the functions that make requests; ``handle_of`` gives a code object in this frame."""
 
-    def __init__(self, program: Program, handle_of: Callable[[int], Code]) -> None:
+    def __init__(self, program: Program, handle_of: Callable[[int], CodeHandle]) -> None:
         self._program = program
         self._handle_of = handle_of
 

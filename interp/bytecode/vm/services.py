@@ -19,7 +19,7 @@ from interp.port import requests
 from interp.port.events import Sink, wanting
 from interp.port.inspection import Seen
 from interp.port.requests import At, MoveEmily, Request, Slice, Value, Write
-from interp.port.requests import Code as HandedOver
+from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Limits
 from interp.values.builtins import FUNCTIONS, Surroundings, call
 from interp.values.faults import BudgetExhausted, LinkError

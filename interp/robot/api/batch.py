@@ -8,7 +8,7 @@ found late too, when the arm is asked for the batch, and then none of it is exec
 
 from __future__ import annotations
 
-from interp.robot.api.commands import Command, MotionCommand, State, Transaction
+from interp.robot.api.commands import Command, CommandState, MotionCommand, Transaction
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.arm import Arm
 from interp.values.faults import Fault
@@ -81,7 +81,7 @@ class BatchCore(ControlCore):
         held, self._held = self._held, []
         for command in (command for transaction in held for command in transaction.commands):
             if not command.state.is_over:
-                self._finish(command, State.CANCELLED, "cancelled")
+                self._finish(command, CommandState.CANCELLED, "cancelled")
 
     def _joins(self, transaction: Transaction) -> bool:
         held = {command for one in self._held for command in one.commands}

@@ -29,13 +29,13 @@ __all__ = [
     "CallCommand",
     "Command",
     "CommandError",
+    "CommandState",
     "CoreEvent",
     "Effect",
     "Event",
     "Link",
     "MotionCommand",
     "OutputCommand",
-    "State",
     "Transaction",
     "WaitCommand",
     "What",
@@ -64,7 +64,7 @@ class CommandError(Exception):
     """Commands or links make no sense together; the text is one line for a person."""
 
 
-class State(Enum):
+class CommandState(Enum):
     """How far a command is."""
 
     CREATED = "created"
@@ -77,14 +77,14 @@ class State(Enum):
     @property
     def is_over(self) -> bool:
         """Whether nothing can happen to the command any more."""
-        return self in {State.ENDED, State.CANCELLED, State.FAILED}
+        return self in {CommandState.ENDED, CommandState.CANCELLED, CommandState.FAILED}
 
 
 @dataclass(slots=True, eq=False)
 class Command:
     """Something to do once. Its state is changed by the control core only."""
 
-    state: State = field(default=State.CREATED, init=False)
+    state: CommandState = field(default=CommandState.CREATED, init=False)
 
     @property
     def started(self) -> Event:

@@ -18,13 +18,13 @@ from interp.robot.api.commands import (
     CallCommand,
     Command,
     CommandError,
+    CommandState,
     CoreEvent,
     Effect,
     Event,
     Link,
     MotionCommand,
     OutputCommand,
-    State,
     Transaction,
     WaitCommand,
     What,
@@ -98,7 +98,7 @@ class ControlCore:
         motions = [command for command in first if isinstance(command, MotionCommand)]
         self._plan_all(at, motions)
         for command in transaction.commands:
-            command.state = State.LINKED
+            command.state = CommandState.LINKED
             if isinstance(command, MotionCommand):
                 self._last_number = command.motion.number
         for link in transaction.links:
@@ -139,8 +139,8 @@ class ControlCore:
     def complete(self, now: int, command: CallCommand) -> None:
         """The owner has done what it was called for; nothing if that was cancelled meanwhile."""
         self._advance(now)
-        if command.state is State.ACTIVE:
-            self._finish(command, State.ENDED, "ended")
+        if command.state is CommandState.ACTIVE:
+            self._finish(command, CommandState.ENDED, "ended")
             self._settle()
 
     def apply(self, now: int, effect: Effect, command: Command) -> None:
@@ -180,7 +180,7 @@ class ControlCore:
         self._drop_behind(list(self._behind))
         self._before.clear()
         for command in motions:
-            self._finish(command, State.CANCELLED, "cancelled")
+            self._finish(command, CommandState.CANCELLED, "cancelled")
         self._settle()
 
     def override(self, now: int, percent: float) -> None:
@@ -195,7 +195,7 @@ class ControlCore:
         mine = frozenset(transaction.commands)
         number = self._last_number
         for command in transaction.commands:
-            if command.state is not State.CREATED:
+            if command.state is not CommandState.CREATED:
                 raise CommandError(f"{command}: it was loaded before")
             if isinstance(command, MotionCommand):
                 if command.motion.number <= number:
@@ -206,10 +206,10 @@ class ControlCore:
 
     def _check_link(self, link: Link, mine: frozenset[Command]) -> None:
         for command in (link.event.command, link.command):
-            if command not in mine and command.state is State.CREATED:
+            if command not in mine and command.state is CommandState.CREATED:
                 raise CommandError(f"{link}: {command} is not loaded")
         cause = link.event.command
-        is_past = cause.state is State.ACTIVE and link.event.what == "started"
+        is_past = cause.state is CommandState.ACTIVE and link.event.what == "started"
         is_ahead = cause in self._behind.values() and link.event.what in _BEHIND
         if is_past or (cause.state.is_over and not is_ahead):
             raise CommandError(f"{link}: that can no longer happen")
@@ -235,8 +235,8 @@ class ControlCore:
     def _act_when_due(self) -> None:
         _, _, effect, command = heapq.heappop(self._due)
         if effect is None:  # a wait is over
-            if command.state is State.ACTIVE:
-                self._finish(command, State.ENDED, "ended")
+            if command.state is CommandState.ACTIVE:
+                self._finish(command, CommandState.ENDED, "ended")
             return
         if effect == "start":
             self._lose_chance(command, is_taken=True)
@@ -252,14 +252,14 @@ class ControlCore:
             return
         command = self._motions.get(event.motion) or self._behind.get(event.motion)
         if event.kind == "motion_start" and command is not None:
-            command.state = State.ACTIVE
+            command.state = CommandState.ACTIVE
         if event.kind != "motion_end" or command is None:
             self._tell(command, what, key=event.key, arm=event)
             return
         del self._motions[event.motion]
         self._behind[event.motion] = command
         self._drop_behind([self._before.pop(event.motion, 0)])
-        self._finish(command, State.ENDED, "ended", arm=event)
+        self._finish(command, CommandState.ENDED, "ended", arm=event)
         if not self._motions and self.arm.next_event() is None:
             self._drop_behind(list(self._behind))
 
@@ -267,14 +267,14 @@ class ControlCore:
 
     def _act(self, effect: Effect, command: Command) -> None:
         if effect == "start":
-            if command.state is State.LINKED and not self._is_planned(command):
+            if command.state is CommandState.LINKED and not self._is_planned(command):
                 self._begin(command)
-        elif command.state.is_over or command.state is State.CREATED:
+        elif command.state.is_over or command.state is CommandState.CREATED:
             return
         elif self._is_planned(command):
             self._end_path(is_hard=effect == "stop")
         else:
-            self._finish(command, State.CANCELLED, "cancelled")
+            self._finish(command, CommandState.CANCELLED, "cancelled")
 
     def _is_planned(self, command: Command) -> bool:
         return isinstance(command, MotionCommand) and command.motion.number in self._motions
@@ -286,7 +286,7 @@ class ControlCore:
             try:
                 self._plan_all(self.now, [command])
             except Fault as fault:
-                self._finish(command, State.FAILED, "failed", fault=fault)
+                self._finish(command, CommandState.FAILED, "failed", fault=fault)
                 return
         self._start(command)
 
@@ -313,16 +313,16 @@ class ControlCore:
             case MotionCommand():
                 return  # it is planned, and starts when the arm gets there
             case OutputCommand(path=path, value=value):
-                command.state = State.ACTIVE
+                command.state = CommandState.ACTIVE
                 self._tell(command, "started")
                 try:
                     self._switch(path, value, self.now)
                 except Fault as fault:
-                    self._finish(command, State.FAILED, "failed", fault=fault)
+                    self._finish(command, CommandState.FAILED, "failed", fault=fault)
                 else:
-                    self._finish(command, State.ENDED, "ended")
+                    self._finish(command, CommandState.ENDED, "ended")
             case _:
-                command.state = State.ACTIVE
+                command.state = CommandState.ACTIVE
                 self._tell(command, "started")
                 if isinstance(command, WaitCommand):
                     self._schedule(command.duration, None, command)
@@ -331,14 +331,14 @@ class ControlCore:
         """There is one path: to end one of its motions is to end all of them."""
         self._is_ending = True
         self.arm.brake(self.now, is_hard)
-        is_moving = any(one.state is State.ACTIVE for one in self._motions.values())
+        is_moving = any(one.state is CommandState.ACTIVE for one in self._motions.values())
         if not is_moving or self.arm.next_event() is None:
             self.discard(self.now)
 
     def _finish(
         self,
         command: Command,
-        state: State,
+        state: CommandState,
         what: What,
         *,
         arm: ArmEvent | None = None,
@@ -396,17 +396,17 @@ class ControlCore:
         if left is None:
             return
         self._chances[command] = left - 1
-        if is_taken or command.state is not State.LINKED:
+        if is_taken or command.state is not CommandState.LINKED:
             return
         if left == 1:
-            self._finish(command, State.CANCELLED, "cancelled")
+            self._finish(command, CommandState.CANCELLED, "cancelled")
             return
         while (stuck := self._stuck()) is not None:
-            self._finish(stuck, State.CANCELLED, "cancelled")
+            self._finish(stuck, CommandState.CANCELLED, "cancelled")
 
     def _stuck(self) -> Command | None:
         """The first of commands that wait for one another and for nothing else."""
-        waiting = [one for one in self._chances if one.state is State.LINKED]
+        waiting = [one for one in self._chances if one.state is CommandState.LINKED]
         coming = {command for _, _, effect, command in self._due if effect == "start"}
         starts = [
             (link.command, event.command)

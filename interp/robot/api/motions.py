@@ -10,7 +10,7 @@ from interp.port.requests import At
 from interp.robot.api.commands import MotionCommand
 from interp.robot.arm import Motion, Place, Settings
 
-__all__ = ["Motions"]
+__all__ = ["MotionFactory"]
 
 _MEMBERS: Final = frozenset(
     (*"XYZABCST", *(f"{letter}{number}" for letter in "AE" for number in range(1, 7)))
@@ -18,7 +18,7 @@ _MEMBERS: Final = frozenset(
 
 
 @dataclass(slots=True)
-class Motions:
+class MotionFactory:
     """Makes the commands of motions and numbers them in their order.
 
     A target names what it gives, in mm and degrees: ``x``, ``y``, ``z``, ``a``, ``b``, ``c``, ``s``

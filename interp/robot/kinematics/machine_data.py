@@ -29,9 +29,9 @@ __all__ = [
     "AxisKind",
     "CartesianLimits",
     "Dynamics",
-    "Link",
-    "Machine",
+    "MachineData",
     "MachineDataError",
+    "WristLink",
     "machine_of",
     "read_machine",
 ]
@@ -85,7 +85,7 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class WristLink:
     """Denavit-Hartenberg parameters between two wrist axes: mm and degrees."""
 
     a: float
@@ -103,7 +103,7 @@ class CartesianLimits:
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class MachineData:
     """An arm and its external axes, by the names that $machine.dat has for them.
 
     ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
@@ -120,8 +120,8 @@ class Machine:
     length_a: float
     length_b: float
     tx3p3: Pose
-    dh_4: Link
-    dh_5: Link
+    dh_4: WristLink
+    dh_5: WristLink
     tflwp: Pose
     coupling: Mapping[tuple[int, int], float]
     singul_pos: tuple[int, int, int]
@@ -150,7 +150,7 @@ class Machine:
         return self.axes[2].direction * math.degrees(math.atan2(up, forward))
 
 
-def read_machine(text: str, path: str = "") -> Machine:
+def read_machine(text: str, path: str = "") -> MachineData:
     """The machine that the text of a $machine.dat describes.
 
     Raises `MachineDataError`, and `interp.robot.kinematics.data_list.DataListError` for no data
@@ -159,7 +159,7 @@ def read_machine(text: str, path: str = "") -> Machine:
     return machine_of(read_data_list(text, path), path)
 
 
-def machine_of(values: Mapping[Key, Value], path: str = "") -> Machine:
+def machine_of(values: Mapping[Key, Value], path: str = "") -> MachineData:
     """The machine of the values of a $machine.dat; see `read_machine`."""
     return _Reader(values, path).machine()
 
@@ -171,7 +171,7 @@ class _Reader:
         self._values = values
         self._path = path
 
-    def machine(self) -> Machine:
+    def machine(self) -> MachineData:
         if ("$LENGTH_A",) not in self._values:
             raise self._error(
                 "no machine data of an arm, which has $LENGTH_A; it lies in R1/Mada, not in STEU"
@@ -188,7 +188,7 @@ class _Reader:
             if axis.kind is AxisKind.LINEAR:
                 raise self._error(f"{axis.name} is linear; an arm of six rotary axes is needed")
         count = min(max(self._integer("$EX_AX_NUM", default=0), 0), _MOST_EXTERNAL)
-        return Machine(
+        return MachineData(
             name=self._text("$TRAFONAME").removeprefix("#"),
             version=self._text("$V_R1MADA"),
             axes=axes,
@@ -273,10 +273,10 @@ class _Reader:
     def _singular(self, number: int) -> int:
         return self._integer(f"$SINGUL_POS[{number}]", default=0)
 
-    def _link(self, name: str, alpha: float) -> Link:
+    def _link(self, name: str, alpha: float) -> WristLink:
         members = self._members(name, default={"DHART_ALPHA": alpha})
         a, d, angle = (self._member(name, members, f"DHART_{part}") for part in ("A", "D", "ALPHA"))
-        return Link(a, d, angle)
+        return WristLink(a, d, angle)
 
     def _cartesian(self, name: str, default: CartesianLimits) -> CartesianLimits:
         members = self._members(name, default={})

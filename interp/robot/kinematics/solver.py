@@ -2,8 +2,8 @@
 
 Forward kinematics is the chain of `interp.robot.kinematics.machine_data`, step by step. Inverse
 kinematics is that of py-opw-kinematics (Brandstötter, Angerer, Hofbaur 2014), whose angles are
-those of an arm that stands upright at zero; `Arm` works out from the machine data how its angles
-follow from the axes.
+those of an arm that is upright at zero; `Kinematics` works out from the machine data how its
+angles follow from the axes.
 
 Arrays are of float64: ``(..., 6)`` for axes in degrees, ``(..., 4, 4)`` for homogeneous matrices
 with positions in mm. A pose is that of the flange in the frame of the robot's foot, $ROBROOT;
@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 from py_opw_kinematics import KinematicModel, RigidTransform, Robot
 
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine, MachineDataError
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 from interp.values.poses import Pose, sine_cosine
 
-__all__ = ["BRANCHES", "Arm", "Array", "matrix_of"]
+__all__ = ["BRANCHES", "Array", "Kinematics", "matrix_of"]
 
 Array = npt.NDArray[np.float64]
 
@@ -49,13 +49,13 @@ _FAR = 1e9
 _TOLERANCE = 1e-9  # degrees, or of a cosine
 
 
-class Arm:
+class Kinematics:
     """The kinematics of one machine.
 
     Raises `MachineDataError` for a wrist that is not central or whose axes are not square.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineData) -> None:
         self.machine = machine
         self._before = matrix_of(machine.tiroro)
         self._after = matrix_of(machine.tflwp)
@@ -202,7 +202,7 @@ class Arm:
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
         """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05].
 
-        1 where the wrist centre lies behind axis 1, 2 where A3 is not below `Machine.elbow`, 4
+        1 where the wrist centre lies behind axis 1, 2 where A3 is not below `MachineData.elbow`, 4
         where A5 is negative.
         """
         given = np.asarray(axes, dtype=np.float64)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.machine_data import Axis
-from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -77,7 +77,7 @@ def turn_of(axes: Sequence[float]) -> int:
     return sum(1 << place for place, value in enumerate(axes) if value < -_ZERO)
 
 
-def singularities(arm: Arm, axes: Sequence[float]) -> tuple[Singularity, ...]:
+def singularities(arm: Kinematics, axes: Sequence[float]) -> tuple[Singularity, ...]:
     """The singularities that six axes lie in [POS-08]."""
     found = {
         Singularity.OVERHEAD: float(arm.distance_to_axis_1(axes)) <= _OVERHEAD,
@@ -114,7 +114,7 @@ def check_path(axes: Sequence[Axis], path: Array) -> None:
 
 
 def solve(
-    arm: Arm,
+    arm: Kinematics,
     flange: Pose,
     *,
     status: int | None = None,
@@ -138,7 +138,7 @@ def solve(
 
 
 def solve_many(
-    arm: Arm, flanges: npt.ArrayLike, statuses: Sequence[int], turns: Sequence[int]
+    arm: Kinematics, flanges: npt.ArrayLike, statuses: Sequence[int], turns: Sequence[int]
 ) -> list[Solution]:
     """`solve` for poses of the flange ``(n, 4, 4)``, each with its Status and Turn."""
     ways = arm.inverse(flanges)
@@ -149,7 +149,7 @@ def solve_many(
 
 
 def ptp_target(
-    arm: Arm,
+    arm: Kinematics,
     flange: Pose,
     start: Sequence[float],
     *,
@@ -173,7 +173,7 @@ def ptp_target(
     return found
 
 
-def follow(arm: Arm, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
+def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
     """Axes ``(n, 6)`` along a path of flange poses ``(n, 4, 4)``, unbroken from ``start`` on.
 
     Status and Turn result from the path [POS-01, POS-02]: each sample takes the way nearest to the
@@ -194,7 +194,7 @@ def follow(arm: Arm, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
 
 
 def _choose(
-    arm: Arm,
+    arm: Kinematics,
     ways: Array,
     status: int | None,
     turn: int | None,
@@ -217,7 +217,7 @@ def _choose(
     return Solution(axes, int(arm.status(axes)), turn_of(axes), singularities(arm, axes))
 
 
-def _have_status(arm: Arm, ways: Array, status: int) -> npt.NDArray[np.bool_]:
+def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bool_]:
     """Which ways ``(n, 6)`` have a Status; in a singularity its bit says nothing."""
     free = 1 * (arm.distance_to_axis_1(ways) <= _OVERHEAD)
     free |= 2 * (np.abs(ways[:, 2] - arm.machine.elbow) <= _ZERO)
@@ -226,7 +226,7 @@ def _have_status(arm: Arm, ways: Array, status: int) -> npt.NDArray[np.bool_]:
     return have
 
 
-def _fit(arm: Arm, way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
+def _fit(arm: Kinematics, way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
     """A way with each axis turned so that it lies within its limits, or ``None``."""
     fitted = []
     for place, (axis, value) in enumerate(zip(arm.machine.axes, way, strict=True)):
@@ -263,7 +263,7 @@ def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[flo
 
 
 def _settled_wrist(
-    arm: Arm, found: Solution, a4: float, turn: int | None, start: Sequence[float]
+    arm: Kinematics, found: Solution, a4: float, turn: int | None, start: Sequence[float]
 ) -> Solution:
     """A straight wrist with axis 4 at an angle of choice; as it was where axis 6 cannot follow."""
     axes = arm.machine.axes
@@ -290,7 +290,7 @@ def _one_way(ways: Array, start: Array) -> Array | None:
     return path[1:] if bool((steps < _SAME_WAY).all()) else None
 
 
-def _nearest_ways(arm: Arm, ways: Array, start: Array) -> Array:
+def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:
     """The path sample by sample; passes straight wrists, where axis 4 stays as it is."""
     path = np.empty((len(ways), 6))
     before = start

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from interp.robot.kinematics.machine_data import Machine, read_machine
+from interp.robot.kinematics.machine_data import MachineData, read_machine
 
 __all__ = ["DEFAULT", "default_machine", "model_file"]
 
@@ -23,7 +23,7 @@ def model_file(name: str) -> Path:
 
 
 @cache
-def default_machine() -> Machine:
+def default_machine() -> MachineData:
     """The machine of `DEFAULT`."""
     path = model_file(f"{DEFAULT}.dat")
     return read_machine(path.read_text(encoding="utf-8"), path.name)

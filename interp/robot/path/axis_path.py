@@ -17,22 +17,22 @@ from scipy.interpolate import CubicSpline
 
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import check_path, follow
-from interp.robot.path.pose_path import Course, poses_of
+from interp.robot.path.pose_path import PosePath, poses_of
 from interp.robot.path.uniform_spline import Table
 from interp.values.faults import Fault
 
 __all__ = [
     "BlendedAxes",
     "BlendedOthers",
-    "CourseCurve",
     "Curve",
     "InStep",
     "JointLine",
     "JointSpline",
     "Others",
     "Piecewise",
+    "PosePathCurve",
     "tool_positions",
 ]
 
@@ -47,7 +47,7 @@ class Curve(Protocol):
     """What the axes do along a path."""
 
     @property
-    def arm(self) -> Arm:
+    def arm(self) -> Kinematics:
         """The kinematics."""
         ...
 
@@ -57,7 +57,7 @@ class Curve(Protocol):
         ...
 
     @property
-    def course(self) -> Course | None:
+    def pose_path(self) -> PosePath | None:
         """The path of the tool, where that is what was programmed."""
         ...
 
@@ -158,11 +158,11 @@ class Piecewise:
 class JointSpline:
     """All axes along a part of a spline through several positions: PTP spline blocks."""
 
-    arm: Arm
+    arm: Kinematics
     placement: Placement
     part: Piecewise
 
-    course = None
+    pose_path = None
     is_straight = False
 
     @cached_property
@@ -189,12 +189,12 @@ class JointSpline:
 class JointLine:
     """All axes in step from one position to another: PTP [MOT-01]."""
 
-    arm: Arm
+    arm: Kinematics
     placement: Placement
     start: Array
     end: Array
 
-    course = None
+    pose_path = None
     is_straight = True
 
     @property
@@ -224,11 +224,11 @@ class BlendedAxes:
     second: Curve
     after: float
 
-    course = None
+    pose_path = None
     is_straight = False
 
     @property
-    def arm(self) -> Arm:
+    def arm(self) -> Kinematics:
         """See `Curve.arm`."""
         return self.first.arm
 
@@ -261,23 +261,28 @@ class BlendedAxes:
         return _blended_rates(self, u)
 
 
-class CourseCurve:
-    """The axes along a course, unbroken from ``start`` on; Turn results from the path [POS-02].
+class PosePathCurve:
+    """The axes along a path, unbroken from ``start`` on; Turn results from the path [POS-02].
 
     ``start`` are the six axes of the robot; ``others`` what the external ones do. Raises `Fault`:
-    1366, 1447 or 1211 where the course cannot be followed, 1102 where it leads through a
+    1366, 1447 or 1211 where the path cannot be followed, 1102 where it leads through a
     singularity that would make an axis jump.
     """
 
     is_straight = False
 
     def __init__(
-        self, arm: Arm, placement: Placement, course: Course, start: Array, others: Others
+        self,
+        arm: Kinematics,
+        placement: Placement,
+        pose_path: PosePath,
+        start: Array,
+        others: Others,
     ) -> None:
         self.arm = arm
         self.placement = placement
-        self.course: Course | None = course
-        self._course = course
+        self.pose_path: PosePath | None = pose_path
+        self._pose_path = pose_path
         self._before = matrix_of(placement.before)
         self._after = matrix_of(placement.after)
         self.others = others
@@ -311,7 +316,7 @@ class CourseCurve:
         return follow(self.arm, flanges, start.tolist()) if axes is None else axes
 
     def _flanges(self, u: Array) -> Array:
-        poses = poses_of(self._course, u)
+        poses = poses_of(self._pose_path, u)
         if self.placement.mode is IpoMode.TCP:
             poses = _inverted(poses)
         flanges: Array = self._before @ poses @ self._after
@@ -354,8 +359,8 @@ def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> tuple[Array,
 
 def tool_positions(curve: Curve, u: Array) -> Array:
     """Where the tool is in the base, or with a fixed tool the base in the tool: mm, ``(n, 3)``."""
-    if curve.course is not None:
-        return curve.course.at(u)[0]
+    if curve.pose_path is not None:
+        return curve.pose_path.at(u)[0]
     flanges = curve.arm.forward(curve.axes(u)[:, :ROBOT_AXES])
     placement = curve.placement
     points = matrix_of(placement.before.inverse()) @ flanges @ matrix_of(placement.tool)

@@ -1,7 +1,7 @@
-"""Courses: paths of poses, told in the frame in which they are programmed.
+"""Paths of poses, given in the frame in which they are programmed.
 
-A course is pure geometry. Its parameter u runs from 0 to 1 and grows in step with the way along
-it; only in blends and splines does the way a unit of u takes vary. What an arm makes of a course is
+A path is pure geometry. Its parameter u runs from 0 to 1 and grows in step with the way along
+it; only in blends and splines does the way a unit of u takes vary. What an arm makes of a path is
 `interp.robot.path.axis_path`. Positions are mm, arrays ``(n, 3)``; rotations are ``(n, 3, 3)``.
 """
 
@@ -17,14 +17,14 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation
 
-__all__ = ["Arc", "Blend", "Course", "Line", "Way", "poses_of"]
+__all__ = ["Arc", "Blend", "PosePath", "StraightLine", "Way", "poses_of"]
 
 #: Nodes and weights of Gauss on 0 to 1, which integrate polynomials of degree 9 exactly.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
 _PARTS = 32
 
 
-class Course(Protocol):
+class PosePath(Protocol):
     """A path of poses."""
 
     @property
@@ -61,7 +61,7 @@ class Course(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Line:
+class StraightLine:
     """A straight line; ``points`` are its ends."""
 
     start: Array
@@ -71,29 +71,29 @@ class Line:
 
     @property
     def points(self) -> Array:
-        """See `Course.points`."""
+        """See `PosePath.points`."""
         return np.stack((self.start, self.end))
 
     @property
     def length(self) -> float:
-        """See `Course.length`."""
+        """See `PosePath.length`."""
         return float(np.linalg.norm(self.end - self.start))
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `Course.angles`."""
+        """See `PosePath.angles`."""
         return self.orientation.swivel, self.orientation.rotation
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `Course.at`."""
+        """See `PosePath.at`."""
         return self.start + u[:, None] * (self.end - self.start), self.orientation.at(u)
 
     def tangents(self, u: Array) -> Array:
-        """See `Course.tangents`."""
+        """See `PosePath.tangents`."""
         return np.broadcast_to(self.end - self.start, (len(u), 3))
 
     def distances(self, u: Array) -> Array:
-        """See `Course.distances`."""
+        """See `PosePath.distances`."""
         return u * self.length
 
 
@@ -107,26 +107,26 @@ class Arc:
 
     @property
     def points(self) -> Array:
-        """See `Course.points`."""
+        """See `PosePath.points`."""
         start, end = self.circle.at(np.array([0.0, 1.0]))
         return np.stack((start, self.circle.centre, end))
 
     @property
     def length(self) -> float:
-        """See `Course.length`."""
+        """See `PosePath.length`."""
         return self.circle.length
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `Course.angles`."""
+        """See `PosePath.angles`."""
         return self.orientation.swivel, self.orientation.rotation
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `Course.at`."""
+        """See `PosePath.at`."""
         return self.circle.at(u), self.orientation.at(u)
 
     def tangents(self, u: Array) -> Array:
-        """See `Course.tangents`."""
+        """See `PosePath.tangents`."""
         circle = self.circle
         phi = (u * circle.angle)[:, None]
         onward = np.cos(phi) * circle.second - np.sin(phi) * circle.first
@@ -134,23 +134,23 @@ class Arc:
         return tangents
 
     def distances(self, u: Array) -> Array:
-        """See `Course.distances`."""
+        """See `PosePath.distances`."""
         return u * self.length
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """From one course into the next around the point P between them [BLD-12].
+    """From one path into the next around the point P between them [BLD-12].
 
     ``first(1 - before·(1 - u)²) - P + second(after·u²)``, and the same with rotations. It leaves
-    the first course at ``1 - before`` and joins the second at ``after``, tangent to both. Between
+    the first path at ``1 - before`` and joins the second at ``after``, tangent to both. Between
     straight lines that is a parabola; its ``points`` are those of the quadratic Bézier curve:
-    where it leaves the first course, P, and where it joins the second.
+    where it leaves the first path, P, and where it joins the second.
     """
 
-    first: Course
+    first: PosePath
     before: float
-    second: Course
+    second: PosePath
     after: float
     kind: str = "BLEND"
 
@@ -159,24 +159,24 @@ class Blend:
 
     @property
     def points(self) -> Array:
-        """See `Course.points`."""
+        """See `PosePath.points`."""
         leaves, _ = self.first.at(np.array([1.0 - self.before, 1.0]))
         joins, _ = self.second.at(np.array([self.after]))
         return np.concatenate((leaves, joins))
 
     @property
     def length(self) -> float:
-        """See `Course.length`."""
+        """See `PosePath.length`."""
         return float(self.distances(np.ones(1))[0])
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `Course.angles`."""
+        """See `PosePath.angles`."""
         (a, b), (c, d) = self.first.angles, self.second.angles
         return a * self.before + c * self.after, b * self.before + d * self.after
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `Course.at`."""
+        """See `PosePath.at`."""
         one, other = self._parameters(u)
         (*before, corner), (*turned, turn) = self.first.at(np.append(one, 1.0))
         behind, onward = self.second.at(other)
@@ -184,7 +184,7 @@ class Blend:
         return np.array(before) - corner + behind, rotations
 
     def tangents(self, u: Array) -> Array:
-        """See `Course.tangents`."""
+        """See `PosePath.tangents`."""
         one, other = self._parameters(u)
         leaving = (2.0 * self.before * (1.0 - u))[:, None] * self.first.tangents(one)
         joining = (2.0 * self.after * u)[:, None] * self.second.tangents(other)
@@ -192,7 +192,7 @@ class Blend:
         return tangents
 
     def distances(self, u: Array) -> Array:
-        """See `Course.distances`."""
+        """See `PosePath.distances`."""
         return Way(self.tangents).at(u)
 
 
@@ -237,9 +237,9 @@ class Way:
         return integrals
 
 
-def poses_of(course: Course, u: Array) -> Array:
+def poses_of(pose_path: PosePath, u: Array) -> Array:
     """Homogeneous matrices ``(n, 4, 4)``."""
     poses = np.zeros((len(u), 4, 4))
-    poses[:, :3, 3], poses[:, :3, :3] = course.at(u)
+    poses[:, :3, 3], poses[:, :3, :3] = pose_path.at(u)
     poses[:, 3, 3] = 1.0
     return poses

@@ -20,9 +20,9 @@ from scipy.spatial.transform import Rotation, RotationSpline
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, angle_between, turning
-from interp.robot.path.pose_path import Arc, Course, Line, Way
+from interp.robot.path.pose_path import Arc, PosePath, StraightLine, Way
 
-__all__ = ["Free", "Knot", "Segment", "chains_of", "courses_of"]
+__all__ = ["Free", "Knot", "Segment", "chains_of", "pose_paths_of"]
 
 _BEND = 1e-6  # radians between tangents that count as one
 _SHORT = 1e-3  # mm of path below which the tool does little but turn, and stands on either side
@@ -58,12 +58,12 @@ class Segment:
             return self.circle.length
         return float(np.linalg.norm(self.end.position - self.start.position))
 
-    def shape(self) -> Line | Arc:
+    def shape(self) -> StraightLine | Arc:
         """The line or arc of an exact segment."""
         keeps = turning(self.start.rotation, self.start.rotation)
         if self.circle is not None:
             return Arc(self.circle, keeps)
-        return Line(self.start.position, self.end.position, keeps)
+        return StraightLine(self.start.position, self.end.position, keeps)
 
     def tangent(self, u: float) -> Array:
         """The unit tangent of an exact segment."""
@@ -115,7 +115,7 @@ class Free:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `interp.robot.path.pose_path.Course.angles`: here the greatest rate over u."""
+        """See `interp.robot.path.pose_path.PosePath.angles`: here the greatest rate over u."""
         return self._orientation.swivel, self._orientation.rotation
 
     def turned(self, orientation: Orientation) -> Free:
@@ -125,18 +125,18 @@ class Free:
         return other
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `interp.robot.path.pose_path.Course.at`."""
+        """See `interp.robot.path.pose_path.PosePath.at`."""
         powers = self._own(u)[:, None] ** np.arange(6)
         return powers @ self._coefficients, self._orientation.at(u)
 
     def tangents(self, u: Array) -> Array:
-        """See `interp.robot.path.pose_path.Course.tangents`."""
+        """See `interp.robot.path.pose_path.PosePath.tangents`."""
         slopes = self._slopes(self._own(u))
         tangents: Array = slopes / np.linalg.norm(slopes, axis=1)[:, None] * self.length
         return tangents
 
     def distances(self, u: Array) -> Array:
-        """See `interp.robot.path.pose_path.Course.distances`."""
+        """See `interp.robot.path.pose_path.PosePath.distances`."""
         return u * self.length
 
     def _own(self, u: Array) -> Array:
@@ -161,16 +161,18 @@ def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
     return chains
 
 
-def courses_of(chain: Sequence[Segment], *, is_constant: bool = False) -> list[Course]:
-    """The courses of the segments of one chain, unbroken; with ``is_constant`` nothing turns."""
+def pose_paths_of(chain: Sequence[Segment], *, is_constant: bool = False) -> list[PosePath]:
+    """The paths of the segments of one chain, unbroken; with ``is_constant`` nothing turns."""
     if chain[0].chord < _SHORT:
         start, end = chain[0].start, chain[0].end
         turned = start.rotation if is_constant else end.rotation
         return [
-            Line(start.position, start.position, turning(start.rotation, turned), chain[0].kind)
+            StraightLine(
+                start.position, start.position, turning(start.rotation, turned), chain[0].kind
+            )
         ]
     still = turning(chain[0].start.rotation, chain[0].start.rotation)
-    shapes: list[Line | Arc | Free] = []
+    shapes: list[StraightLine | Arc | Free] = []
     place = 0
     while place < len(chain):
         if chain[place].is_exact:
@@ -194,12 +196,12 @@ def courses_of(chain: Sequence[Segment], *, is_constant: bool = False) -> list[C
     ]
 
 
-def _turned(shape: Line | Arc | Free, orientation: Orientation, kind: str) -> Course:
+def _turned(shape: StraightLine | Arc | Free, orientation: Orientation, kind: str) -> PosePath:
     if isinstance(shape, Free):
         return shape.turned(orientation)
     if isinstance(shape, Arc):
         return Arc(shape.circle, orientation, kind)
-    return Line(shape.start, shape.end, orientation, kind)
+    return StraightLine(shape.start, shape.end, orientation, kind)
 
 
 def _is_corner(before: Segment, segment: Segment) -> bool:

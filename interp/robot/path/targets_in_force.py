@@ -15,7 +15,7 @@ import numpy as np
 from interp.robot.arm import Motion, Target
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm, Array
+from interp.robot.kinematics.solver import Array, Kinematics
 from interp.robot.kinematics.targets import Singularity, TargetStatus, check_limits, ptp_target
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -62,7 +62,7 @@ class Programmed:
     in other frames the components are those of the same place there (unconfirmed).
     """
 
-    arm: Arm
+    arm: Kinematics
     axes: Array
     components: tuple[float, ...] | None = None
     placement: Placement | None = None

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import ptp_target
-from interp.robot.path.axis_path import CourseCurve, Others
-from interp.robot.path.pose_path import Course, poses_of
+from interp.robot.path.axis_path import Others, PosePathCurve
+from interp.robot.path.pose_path import PosePath, poses_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -26,16 +26,21 @@ _LONGEST = 20.0  # degrees of one step of Newton's
 _ROUNDS = 30
 
 
-class WristCurve(CourseCurve):
-    """The axes along the positions of a course, with the orientation that the wrist gives.
+class WristCurve(PosePathCurve):
+    """The axes along the positions of a path, with the orientation that the wrist gives.
 
     Raises `Fault` 2829 where the end cannot be reached in the configuration of the start.
     """
 
     def __init__(
-        self, arm: Arm, placement: Placement, course: Course, start: Array, others: Others
+        self,
+        arm: Kinematics,
+        placement: Placement,
+        pose_path: PosePath,
+        start: Array,
+        others: Others,
     ) -> None:
-        (end,) = poses_of(course, np.ones(1))
+        (end,) = poses_of(pose_path, np.ones(1))
         try:
             goal = ptp_target(arm, placement.flange(Pose.from_matrix(end.tolist())), start.tolist())
         except Fault as error:
@@ -43,9 +48,9 @@ class WristCurve(CourseCurve):
             raise Fault("configuration", text, number=2829, rules=("ORI-03",)) from error
         self._from, self._to = start, np.array(goal.axes)
         self._tool = matrix_of(placement.tool)
-        super().__init__(arm, placement, course, start, others)
-        #: The orientation is not that of the course, so that only the axes can be blended.
-        self.course = None
+        super().__init__(arm, placement, pose_path, start, others)
+        #: The orientation is not that of the path, so that only the axes can be blended.
+        self.pose_path = None
 
     def _along(self, u: Array, start: Array) -> Array:
         return self._beside(u, start + u[:, None] * (self._to - self._from))
@@ -53,7 +58,7 @@ class WristCurve(CourseCurve):
     def _beside(self, u: Array, references: Array) -> Array:
         axes = references.copy()
         axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
-        positions, _ = self._course.at(u)
+        positions, _ = self._pose_path.at(u)
         wanted = positions @ self._before[:3, :3].T + self._before[:3, 3]
         shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))
         for _ in range(_ROUNDS):

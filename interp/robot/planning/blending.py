@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Approximation, Motion
-from interp.robot.kinematics.machine_data import ROBOT_AXES, CartesianLimits, Machine
+from interp.robot.kinematics.machine_data import ROBOT_AXES, CartesianLimits, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_path
-from interp.robot.path.axis_path import BlendedAxes, BlendedOthers, CourseCurve, Curve
+from interp.robot.path.axis_path import BlendedAxes, BlendedOthers, Curve, PosePathCurve
 from interp.robot.path.pose_path import Blend, Way
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of
 from interp.robot.planning.profile import Bounds, ramp
@@ -86,7 +86,7 @@ def zone_of(first: Track, second: Track) -> Zone | None:
 
 
 def blend_of(
-    first: Track, second: Track, zone: Zone, machine: Machine, limits: AxisLimits
+    first: Track, second: Track, zone: Zone, machine: MachineData, limits: AxisLimits
 ) -> tuple[Curve, Ceiling]:
     """The blend of a zone, and how fast it may be travelled.
 
@@ -96,8 +96,12 @@ def blend_of(
     """
     axes = first.axis_limits.widest(second.axis_limits)
     one, other = first.pieces[-1].curve, second.pieces[0].curve
-    course = _common_course(first, second, zone)
-    if course is None or not isinstance(one, CourseCurve) or not isinstance(other, CourseCurve):
+    pose_path = _common_pose_path(first, second, zone)
+    if (
+        pose_path is None
+        or not isinstance(one, PosePathCurve)
+        or not isinstance(other, PosePathCurve)
+    ):
         curve: Curve = BlendedAxes(one, zone.before, other, zone.after)
         if not (one.is_straight and other.is_straight):  # a parabola keeps between its points
             check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
@@ -105,14 +109,14 @@ def blend_of(
     else:
         (start,) = one.axes(np.array([1.0 - zone.before]))
         others = BlendedOthers(one.others, zone.before, other.others, zone.after)
-        curve = CourseCurve(one.arm, one.placement, course, start[:ROBOT_AXES], others)
-        paths = _path_limits(first, second, course, machine)
+        curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
+        paths = _path_limits(first, second, pose_path, machine)
     return curve, ceiling_of(curve, limits, axes, paths, _SHARE)
 
 
-def _common_course(first: Track, second: Track, zone: Zone) -> Blend | None:
+def _common_pose_path(first: Track, second: Track, zone: Zone) -> Blend | None:
     """The blend of two paths of the tool, if both are such and in the same frames."""
-    one, other = first.pieces[-1].curve.course, second.pieces[0].curve.course
+    one, other = first.pieces[-1].curve.pose_path, second.pieces[0].curve.pose_path
     if one is None or other is None:
         return None
     if first.motion.settings.placement != second.motion.settings.placement:
@@ -130,12 +134,12 @@ def _piece(track: Track, *, at_end: bool) -> Piece:
 def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: bool) -> float:
     """The share of a path of the tool; all of it where there is nothing to measure by."""
     curve = _piece(track, at_end=at_end).curve
-    course = curve.course
-    if course is None and criterion not in {"C_VEL", "C_ORI"}:
+    pose_path = curve.pose_path
+    if pose_path is None and criterion not in {"C_VEL", "C_ORI"}:
         return _way_share(curve, max(values.cdis, 0.0), at_end=at_end)
-    length = course.length if course is not None else 0.0
+    length = pose_path.length if pose_path is not None else 0.0
     if criterion == "C_ORI":
-        angles = course.angles if course is not None else (0.0, 0.0)
+        angles = pose_path.angles if pose_path is not None else (0.0, 0.0)
         length, size = math.degrees(max(angles)), values.cori
     elif criterion == "C_VEL":
         return _braking_share(track, values.cvel / 100.0, at_end=at_end)
@@ -192,11 +196,11 @@ def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
 
 
 def _path_limits(
-    first: Track, second: Track, course: Blend, machine: Machine
+    first: Track, second: Track, pose_path: Blend, machine: MachineData
 ) -> Sequence[PathLimits]:
     """As fast as the faster of both, and with no more path acceleration than the machine's."""
     grid = np.linspace(0.0, 1.0, 65)
-    tangents = course.tangents(grid)
+    tangents = pose_path.tangents(grid)
     fastest = float(np.linalg.norm(tangents, axis=1).max())
     sharpest = float(np.linalg.norm(np.gradient(tangents, grid, axis=0), axis=1).max())
     most: CartesianLimits = machine.acceleration
@@ -211,7 +215,7 @@ def _path_limits(
 
 
 def _tool_limits(
-    first: Track, second: Track, curve: Curve, machine: Machine
+    first: Track, second: Track, curve: Curve, machine: MachineData
 ) -> Sequence[PathLimits]:
     """Beside a path of the tool, or in T1, a blend of axes is no faster than the path or T1."""
     sides = (first.pieces[-1], second.pieces[0])

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from interp.robot.planning.profile import Profile, standing
-from interp.robot.planning.schedule import State, Step, braking, schedule
+from interp.robot.planning.profile import SpeedProfile, standing
+from interp.robot.planning.schedule import GearedStretch, PathState, braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
-__all__ = ["Journey"]
+__all__ = ["PathExecution"]
 
 _THERE = 1e-9
 """Of u: a section whose rest is shorter has been travelled."""
@@ -17,10 +17,10 @@ _INSTANT = 2e-9
 """Seconds by which whole microseconds may fall short of what happens in them."""
 
 #: A section and a step of it; ``None`` for a motion of no length.
-Entry = tuple[Section, Step | None]
+Entry = tuple[Section, GearedStretch | None]
 
 
-class Journey:
+class PathExecution:
     """Lays the legs of a timeline. Times are seconds; a route is what lies ahead at a time.
 
     What was travelled before a time is never touched.
@@ -82,7 +82,7 @@ class Journey:
         leg = self._under_way(time)
         if leg is None or leg.section.key != route[0].key:
             begins, u = self._waiting(route[0], time)
-            return self._lay(route, State(u, 0.0, 0.0), begins, None, override, is_strict)
+            return self._lay(route, PathState(u, 0.0, 0.0), begins, None, override, is_strict)
         time = max(time, leg.begins)
         laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
         if laid:
@@ -138,7 +138,7 @@ class Journey:
     def _lay(
         self,
         route: Sequence[Section],
-        state: State,
+        state: PathState,
         begins: float,
         leg: Leg | None,
         override: float,
@@ -153,7 +153,7 @@ class Journey:
         planned = None
         if leg is not None and steps and _goes_on(leg, steps[0], override):
             planned = leg.state(leg.ends).speed
-        profiles: list[Profile | None] | None = []
+        profiles: list[SpeedProfile | None] | None = []
         if steps:
             profiles = schedule(steps, state, override, planned=planned, is_strict=is_strict)
         if profiles is None:
@@ -195,21 +195,21 @@ def _ramp_down(
     return begins, legs
 
 
-def _steps(entries: Sequence[Entry]) -> list[Step]:
+def _steps(entries: Sequence[Entry]) -> list[GearedStretch]:
     return [step for _, step in entries if step is not None]
 
 
-def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], State]:
+def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:
     """What of a route is left when a leg has ended, and the state there."""
     speed = leg.state(leg.ends).speed
     if route[0].key != leg.section.key or leg.last < route[0].end - _THERE:
-        return tuple(route), State(leg.last, speed, 0.0)
+        return tuple(route), PathState(leg.last, speed, 0.0)
     rest = list(route[1:])
     while rest and rest[0].is_used_up:
         speed *= rest.pop(0).gear
     if not rest:
-        return (), State(leg.last, 0.0, 0.0)
-    return tuple(rest), State(rest[0].start, speed * rest[0].gear, 0.0)
+        return (), PathState(leg.last, 0.0, 0.0)
+    return tuple(rest), PathState(rest[0].start, speed * rest[0].gear, 0.0)
 
 
 def _entries(route: Sequence[Section], start: float) -> list[Entry]:
@@ -232,7 +232,7 @@ def _entries(route: Sequence[Section], start: float) -> list[Entry]:
     return entries
 
 
-def _goes_on(leg: Leg, step: Step, override: float) -> bool:
+def _goes_on(leg: Leg, step: GearedStretch, override: float) -> bool:
     """Whether the leg under way is one with all the bounds that are in force now."""
     own, other = leg.stretch, step.stretch
     is_whole = leg.last >= own.end - _THERE

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, Machine
+from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve
 from interp.robot.planning.profile import Bounds
@@ -131,7 +131,7 @@ class Ceiling:
         return tuple(part for part in parts if part.end > part.start)
 
 
-def axis_limits(machine: Machine) -> AxisLimits:
+def axis_limits(machine: MachineData) -> AxisLimits:
     """What the machine data allow [MOT-05, MOT-06]."""
     known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
     return AxisLimits(

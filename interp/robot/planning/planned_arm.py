@@ -15,12 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
 from interp.robot.path.targets_in_force import Programmed, check_numbers, check_start
 from interp.robot.planning.blending import blend_of, zone_of
-from interp.robot.planning.execution import Journey
+from interp.robot.planning.execution import PathExecution
 from interp.robot.planning.path_events import Passage, events_of
 from interp.robot.planning.spline_blocks import block
 from interp.robot.planning.timeline import (
@@ -68,13 +68,13 @@ class _Mark:
 class PlannedArm:
     """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
 
-    ``start`` are the axes as `Machine.standing` takes them. With ``is_selected`` the first motion
-    has to be a PTP that leaves nothing open [MOT-10]. Raises `Fault` 1447 for a start beyond a
-    software limit switch, 1443 for a first motion that is not allowed as such.
+    ``start`` are the axes as `MachineData.standing` takes them. With ``is_selected`` the first
+    motion has to be a PTP that leaves nothing open [MOT-10]. Raises `Fault` 1447 for a start beyond
+    a software limit switch, 1443 for a first motion that is not allowed as such.
     """
 
     def __init__(
-        self, machine: Machine, start: Sequence[float], *, is_selected: bool = True
+        self, machine: MachineData, start: Sequence[float], *, is_selected: bool = True
     ) -> None:
         self._tracks = Tracks(machine)
         axes = np.array(machine.standing(start))
@@ -83,7 +83,7 @@ class PlannedArm:
         #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
         self._brakes: list[_Plan | None] = []
         self._timeline = Timeline(axes)
-        self._journey = Journey(self._timeline)
+        self._execution = PathExecution(self._timeline)
         self._override = 1.0
         self._stopped: ArmEvent | None = None
         self._has_begun = not is_selected
@@ -155,9 +155,9 @@ class PlannedArm:
         if zone is None or body.number != passage.number:
             return False
         leaves = 1.0 - zone.before
-        reached = self._journey.reached(body, self._now * MICROSECOND)
+        reached = self._execution.reached(body, self._now * MICROSECOND)
         if self._override == 0.0:  # it may brake still
-            reached = max(reached, self._journey.stood_at(body))
+            reached = max(reached, self._execution.stood_at(body))
         if leaves < body.start or reached > leaves:
             return False
         try:
@@ -290,7 +290,7 @@ class PlannedArm:
     def path(self) -> tuple[Leg, ...]:
         """The legs of path from the first that is remembered to the last that is planned.
 
-        Each has its `Section` with the curve: its parameters, for a path of the tool its course
+        Each has its `Section` with the curve: its parameters, for a path of the tool its path
         with kind and control points, and when it is travelled.
         """
         return tuple(self._timeline.legs)
@@ -341,7 +341,7 @@ class PlannedArm:
     def discard(self, now: int) -> None:
         """See `interp.robot.arm.Arm.discard`."""
         self._observe(now)
-        is_moving = self._journey.is_moving(now * MICROSECOND)
+        is_moving = self._execution.is_moving(now * MICROSECOND)
         if is_moving and not self._is_braked:
             self._halt(self._override or 1.0, is_hard=False)
             self._tell_stop()
@@ -376,7 +376,7 @@ class PlannedArm:
         """Time has gone on: what was travelled is no longer ahead."""
         self._now = max(self._now, now)
         route = self._plan.route
-        ahead = self._journey.ahead(route, self._now * MICROSECOND)
+        ahead = self._execution.ahead(route, self._now * MICROSECOND)
         if len(ahead) < len(route):
             self._plan = replace(self._plan, route=ahead)
 
@@ -385,7 +385,7 @@ class PlannedArm:
         if not plan.route:
             return plan.programmed.axes
         section = plan.route[0]
-        axes: Array = section.curve.axes(np.array([self._journey.stood_at(section)]))[0]
+        axes: Array = section.curve.axes(np.array([self._execution.stood_at(section)]))[0]
         return axes
 
     def _reschedule(self, route: Sequence[Section], *, new_behind: Section | None = None) -> bool:
@@ -397,18 +397,18 @@ class PlannedArm:
         if self._override == 0.0:
             return True
         time = self._now * MICROSECOND
-        return self._journey.go(route, time, self._override, new_behind=new_behind)
+        return self._execution.go(route, time, self._override, new_behind=new_behind)
 
     def _halt(self, override: float, *, is_hard: bool) -> None:
         """Stop on the path."""
         self._agenda = None
-        self._journey.halt(self._plan.route, self._now * MICROSECOND, override, is_hard=is_hard)
+        self._execution.halt(self._plan.route, self._now * MICROSECOND, override, is_hard=is_hard)
 
     def _stop_from(self, time: float) -> tuple[Key, float] | None:
         """Where a brake at a time would end; ``None`` where the arm stands then."""
         if self._is_braked:
             return None
-        return self._journey.stop_from(self._plan.route, time, self._override or 1.0)
+        return self._execution.stop_from(self._plan.route, time, self._override or 1.0)
 
 
 def _sections(track: Track) -> tuple[Section, ...]:

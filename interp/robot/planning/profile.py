@@ -17,7 +17,7 @@ import ruckig
 
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Bounds", "Profile", "Ramp", "ramp", "standing", "stop", "travel"]
+__all__ = ["Bounds", "Ramp", "SpeedProfile", "ramp", "standing", "stop", "travel"]
 
 _SLACK = 1e-7
 """Share of a length within which speeding up or braking all the way is what fills it."""
@@ -36,7 +36,7 @@ class Bounds:
     jerk: float
 
 
-class Profile:
+class SpeedProfile:
     """Cubics one after the other, each with its start: time, position, speed, acceleration, jerk.
 
     It begins at time 0 and position 0.
@@ -119,12 +119,12 @@ class Profile:
             dt = following
         return origin + dt
 
-    def stretched(self, length: float) -> Profile:
+    def stretched(self, length: float) -> SpeedProfile:
         """The same with its end at a length that differs in rounding only."""
         if self.length <= 0.0:
             return self
         share = length / self.length
-        other = Profile(0.0, ())
+        other = SpeedProfile(0.0, ())
         other.knots = [
             (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
         ]
@@ -182,7 +182,7 @@ def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ra
 
 def travel(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds
-) -> Profile:
+) -> SpeedProfile:
     """The quickest way over a length, from a speed and acceleration to a target speed.
 
     The acceleration is zero in the end. The caller has seen by `ramp` that it can be done; where
@@ -190,7 +190,7 @@ def travel(
     """
     direct = ramp(speed, acceleration, target, bounds)
     if direct.distance >= length * (1.0 - _SLACK):
-        return Profile(speed, _lasting(direct.pieces)).stretched(length)
+        return SpeedProfile(speed, _lasting(direct.pieces)).stretched(length)
     found = _solved(length, speed, acceleration, target, bounds)
     misses = found is None or abs(found.length - length) > _EXACT * length
     if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
@@ -198,19 +198,19 @@ def travel(
     return found.stretched(length)
 
 
-def stop(speed: float, acceleration: float, bounds: Bounds) -> Profile:
+def stop(speed: float, acceleration: float, bounds: Bounds) -> SpeedProfile:
     """The quickest way to stand still, however far that is."""
-    return Profile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
+    return SpeedProfile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
 
 
-def standing(duration: float) -> Profile:
+def standing(duration: float) -> SpeedProfile:
     """No motion at all."""
-    return Profile(0.0, ((duration, 0.0, 0.0),))
+    return SpeedProfile(0.0, ((duration, 0.0, 0.0),))
 
 
 def _solved(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds
-) -> Profile | None:
+) -> SpeedProfile | None:
     """What Ruckig finds, if anything.
 
     It is asked in units in which the speed is at most 1, since its tolerances are absolute.
@@ -238,12 +238,12 @@ def _solved(
         *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
         *zip(solved.t, solved.a[:-1], solved.j, strict=True),
     ]
-    return Profile(speed, _lasting((t, a * unit, jerk * unit) for t, a, jerk in pieces))
+    return SpeedProfile(speed, _lasting((t, a * unit, jerk * unit) for t, a, jerk in pieces))
 
 
 def _searched(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds
-) -> Profile:
+) -> SpeedProfile:
     """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
 
     def parts(cruise: float) -> tuple[Ramp, Ramp]:
@@ -263,7 +263,7 @@ def _searched(
         low, ramps = target, (ramp(speed, acceleration, target, bounds), _NONE)
     rest = max(length - sum(part.distance for part in ramps), 0.0)
     cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
-    return Profile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
+    return SpeedProfile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
 
 
 def _lasting(

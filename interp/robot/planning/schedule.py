@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from interp.robot.planning.limits import Stretch
-from interp.robot.planning.profile import Bounds, Profile, ramp, stop, travel
+from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
 
-__all__ = ["AtRest", "State", "Step", "braking", "schedule"]
+__all__ = ["AtRest", "GearedStretch", "PathState", "braking", "schedule"]
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may fill, so that rounding never makes one impossible."""
@@ -23,7 +23,7 @@ _SAME = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class GearedStretch:
     """A stretch, and by what its speed differs from that of the one before.
 
     Both count speeds in units of their own parameter; ``gear`` times the one before is that of this
@@ -35,7 +35,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class PathState:
     """Where on the first stretch, with what speed and acceleration, all per unit of u."""
 
     u: float
@@ -43,17 +43,17 @@ class State:
     acceleration: float
 
 
-AtRest = State(0.0, 0.0, 0.0)
+AtRest = PathState(0.0, 0.0, 0.0)
 
 
 def schedule(
-    steps: Sequence[Step],
-    state: State,
+    steps: Sequence[GearedStretch],
+    state: PathState,
     override: float,
     *,
     planned: float | None = None,
     is_strict: bool = False,
-) -> list[Profile | None] | None:
+) -> list[SpeedProfile | None] | None:
     """A profile for each step from a state on, to stand still in the end of the last.
 
     Positions of a profile are u from its start times `Stretch.size`. ``planned`` is the speed at
@@ -64,7 +64,7 @@ def schedule(
     """
     bounds = [step.stretch.bounds(override) for step in steps]
     allowed = _allowed(steps, bounds)
-    profiles: list[Profile | None] = []
+    profiles: list[SpeedProfile | None] = []
     for place, (step, bound) in enumerate(zip(steps, bounds, strict=True)):
         stretch = step.stretch
         length = stretch.end - state.u
@@ -84,13 +84,13 @@ def schedule(
             profiles.append(_profile(state, length, out, bound, stretch.size))
         if place + 1 < len(steps):
             following = steps[place + 1]
-            state = State(following.stretch.start, out * following.gear, 0.0)
+            state = PathState(following.stretch.start, out * following.gear, 0.0)
     return profiles
 
 
 def braking(
-    steps: Sequence[Step], state: State, override: float, *, is_hard: bool
-) -> list[Profile] | None:
+    steps: Sequence[GearedStretch], state: PathState, override: float, *, is_hard: bool
+) -> list[SpeedProfile] | None:
     """Profiles that stand still as soon as can be; the last ends within its step.
 
     ``None`` where the acceleration cannot be taken back on the first step.
@@ -111,11 +111,11 @@ def braking(
         profiles.append(_profile(state, length, out, bound, size))
         if place + 1 < len(steps):
             following = steps[place + 1]
-            state = State(following.stretch.start, out * following.gear, 0.0)
+            state = PathState(following.stretch.start, out * following.gear, 0.0)
     return profiles
 
 
-def _allowed(steps: Sequence[Step], bounds: Sequence[Bounds]) -> list[float]:
+def _allowed(steps: Sequence[GearedStretch], bounds: Sequence[Bounds]) -> list[float]:
     """The greatest speed at the end of each step from which all that follows can be braked for."""
     allowed = [0.0] * len(steps)
     for place in range(len(steps) - 1, 0, -1):
@@ -128,7 +128,9 @@ def _allowed(steps: Sequence[Step], bounds: Sequence[Bounds]) -> list[float]:
     return allowed
 
 
-def _out(state: State, length: float, allowed: float, bound: Bounds, size: float) -> float | None:
+def _out(
+    state: PathState, length: float, allowed: float, bound: Bounds, size: float
+) -> float | None:
     """The speed in which a stretch ends: at best the allowed one, else the nearest that can be.
 
     Lower where that can be; ``None`` where not even the acceleration can be taken back.
@@ -187,7 +189,9 @@ def _sized(bound: Bounds, size: float) -> Bounds:
     return Bounds(bound.velocity * size, bound.acceleration * size, bound.jerk * size)
 
 
-def _profile(state: State, length: float, out: float, bound: Bounds, size: float) -> Profile:
+def _profile(
+    state: PathState, length: float, out: float, bound: Bounds, size: float
+) -> SpeedProfile:
     return travel(
         length * size,
         state.speed * size,

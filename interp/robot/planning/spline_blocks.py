@@ -19,8 +19,8 @@ from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.kinematics.targets import check_path
 from interp.robot.path.axis_path import InStep, JointLine, JointSpline, Others, Piecewise
 from interp.robot.path.circle import circle_through
-from interp.robot.path.pose_path import Course
-from interp.robot.path.spline import Knot, Segment, chains_of, courses_of
+from interp.robot.path.pose_path import PosePath
+from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.limits import ceiling_of
 from interp.robot.planning.spline_ranges import with_ranges
@@ -111,14 +111,14 @@ def _pieces(
     number = 0
     for row in chains_of(segments):
         chain = _kept(row, segments[0].start) if keeps else row
-        courses = courses_of(chain, is_constant=keeps)
+        pose_paths = pose_paths_of(chain, is_constant=keeps)
         travelled = externals[number : number + len(chain) + 1]
-        for place, course in enumerate(courses):
+        for place, pose_path in enumerate(pose_paths):
             settings = motion.parts[number].settings or motion.settings
             # Wrist axes in step would change their speed at each point, so they are not [ORI-03].
             settings = replace(settings, orientation="#VAR")
-            others = _others(courses, travelled, place)
-            length = max(course.length, *np.degrees(course.angles))
+            others = _others(pose_paths, travelled, place)
+            length = max(pose_path.length, *np.degrees(pose_path.angles))
             if (
                 length < _STILL
                 and np.abs(travelled[place + 1] - travelled[place]).max(initial=0.0) < _STILL
@@ -126,9 +126,9 @@ def _pieces(
                 piece = tracks.still(np.concatenate((axes, travelled[place])), settings)
             else:
                 check_path(tracks.machine.externals, others.at(_CLOSE))
-                piece = tracks.along(course, axes, others, "SPL", settings)
+                piece = tracks.along(pose_path, axes, others, "SPL", settings)
                 if place:
-                    piece = replace(piece, gear=courses[place - 1].length / course.length)
+                    piece = replace(piece, gear=pose_paths[place - 1].length / pose_path.length)
                 axes = piece.curve.end[:ROBOT_AXES]
             pieces.append(piece)
             number += 1
@@ -147,13 +147,13 @@ def _kept(chain: Sequence[Segment], first: Knot) -> list[Segment]:
     ]
 
 
-def _others(courses: Sequence[Course], externals: Array, place: int) -> Others:
+def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> Others:
     """The external axes along a segment: a spline over the length of the chain."""
-    if len(courses) == 1 or not externals.shape[1]:
+    if len(pose_paths) == 1 or not externals.shape[1]:
         return InStep(externals[place], externals[place + 1])
-    knots = np.cumsum([0.0, *(course.length for course in courses)])
+    knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
     spline = CubicSpline(knots, externals, bc_type="natural")
-    return Piecewise(spline, float(knots[place]), courses[place].length)
+    return Piecewise(spline, float(knots[place]), pose_paths[place].length)
 
 
 def _knot(pose: Pose) -> Knot:

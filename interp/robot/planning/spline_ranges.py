@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from interp.robot.arm import Motion, SplineRange
+from interp.port.requests import SplineRange
+from interp.robot.arm import Motion
 from interp.robot.kinematics.solver import Array
 from interp.robot.planning.limits import Ceiling, Stretch
-from interp.robot.planning.profile import Profile
-from interp.robot.planning.schedule import AtRest, Step, schedule
+from interp.robot.planning.profile import SpeedProfile
+from interp.robot.planning.schedule import AtRest, GearedStretch, schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
 
@@ -205,7 +206,7 @@ def _slower(piece: Piece, share: float) -> Piece:
 # ---------------------------------------------------------------------------------------- shared
 
 
-def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, Profile]]:
+def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedProfile]]:
     """The stretches of a block travelled from rest to rest: number of the piece, and how."""
     numbers, steps = [], []
     for number, piece in enumerate(pieces):
@@ -213,7 +214,7 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, Profile]
             continue
         for place, stretch in enumerate(piece.ceiling.stretches):
             numbers.append(number)
-            steps.append(Step(stretch, 1.0 if place else piece.gear))
+            steps.append(GearedStretch(stretch, 1.0 if place else piece.gear))
     profiles = schedule(steps, AtRest, 1.0) or []
     for number, step, profile in zip(numbers, steps, profiles, strict=True):
         if profile is not None:
@@ -221,8 +222,8 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, Profile]
 
 
 def _length(piece: Piece) -> float:
-    course = piece.curve.course
-    return course.length if course is not None else 0.0
+    pose_path = piece.curve.pose_path
+    return pose_path.length if pose_path is not None else 0.0
 
 
 def _broken(number: int, text: str) -> Fault:

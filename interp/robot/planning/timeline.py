@@ -16,8 +16,8 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, tool_positions
 from interp.robot.path.pose_path import Way
 from interp.robot.planning.limits import Ceiling, Stretch
-from interp.robot.planning.profile import Profile
-from interp.robot.planning.schedule import State, Step
+from interp.robot.planning.profile import SpeedProfile
+from interp.robot.planning.schedule import GearedStretch, PathState
 
 __all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros", "tool_tangents"]
 
@@ -60,10 +60,12 @@ class Section:
         """Whether the blends on either side have left nothing of a motion."""
         return self.end - self.start <= _NOTHING and not self.is_still
 
-    def steps(self, start: float) -> list[Step]:
+    def steps(self, start: float) -> list[GearedStretch]:
         """The stretches from a parameter on; at the start of the section its gear counts."""
         parts = () if self.is_used_up else self.ceiling.between(start, self.end)
-        return [Step(part, 1.0 if place else self.gear) for place, part in enumerate(parts)]
+        return [
+            GearedStretch(part, 1.0 if place else self.gear) for place, part in enumerate(parts)
+        ]
 
     @cached_property
     def way(self) -> Way:
@@ -80,7 +82,7 @@ class Leg:
 
     section: Section
     stretch: Stretch
-    profile: Profile
+    profile: SpeedProfile
     begins: float
     ends: float
 
@@ -90,12 +92,12 @@ class Leg:
         position, speed, acceleration = self.profile.at(np.minimum(times, self.ends) - self.begins)
         return self.stretch.start + position / size, speed / size, acceleration / size
 
-    def state(self, time: float) -> State:
+    def state(self, time: float) -> PathState:
         """The state at a time."""
         position, speed, acceleration = self.profile.state(min(time, self.ends) - self.begins)
         stretch = self.stretch
         u = min(stretch.start + position / stretch.size, stretch.end)
-        return State(u, max(speed, 0.0) / stretch.size, acceleration / stretch.size)
+        return PathState(u, max(speed, 0.0) / stretch.size, acceleration / stretch.size)
 
     @property
     def last(self) -> float:
@@ -230,8 +232,8 @@ def micros(seconds: float) -> int:
 
 def tool_tangents(curve: Curve, u: Array) -> Array:
     """Positions of the tool differentiated by u, ``(n, 3)`` in mm."""
-    if curve.course is not None:
-        return curve.course.tangents(u)
+    if curve.pose_path is not None:
+        return curve.pose_path.tangents(u)
     middle = np.clip(u, _NEAR, 1.0 - _NEAR)
     both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
     tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)

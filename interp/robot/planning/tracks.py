@@ -9,20 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Settings, Target
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.path.axis_path import (
-    CourseCurve,
     Curve,
     InStep,
     JointLine,
     Others,
+    PosePathCurve,
     tool_positions,
 )
 from interp.robot.path.circle import Circle, circle_through
 from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
-from interp.robot.path.pose_path import Arc, Course, Line
+from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
@@ -97,9 +97,9 @@ class Track:
 class Tracks:
     """Makes tracks for one arm."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineData) -> None:
         self.machine = machine
-        self.arm = Arm(machine)
+        self.arm = Kinematics(machine)
         self.limits = axis_limits(machine)
         self.every = (*machine.axes, *machine.externals)
 
@@ -147,8 +147,8 @@ class Tracks:
         start = matrix_of(placement.in_path(placement.point(before.flange)))
         point = self._point(motion, motion.target, before)
         end = matrix_of(placement.in_path(Pose.of(*point)))
-        course = Line(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
-        return self._along(motion, before, course, point)
+        pose_path = StraightLine(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
+        return self._along(motion, before, pose_path, point)
 
     def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         placement = motion.settings.placement
@@ -160,40 +160,40 @@ class Tracks:
         circle = circle_through(
             start[:3, 3], np.array(auxiliary.position), end[:3, 3], motion.angle
         )
-        course = Arc(circle, _along_circle(motion.settings, circle, start, end))
-        return self._along(motion, before, course, point)
+        pose_path = Arc(circle, _along_circle(motion.settings, circle, start, end))
+        return self._along(motion, before, pose_path, point)
 
     def _along(
-        self, motion: Motion, before: Programmed, course: Course, point: tuple[float, ...]
+        self, motion: Motion, before: Programmed, pose_path: PosePath, point: tuple[float, ...]
     ) -> tuple[Track, Programmed]:
-        """The track of a course; its last pose is the target, except for an angle of its own."""
+        """The track of a path; its last pose is the target, except for an angle of its own."""
         settings = motion.settings
         externals = before.externals(motion.target, motion.is_relative)
         travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
-        swivel, rotation = (math.degrees(angle) for angle in course.angles)
-        if max(course.length, swivel, rotation, travel) < _STILL:
+        swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
+        if max(pose_path.length, swivel, rotation, travel) < _STILL:
             track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
         others = InStep(before.axes[ROBOT_AXES:], externals)
-        piece = self.along(course, before.axes[:ROBOT_AXES], others, motion.kind, settings)
+        piece = self.along(pose_path, before.axes[:ROBOT_AXES], others, motion.kind, settings)
         track = Track(motion, (piece,), self.limits)
         axes = piece.curve.end
         reached = point if motion.angle is None else None
         return track, before.reached(axes, reached, settings.placement)
 
     def along(
-        self, course: Course, start: Array, others: Others, kind: str, settings: Settings
+        self, pose_path: PosePath, start: Array, others: Others, kind: str, settings: Settings
     ) -> Piece:
-        """The piece of a course from axes of the robot on. Raises `Fault`."""
+        """The piece of a path from axes of the robot on. Raises `Fault`."""
         curve: Curve
         if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
-            curve = WristCurve(self.arm, settings.placement, course, start, others)
-            paths = self.paths(settings, course.length, 0.0, 0.0, is_spline=kind[0] == "S")
+            curve = WristCurve(self.arm, settings.placement, pose_path, start, others)
+            paths = self.paths(settings, pose_path.length, 0.0, 0.0, is_spline=kind[0] == "S")
             self.check_speed(settings, curve, paths)
             return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
-        curve = CourseCurve(self.arm, settings.placement, course, start, others)
-        swivel, rotation = (math.degrees(angle) for angle in course.angles)
-        paths = self.paths(settings, course.length, swivel, rotation, is_spline=kind[0] == "S")
+        curve = PosePathCurve(self.arm, settings.placement, pose_path, start, others)
+        swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
+        paths = self.paths(settings, pose_path.length, swivel, rotation, is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
         return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
 

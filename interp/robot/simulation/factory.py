@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final, Literal
 
-from interp.robot.kinematics.machine_data import Machine
+from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.robot import KinematicRobot, NoRobot, Robot
 
 __all__ = ["ROBOTS", "RobotName", "make_robot"]
@@ -18,7 +18,7 @@ RobotName = Literal["none", "kinematic", "mujoco"]
 ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
 
 
-def make_robot(name: RobotName, machine: Machine, cycle: int) -> Robot:
+def make_robot(name: RobotName, machine: MachineData, cycle: int) -> Robot:
     """A robot by its name. Raises `ImportError` for ``mujoco`` where MuJoCo is not installed."""
     if name == "mujoco":
         from interp.robot.simulation.mujoco import MujocoRobot

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from mujoco import rollout
 
 from interp.robot.arm import Samples
-from interp.robot.kinematics.machine_data import AxisKind, Machine
+from interp.robot.kinematics.machine_data import AxisKind, MachineData
 from interp.robot.simulation.mujoco_model import TOUCH, Box, mjcf_of
 from interp.robot.simulation.robot import RobotFault, check_samples
 
@@ -54,7 +54,7 @@ class MujocoRobot:
     step = _STEP
     chunk = _CHUNK
 
-    def __init__(self, machine: Machine, boxes: Sequence[Box] = ()) -> None:
+    def __init__(self, machine: MachineData, boxes: Sequence[Box] = ()) -> None:
         _be_quiet()
         text = mjcf_of(machine, boxes)
         self._model = mujoco.MjModel.from_xml_string(text)

@@ -23,7 +23,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from interp.robot.kinematics.machine_data import Axis, AxisKind, Link, Machine
+from interp.robot.kinematics.machine_data import Axis, AxisKind, MachineData, WristLink
 from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["FLANGE", "TOUCH", "Box", "mjcf_of", "reach_of"]
@@ -77,13 +77,13 @@ class _Body:
     shapes: tuple[_Shape, ...]
 
 
-def reach_of(machine: Machine) -> float:
+def reach_of(machine: MachineData) -> float:
     """From axis 1 to the wrist centre of the stretched arm, in mm."""
     forward, aside, up = machine.tx3p3.position
     return abs(machine.length_a) + machine.length_b + math.hypot(forward, aside, up)
 
 
-def mjcf_of(machine: Machine, boxes: Sequence[Box] = ()) -> str:
+def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
     """The text of the model; joints are called as the axes are, and so are their actuators.
 
     Joints stand in the order of the axes, external ones last. An actuator gives its joint the
@@ -147,12 +147,12 @@ def mjcf_of(machine: Machine, boxes: Sequence[Box] = ()) -> str:
 # ---------------------------------------------------------------------------------------- the arm
 
 
-def _foot(machine: Machine) -> tuple[_Shape, ...]:
+def _foot(machine: MachineData) -> tuple[_Shape, ...]:
     middle = _scaled(machine.tiroro.position, 0.5)
     return (_Shape(_ORIGIN, middle, 0.105, 0.22, _DARK),)
 
 
-def _chain(machine: Machine) -> tuple[_Body, ...]:
+def _chain(machine: MachineData) -> tuple[_Body, ...]:
     forward, aside, up = machine.tx3p3.position
     inner = machine.tiroro.inverse()
     elbow = (0.0, aside, up)
@@ -197,12 +197,12 @@ def _chain(machine: Machine) -> tuple[_Body, ...]:
     )
 
 
-def _twisted(link: Link) -> Pose:
+def _twisted(link: WristLink) -> Pose:
     """A Denavit-Hartenberg step behind its turn about Z."""
     return Pose.of(z=link.d) @ Pose.of(x=link.a, c=link.alpha)
 
 
-def _nested(bodies: Sequence[_Body], machine: Machine, indent: str) -> list[str]:
+def _nested(bodies: Sequence[_Body], machine: MachineData, indent: str) -> list[str]:
     """The bodies, each within the one before it; the flange is in the last."""
     if not bodies:
         return [f'{indent}<site name="{FLANGE}" size="0.005" {_placed(machine.tflwp)}/>']
@@ -218,7 +218,7 @@ def _nested(bodies: Sequence[_Body], machine: Machine, indent: str) -> list[str]
     ]
 
 
-def _externals(machine: Machine) -> Iterable[str]:
+def _externals(machine: MachineData) -> Iterable[str]:
     reach = reach_of(machine)
     for number, axis in enumerate(machine.externals, start=1):
         pose = machine.robroot @ Pose.of(y=-1.2 * reach * number)
@@ -237,12 +237,12 @@ def _moved(axis: Axis) -> str:
     return f'type="hinge" axis="{_numbers((0.0, 0.0, float(axis.direction)))}"'
 
 
-def _mass(machine: Machine) -> float:
+def _mass(machine: MachineData) -> float:
     """Of the whole arm, in kg."""
     return _KNOWN_MASS * (reach_of(machine) / _KNOWN_REACH) ** 3
 
 
-def _middle(machine: Machine, reach: float) -> Point:
+def _middle(machine: MachineData, reach: float) -> Point:
     """What a camera looks at: in front of the foot, at the height of axis 2."""
     return (machine.robroot @ machine.tiroro @ Pose.of(x=0.2 * reach)).position
 
@@ -250,7 +250,7 @@ def _middle(machine: Machine, reach: float) -> Point:
 # --------------------------------------------------------------------------------------- the words
 
 
-def _geom(shape: _Shape, machine: Machine) -> str:
+def _geom(shape: _Shape, machine: MachineData) -> str:
     radius = _number(shape.radius * reach_of(machine) / 1000.0, 6)
     mass = _number(shape.mass * _mass(machine), 6)
     if math.dist(shape.start, shape.end) < 1.0:  # mm; too short for a capsule
@@ -260,7 +260,7 @@ def _geom(shape: _Shape, machine: Machine) -> str:
     return f'<geom {form} size="{radius}" mass="{mass}" rgba="{shape.colour}"/>'
 
 
-def _pedestal(machine: Machine) -> str:
+def _pedestal(machine: MachineData) -> str:
     x, y, z = machine.robroot.position
     reach = reach_of(machine)
     return (

@@ -14,10 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Arm
-from interp.robot.kinematics.machine_data import ROBOT_AXES, Machine
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm as Kinematics
-from interp.robot.kinematics.solver import matrix_of
+from interp.robot.kinematics.solver import Kinematics, matrix_of
 from interp.robot.simulation.robot import Robot, RobotFault
 
 __all__ = ["PathRecord", "Tracking"]
@@ -55,12 +54,12 @@ class PathRecord:
 class Tracking:
     """Sends the set-points of a path to a robot as time goes on.
 
-    ``start`` is where the arm stands at time 0, as `Machine.standing` takes it; ``cycle`` the
+    ``start`` is where the arm stands at time 0, as `MachineData.standing` takes it; ``cycle`` the
     interpolation cycle in µs, a multiple of the robot's step.
     """
 
     def __init__(
-        self, arm: Arm, robot: Robot, machine: Machine, cycle: int, start: Sequence[float]
+        self, arm: Arm, robot: Robot, machine: MachineData, cycle: int, start: Sequence[float]
     ) -> None:
         if robot.step and cycle % robot.step:
             raise ValueError(f"a cycle of {cycle} µs is no multiple of {robot.step} µs")

@@ -21,7 +21,7 @@ from typing import IO, TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.machine_data import AxisKind, Machine
+from interp.robot.kinematics.machine_data import AxisKind, MachineData
 from interp.robot.simulation.mujoco_model import Box, mjcf_of
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def frame_count(times: npt.NDArray[np.int64], frames_per_second: int = 25) -> in
 
 def write_video(
     path: Path,
-    machine: Machine,
+    machine: MachineData,
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
     *,
@@ -86,7 +86,7 @@ def check(path: Path) -> None:
 
 
 def _places(
-    machine: Machine,
+    machine: MachineData,
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
     frames_per_second: int,

@@ -68,13 +68,13 @@ def programs(
     from interp.bench.main_programs import main_programs, run_main, survey_profile
     from interp.controller.input_script import ScriptError
     from interp.executors import available
-    from interp.session import Setup
+    from interp.session import RunSetup
 
     check_files(json_file)
     origins: dict[str, list[Source]] = {}
     for origin, source in sources_below(programs_or_ours(paths)):
         origins.setdefault(origin, []).append(source)
-    setup = Setup(
+    setup = RunSetup(
         executor=executor.value if executor is not None else available()[-1],
         robot=robot.value,
         profile=survey_profile(),

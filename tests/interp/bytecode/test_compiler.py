@@ -28,7 +28,7 @@ from interp.bytecode.image.reader import read_image
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
-from interp.port.events import Event
+from interp.port.events import ExecutorEvent
 from interp.port.requests import Fail, Invoke, SetCyclicFlag, StopAdvance
 from interp.program.load import CheckedProgram, Limits, load
 from interp.tree import TreeExecutor
@@ -362,7 +362,7 @@ def test_formal_arrays_passed_on() -> None:
     )
     tree, machine = _observed(_loaded(text))
     assert None is difference(tree, machine)
-    assert 3 in [one.value for one in machine.steps if isinstance(one, Event)]
+    assert 3 in [one.value for one in machine.steps if isinstance(one, ExecutorEvent)]
 
 
 # ------------------------------------------------------------------------------ real programs

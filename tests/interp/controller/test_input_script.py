@@ -12,14 +12,14 @@ from interp.controller.input_script import (
     Answer,
     Asked,
     Assign,
-    At,
+    AtTime,
     Becomes,
     Halted,
     Press,
     Received,
+    ScriptStep,
     Send,
     Shown,
-    Step,
     Word,
 )
 
@@ -46,9 +46,9 @@ def test_language() -> None:
     script = Script.read(text)
     found = [(one.cause, one.delay, one.actions) for one in script.steps]
     assert [
-        (At(500_000), 0, (Assign(("$IN", 1), True), Assign(("$ANIN", 2), -0.4))),
-        (At(1_000_000), 0, (Assign(("$MODE_OP",), Word("T1")),)),
-        (At(2_000_000), 0, (Assign(("$IN", 1, "TO", 8), 17),)),
+        (AtTime(500_000), 0, (Assign(("$IN", 1), True), Assign(("$ANIN", 2), -0.4))),
+        (AtTime(1_000_000), 0, (Assign(("$MODE_OP",), Word("T1")),)),
+        (AtTime(2_000_000), 0, (Assign(("$IN", 1, "TO", 8), 17),)),
         (Becomes(("$OUT", 3), True), 200_000, (Assign(("$IN", 7), True),)),
         (Halted(), 1_000_000, (Press("START"),)),
         (Shown(1442), 0, (Press("CONFIRM"),)),
@@ -63,7 +63,8 @@ def test_language() -> None:
 def test_where_it_stands() -> None:
     """A step knows its line."""
     assert (
-        Step("io:2", At(0), 0, (Press("STOP"),)) == Script.read("\nt=0 press STOP", "io").steps[0]
+        ScriptStep("io:2", AtTime(0), 0, (Press("STOP"),))
+        == Script.read("\nt=0 press STOP", "io").steps[0]
     )
 
 

@@ -20,7 +20,7 @@ from interp.debugging import (
     Debugger,
     Go,
     Select,
-    Step,
+    StepCommand,
     Stop,
     Watch,
 )
@@ -103,7 +103,7 @@ class Script:
             if callable(command):
                 self.seen.append(command(debugger))
             else:
-                assert isinstance(command, Go | Step | Select | Backward)
+                assert isinstance(command, Go | StepCommand | Select | Backward)
                 return command
         return Go()
 
@@ -176,7 +176,7 @@ def test_a_program_does_the_same_under_a_debugger(name: str, per_slice: int) -> 
     make = make_of(name, program)
     alone, debugged = Recorder(), Recorder()
     expected = driven(make(limits, alone), StubWorld())
-    script = Script([Step("into")] * 20)
+    script = Script([StepCommand("into")] * 20)
     found = driven(Debugger(make, program, script, limits, debugged), StubWorld())
     assert expected == found
     assert alone.events == debugged.events
@@ -221,14 +221,14 @@ def test_lines_at_which_a_program_can_stop(debug: Any) -> None:
     expected = (4, 5, 6, 7, 8, 9, 10, 12, 14, 15, 16, 18, 19, 21, 22, 26, 27, 31, 32, 34)
     assert [expected] == script.seen
     text = "DEF MAIN()\nINT I\nI=0\nREPEAT\nI=I+1\nUNTIL I>1\nEND\n"
-    script, _ = debug(lambda debugger: debugger.lines("main.src"), *[Step()] * 9, text=text)
+    script, _ = debug(lambda debugger: debugger.lines("main.src"), *[StepCommand()] * 9, text=text)
     assert [(3, 4, 5, 6)] == script.seen
     assert [3, 4, 5, 6, 5, 6] == script.lines
 
 
 def test_pause(debug: Any) -> None:
     """A program that is asked to pause stops before its next statement, once."""
-    script, _ = debug(Step(), lambda debugger: debugger.pause(), Go())
+    script, _ = debug(StepCommand(), lambda debugger: debugger.pause(), Go())
     assert [("entry", 4), ("step", 5), ("pause", 6)] == [
         (one.reason, one.at.line) for one in script.stops
     ]
@@ -239,19 +239,19 @@ def test_pause(debug: Any) -> None:
 
 def test_step_into_follows_calls(debug: Any) -> None:
     """Step into stops at the first statement of what is called."""
-    script, _ = debug(*[Step("into")] * 7)
+    script, _ = debug(*[StepCommand("into")] * 7)
     assert [4, 5, 6, 7, 8, 26, 27, 9] == script.lines
 
 
 def test_step_over_stays_in_the_routine(debug: Any) -> None:
     """Step over stops at the next statement of the same routine."""
-    script, _ = debug(*[Step("over")] * 5)
+    script, _ = debug(*[StepCommand("over")] * 5)
     assert [4, 5, 6, 7, 8, 9] == script.lines
 
 
 def test_step_out_goes_back_to_the_caller(debug: Any) -> None:
     """Step out stops at the next statement of the caller."""
-    script, _ = debug(*[Step("into")] * 5, Step("out"))
+    script, _ = debug(*[StepCommand("into")] * 5, StepCommand("out"))
     assert [4, 5, 6, 7, 8, 26, 9] == script.lines
 
 
@@ -287,7 +287,7 @@ def test_what_is_seen_is_the_present_routine(debug: Any) -> None:
             debugger.value("A[1]")
         return f"{debugger.value('N')} {raised.value}"
 
-    script, _ = debug(*[Step("into")] * 5, tried)
+    script, _ = debug(*[StepCommand("into")] * 5, tried)
     assert ["1 A[1] is not known here"] == script.seen
 
 
@@ -311,7 +311,7 @@ def test_watch_on_data_of_a_data_list(debug: Any) -> None:
 def test_watch_on_local_data_is_of_its_activation(debug: Any) -> None:
     """A change by reference is seen back in the routine; a name of a callee is another variable."""
     script, _ = debug(
-        Step(),
+        StepCommand(),
         lambda debugger: debugger.watch("I"),
         lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 27)),
     )
@@ -335,7 +335,11 @@ def test_selection_skips_statements(debug: Any) -> None:
 def test_selection_goes_back(debug: Any) -> None:
     """A line that was passed can be selected: its statements are executed once more."""
     script, _ = debug(
-        *[Step()] * 4, Select(4), *[Step()] * 4, Step(), lambda debugger: debugger.value("I")
+        *[StepCommand()] * 4,
+        Select(4),
+        *[StepCommand()] * 4,
+        StepCommand(),
+        lambda debugger: debugger.value("I"),
     )
     assert [4, 5, 6, 7, 8, 4, 5, 6, 7, 8, 9] == script.lines
     assert [2] == script.seen
@@ -344,7 +348,7 @@ def test_selection_goes_back(debug: Any) -> None:
 @pytest.mark.parametrize("line", [10, 12, 15])
 def test_selection_enters_blocks(debug: Any, line: int) -> None:
     """A statement within IF, ELSE or a loop can be selected; no condition is looked at."""
-    script, _ = debug(Step(), Select(line), Step())
+    script, _ = debug(StepCommand(), Select(line), StepCommand())
     assert [4, 5, line] == script.lines[:3]
     assert ({10: 14, 12: 14, 15: 16}[line]) == script.lines[3]
 
@@ -352,7 +356,7 @@ def test_selection_enters_blocks(debug: Any, line: int) -> None:
 def test_loop_entered_by_selection_goes_on_as_a_loop(debug: Any) -> None:
     """Behind its last statement a loop that was entered tests its condition."""
     script, _ = debug(
-        Step(),
+        StepCommand(),
         Select(16),
         lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 16)),
     )
@@ -365,7 +369,7 @@ def test_selection_out_of_a_loop(debug: Any) -> None:
         lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 19)),
         Go(),
         Select(5),
-        Step(),
+        StepCommand(),
     )
     assert [4, 19, 5, 6] == script.lines[:4]
 
@@ -468,7 +472,7 @@ END
 def test_steps_and_actions(name: str, way: Any, lines: list[int]) -> None:
     """An action that comes up meanwhile is stepped over, or into."""
     program, world = program_of(INTERRUPTED), StubWorld()
-    script = Script([Step(way)] * (len(lines) - 1))
+    script = Script([StepCommand(way)] * (len(lines) - 1))
     debugger = Debugger(make_of(name, program), program, script)
     action = None
     reply: Any = None

@@ -13,7 +13,7 @@ from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm.executor import Machine
 from interp.controller import Trace
 from interp.native import AVAILABLE
-from interp.port.events import EVERY_KIND, Event, Kind, Recorder
+from interp.port.events import EVERY_KIND, ExecutorEvent, Kind, Recorder
 from interp.port.executor import Executor
 from interp.port.requests import End, Request
 from interp.program.load import CheckedProgram, load
@@ -78,7 +78,7 @@ def _executor(name: str, program: CheckedProgram, verified: Verified, sink: Reco
     return Native(verified, "MAIN", sink=sink)
 
 
-def _run(executor: Executor, recorder: Recorder) -> tuple[list[Event], list[Request]]:
+def _run(executor: Executor, recorder: Recorder) -> tuple[list[ExecutorEvent], list[Request]]:
     world, requests = StubWorld(), [executor.advance()]
     while not isinstance(requests[-1], End):
         requests.append(executor.advance(world.reply(requests[-1])))

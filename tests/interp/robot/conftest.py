@@ -10,8 +10,8 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
-from interp.robot.kinematics.machine_data import Machine, read_machine
-from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.machine_data import MachineData, read_machine
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.planning.planned_arm import PlannedArm
 
 LIMITS = ((-170, 170), (-190, 45), (-120, 156), (-350, 350), (-125, 125), (-350, 350))
@@ -42,13 +42,13 @@ def machine_text() -> Callable[..., str]:
 
 
 @pytest.fixture
-def make_arm(machine_text: Callable[..., str]) -> Callable[..., Arm]:
+def make_arm(machine_text: Callable[..., str]) -> Callable[..., Kinematics]:
     """An arm of the machine data with lines of one's own."""
-    return lambda *lines: Arm(read_machine(machine_text(*lines)))
+    return lambda *lines: Kinematics(read_machine(machine_text(*lines)))
 
 
 @pytest.fixture
-def arm(make_arm: Callable[..., Arm]) -> Arm:
+def arm(make_arm: Callable[..., Kinematics]) -> Kinematics:
     """An arm of the size of a KR 6 R900, whose dimensions are published."""
     return make_arm()
 
@@ -58,7 +58,7 @@ SPEEDS = (360.0, 300.0, 360.0, 381.0, 388.0, 615.0)
 
 
 @pytest.fixture
-def machine(machine_text: Callable[..., str]) -> Machine:
+def machine(machine_text: Callable[..., str]) -> MachineData:
     """The same arm with speeds, and with a linear axis that it stands on."""
     lines = [
         *(f"$VEL_AXIS_MA[{i}]={speed * 100 / 6}" for i, speed in enumerate(SPEEDS, start=1)),
@@ -82,7 +82,7 @@ START = {"A1": 0.0, "A2": -90.0, "A3": 100.0, "A4": 0.0, "A5": 60.0, "A6": 0.0}
 class Driver:
     """Plans motions on an arm that stands at `START`, and plays them to their end."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineData) -> None:
         self.machine = machine
         self.arm = PlannedArm(machine, tuple(START.values()), is_selected=False)
         self.now = 0
@@ -144,6 +144,6 @@ class Driver:
 
 
 @pytest.fixture
-def driver(machine: Machine) -> Driver:
+def driver(machine: MachineData) -> Driver:
     """An arm to drive."""
     return Driver(machine)

@@ -12,7 +12,7 @@ from interp.robot.arm import Approximation, Place, SplinePart
 from interp.values.faults import Fault
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.machine_data import Machine
+    from interp.robot.kinematics.machine_data import MachineData
     from tests.interp.robot.conftest import Driver
 
 DOCUMENTED = {1102, 1211, 1366, 1447, 1456, 1457, 1458, 1506, 2829}
@@ -130,7 +130,7 @@ def move(driver: Driver, step: dict[str, Any]) -> None:
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(steps=st.lists(STEPS, min_size=2, max_size=9))
-def test_limits_are_never_exceeded(machine: Machine, driver: Driver, steps: list[Any]) -> None:
+def test_limits_are_never_exceeded(machine: MachineData, driver: Driver, steps: list[Any]) -> None:
     """At every millisecond of any program each axis keeps its speed and acceleration."""
     driver.__init__(machine)  # type: ignore[misc]
     for step in steps:

@@ -8,7 +8,7 @@ import pytest
 from interp.port import requests
 from interp.port.events import Recorder
 from interp.port.requests import (
-    Code,
+    CodeHandle,
     DeclareInterrupt,
     End,
     Fail,
@@ -220,7 +220,7 @@ def test_cyclic_signal(make: Make) -> None:
     on = executor.advance()
     assert isinstance(on, SwitchSignal)
     assert ("ANIN", True, "SENSOR") == (on.keyword, on.is_on, on.name)
-    assert isinstance(on.cycle, Code)
+    assert isinstance(on.cycle, CodeHandle)
     executor.enter(on.cycle)
     assert Read(requests.At("main.src", 2, 0), ("$ANIN", 1)) == executor.advance()
     assert isinstance(executor.advance(0.5), End)

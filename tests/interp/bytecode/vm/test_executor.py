@@ -11,10 +11,10 @@ from grammar.semantics.types import INT, REAL, Array, Member, Structure
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
-from interp.port.events import Event
+from interp.port.events import ExecutorEvent
 from interp.port.requests import (
     At,
-    Code,
+    CodeHandle,
     Crash,
     DeclareInterrupt,
     End,
@@ -552,7 +552,7 @@ def test_what_was_not_handed_over_is_refused(start: Starter) -> None:
     with pytest.raises(ValueError, match="is no condition"):
         machine.evaluate(declared.action, lambda _path: 0)
     with pytest.raises(ValueError, match="is no action"):
-        machine.enter(Code(0))
+        machine.enter(CodeHandle(0))
 
 
 # ------------------------------------------------------------------------------- the trace
@@ -596,16 +596,16 @@ def test_trace_tells_what_happens_in_order(start: Starter, recorder: Any) -> Non
     whole = ArrayValue(Array(INT, (3,)), [None, 7, None])
     main, sub = at(2, 0), at(2, 1)
     assert [
-        Event("line", main),
-        Event("assign", main, path=("P", 2, "Y"), value=1.5),
-        Event("branch", main, way=1),
-        Event("call", main, "SUB"),
-        Event("line", sub),
-        Event("assign", sub, path=("V", 2), value=7),
-        Event("assign", sub, path=("V",), value=whole),
-        Event("return", sub, "SUB"),
-        Event("assign", main, path=("A", 1), value=3),
-        Event("return", main, "MAIN"),
+        ExecutorEvent("line", main),
+        ExecutorEvent("assign", main, path=("P", 2, "Y"), value=1.5),
+        ExecutorEvent("branch", main, way=1),
+        ExecutorEvent("call", main, "SUB"),
+        ExecutorEvent("line", sub),
+        ExecutorEvent("assign", sub, path=("V", 2), value=7),
+        ExecutorEvent("assign", sub, path=("V",), value=whole),
+        ExecutorEvent("return", sub, "SUB"),
+        ExecutorEvent("assign", main, path=("A", 1), value=3),
+        ExecutorEvent("return", main, "MAIN"),
     ] == recorder.events
 
 

@@ -7,7 +7,13 @@ import pytest
 
 from interp.port.requests import Path, Value
 from interp.robot.api.batch import BatchCore
-from interp.robot.api.commands import CommandError, MotionCommand, OutputCommand, State, Transaction
+from interp.robot.api.commands import (
+    CommandError,
+    CommandState,
+    MotionCommand,
+    OutputCommand,
+    Transaction,
+)
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Place
 from interp.values.faults import Fault
@@ -40,7 +46,7 @@ def test_the_batch_goes_with_its_last_motion(core: BatchCore, make_motion: Make)
     assert 90_000 == core.load(90_000, Transaction(last))
     assert (0, 3, 90_000) == (core.held, core.pending(), core.next_time())
     core.run_until(4_000_000)
-    assert [State.ENDED] * 3 == [first.state, second.state, last.state]
+    assert [CommandState.ENDED] * 3 == [first.state, second.state, last.state]
 
 
 def test_look_ahead_has_no_such_delay(paced: Any, make_motion: Make) -> None:
@@ -89,7 +95,7 @@ def test_a_fault_cancels_the_batch(core: BatchCore, make_motion: Make) -> None:
     core.load(0, Transaction(bad))
     with pytest.raises(Fault, match="circle"):
         core.load(5, Transaction(last))
-    assert [State.CANCELLED, State.CANCELLED, State.CREATED] == [
+    assert [CommandState.CANCELLED, CommandState.CANCELLED, CommandState.CREATED] == [
         *(first.state, bad.state),
         last.state,
     ]
@@ -112,4 +118,4 @@ def test_discard(core: BatchCore, make_motion: Make) -> None:
     core.load(0, Transaction(motion))
     core.discard(10)
     core.release(20)
-    assert (State.CANCELLED, 0, None) == (motion.state, core.pending(), core.next_time())
+    assert (CommandState.CANCELLED, 0, None) == (motion.state, core.pending(), core.next_time())

@@ -11,10 +11,10 @@ from interp.robot.api.commands import (
     CallCommand,
     Command,
     CommandError,
+    CommandState,
     CoreEvent,
     MotionCommand,
     OutputCommand,
-    State,
     Transaction,
     WaitCommand,
 )
@@ -61,14 +61,14 @@ def test_gas_on_when_the_ignition_ends(
     core.load(1_000, Transaction(ignite, gas).link(ignite.ended, "start", gas))
     assert 1_000 == core.next_time()
     assert [(1_000, "motion 1 (LIN)", "started")] == told(core.run_until(1_235_566))
-    assert (State.ACTIVE, State.LINKED) == (ignite.state, gas.state)
+    assert (CommandState.ACTIVE, CommandState.LINKED) == (ignite.state, gas.state)
     assert [
         (1_235_567, "motion 1 (LIN)", "ended"),
         (1_235_567, "output $OUT.1", "started"),
         (1_235_567, "output $OUT.1", "ended"),
     ] == told(core.run_until(5_000_000))
     assert [(1_235_567, ("$OUT", 1), True)] == outputs
-    assert (State.ENDED, State.ENDED) == (ignite.state, gas.state)
+    assert (CommandState.ENDED, CommandState.ENDED) == (ignite.state, gas.state)
     assert core.next_time() is None
 
 
@@ -105,7 +105,7 @@ def test_all_or_nothing(core: ControlCore, outputs: Outputs, make_motion: Make) 
     good, bad, gas = make_motion(2), make_motion(3, kind="CIRC"), output()
     with pytest.raises(Fault, match="circle"):
         core.load(500, Transaction(gas, good, bad).link(before.ended, "cancel", good))
-    assert [State.CREATED] * 3 == [good.state, bad.state, gas.state]
+    assert [CommandState.CREATED] * 3 == [good.state, bad.state, gas.state]
     assert [] == outputs
     assert (1, [(0, "started"), (1_000_000, "ended")]) == (
         core.pending(),
@@ -127,7 +127,7 @@ def test_a_chain(core: ControlCore, outputs: Outputs, make_motion: Make) -> None
     )
     core.run_until(10_000_000)
     assert [(1_250_000, ("$OUT", 1), True)] == outputs
-    assert [State.ENDED] * 4 == [first.state, wait.state, gas.state, second.state]
+    assert [CommandState.ENDED] * 4 == [first.state, wait.state, gas.state, second.state]
 
 
 def test_causes_come_before_the_next_event_of_the_path(
@@ -151,7 +151,7 @@ def test_a_place_behind_the_end(core: ControlCore, outputs: Outputs, make_motion
     first, second, gas = make_motion(1, 1_000_000, place), make_motion(2), output()
     core.load(0, Transaction(first, second, gas).link(first.reached(place), "start", gas))
     core.run_until(1_010_000)
-    assert (State.ENDED, State.LINKED) == (first.state, gas.state)
+    assert (CommandState.ENDED, CommandState.LINKED) == (first.state, gas.state)
     core.run_until(1_030_000)
     assert [(1_030_000, ("$OUT", 1), True)] == outputs
 
@@ -169,7 +169,7 @@ def test_a_place_behind_the_end_outlasts_an_interruption(
     aside = make_motion(3, 100_000)
     core.load(1_030_000, Transaction(aside))
     core.run_until(1_200_000)
-    assert (State.ENDED, State.LINKED) == (aside.state, gas.state)
+    assert (CommandState.ENDED, CommandState.LINKED) == (aside.state, gas.state)
     paced.standing = [replace(event, time=event.time + 200_000) for event in rest]
     core.proceed(1_200_000)
     core.run_until(9_000_000)
@@ -192,8 +192,8 @@ def test_cancelling_a_motion_brakes(core: ControlCore, paced: Any, make_motion: 
     assert (310_000, "None", "stopped") in events
     assert (310_000, "motion 2 (LIN)", "cancelled") in events
     assert (310_000, "output $OUT.1", "cancelled") in events
-    assert (State.CANCELLED, State.CANCELLED) == (first.state, second.state)
-    assert (State.CANCELLED, State.ENDED) == (gas.state, alarm.state)
+    assert (CommandState.CANCELLED, CommandState.CANCELLED) == (first.state, second.state)
+    assert (CommandState.CANCELLED, CommandState.ENDED) == (gas.state, alarm.state)
     assert core.next_time() is None
 
 
@@ -203,7 +203,7 @@ def test_stopping_a_motion_that_has_not_begun(
     """Nothing moves yet, so nothing has to brake."""
     motion, at_once = make_motion(1), WaitCommand(0)
     core.load(0, Transaction(motion, at_once).link(at_once.ended, "stop", motion))
-    assert State.CANCELLED is motion.state
+    assert CommandState.CANCELLED is motion.state
     assert ["stop at 0", "discard at 0"] == paced.calls
     assert (0, "motion 1 (LIN)", "cancelled") == told(core.run_until(0))[-1]
 
@@ -213,7 +213,7 @@ def test_the_owner_stops_a_motion(core: ControlCore, paced: Any, make_motion: Ma
     motion = make_motion(1)
     core.load(0, Transaction(motion))
     core.apply(200_000, "stop", motion)
-    assert State.ACTIVE is motion.state
+    assert CommandState.ACTIVE is motion.state
     assert (210_000, "motion 1 (LIN)", "cancelled") == told(core.run_until(900_000))[-1]
     assert ["stop at 200000", "discard at 210000"] == paced.calls
 
@@ -228,7 +228,7 @@ def test_cancelling_what_is_no_motion(core: ControlCore) -> None:
         .link(long.ended, "start", gas),
     )
     assert (40, "output $OUT.1", "cancelled") == told(core.run_until(1_000))[-1]
-    assert [State.CANCELLED] * 2 == [long.state, gas.state]
+    assert [CommandState.CANCELLED] * 2 == [long.state, gas.state]
 
 
 def test_brake_and_proceed(core: ControlCore, paced: Any, make_motion: Make) -> None:
@@ -237,7 +237,7 @@ def test_brake_and_proceed(core: ControlCore, paced: Any, make_motion: Make) -> 
     core.load(0, Transaction(motion))
     core.brake(500_000, is_hard=True)
     assert (510_000, "None", "stopped") == told(core.run_until(510_000))[-1]
-    assert (None, 1, State.ACTIVE) == (core.next_time(), core.pending(), motion.state)
+    assert (None, 1, CommandState.ACTIVE) == (core.next_time(), core.pending(), motion.state)
     core.proceed(510_000)
     assert [(1_010_000, "motion 1 (LIN)", "ended")] == told(core.run_until(2_000_000))
     assert ["stop at 500000", "proceed at 510000"] == paced.calls
@@ -251,7 +251,11 @@ def test_discard(core: ControlCore, outputs: Outputs, make_motion: Make) -> None
     core.brake(500_000, is_hard=False)
     core.discard(510_000)
     core.run_until(9_000_000)
-    assert ([], State.CANCELLED, State.CANCELLED) == (outputs, motion.state, gas.state)
+    assert ([], CommandState.CANCELLED, CommandState.CANCELLED) == (
+        outputs,
+        motion.state,
+        gas.state,
+    )
     assert 0 == core.pending()
 
 
@@ -267,7 +271,7 @@ def test_a_linked_motion_that_cannot_be_planned(core: ControlCore, make_motion: 
     failed = [event for event in core.run_until(2_000_000) if event.what == "failed"]
     assert [(1_000_000, bad)] == [(event.time, event.command) for event in failed]
     assert failed[0].fault is not None
-    assert (1456, State.ENDED) == (failed[0].fault.number, alarm.state)
+    assert (1456, CommandState.ENDED) == (failed[0].fault.number, alarm.state)
 
 
 def test_an_output_that_cannot_be_switched(core: ControlCore) -> None:
@@ -275,7 +279,7 @@ def test_an_output_that_cannot_be_switched(core: ControlCore) -> None:
     bad = output(0)
     core.load(0, Transaction(bad))
     last = core.run_until(0)[-1]
-    assert ("failed", State.FAILED) == (last.what, bad.state)
+    assert ("failed", CommandState.FAILED) == (last.what, bad.state)
     assert last.fault is not None
     assert 1444 == last.fault.number
 
@@ -291,7 +295,7 @@ def test_a_call_lasts_until_it_is_completed(core: ControlCore, make_motion: Make
     )
     assert [(0, "call routine 5", "started")] == told(core.run_until(10))[1:]
     core.complete(700, call)
-    assert (State.ENDED, State.ENDED) == (call.state, gas.state)
+    assert (CommandState.ENDED, CommandState.ENDED) == (call.state, gas.state)
     core.complete(800, call)
     assert ["ended", "started", "ended"] == [event.what for event in core.run_until(900)]
 
@@ -307,7 +311,7 @@ def test_either_of_two_causes(core: ControlCore, outputs: Outputs) -> None:
         .link(two.ended, "start", gas),
     )
     core.run_until(15)
-    assert (State.CANCELLED, State.LINKED) == (one.state, gas.state)
+    assert (CommandState.CANCELLED, CommandState.LINKED) == (one.state, gas.state)
     core.run_until(30)
     assert [(20, ("$OUT", 1), True)] == outputs
 
@@ -355,7 +359,7 @@ def test_nonsense(core: ControlCore, outputs: Outputs, make_motion: Make, name: 
     with pytest.raises(CommandError, match=said):
         core.load(0, transaction)
     assert [] == outputs
-    assert {State.CREATED} == {command.state for command in transaction.commands}
+    assert {CommandState.CREATED} == {command.state for command in transaction.commands}
 
 
 def test_what_is_past(core: ControlCore, make_motion: Make) -> None:

@@ -9,12 +9,12 @@ import pytest
 from interp.robot.api.commands import (
     Command,
     CommandError,
+    CommandState,
     CoreEvent,
     Effect,
     Event,
     MotionCommand,
     OutputCommand,
-    State,
     Transaction,
     WaitCommand,
 )
@@ -55,7 +55,7 @@ def run(seed: int, arm: Any, make_motion: Any) -> tuple[Transaction, list[CoreEv
     try:
         core.load(0, transaction)
     except CommandError:
-        assert {State.CREATED} == {command.state for command in transaction.commands}
+        assert {CommandState.CREATED} == {command.state for command in transaction.commands}
         return None
     return transaction, core.run_out(), causes
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from interp.robot.api.motions import Motions
+from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Place, Settings
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "ignition.py"
@@ -15,7 +15,7 @@ EXAMPLE = Path(__file__).parents[4] / "examples" / "ignition.py"
 
 def test_motions_are_numbered_and_keep_what_they_are_given() -> None:
     """A target has upper-case members; the settings are those in force when a motion is made."""
-    motions = Motions(Settings(velocity=0.5))
+    motions = MotionFactory(Settings(velocity=0.5))
     place = Place(1, "PATH", -10.0)
     first = motions.ptp(a1=10, e1=200)
     motions.settings = Settings(velocity=1.0)
@@ -34,7 +34,7 @@ def test_motions_are_numbered_and_keep_what_they_are_given() -> None:
 def test_a_member_that_no_target_has() -> None:
     """What is no member of a target is refused by its name."""
     with pytest.raises(ValueError, match="a target has no A7, Q"):
-        Motions().ptp(q=1, a7=2)
+        MotionFactory().ptp(q=1, a7=2)
 
 
 @pytest.mark.parametrize("robot", ["none", "kinematic", "mujoco"])

@@ -7,9 +7,15 @@ import numpy as np
 import pytest
 
 from interp.robot.api.batch import BatchCore
-from interp.robot.api.commands import CoreEvent, MotionCommand, OutputCommand, State, Transaction
+from interp.robot.api.commands import (
+    CommandState,
+    CoreEvent,
+    MotionCommand,
+    OutputCommand,
+    Transaction,
+)
 from interp.robot.api.control_core import ControlCore
-from interp.robot.api.motions import Motions
+from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Approximation, Place, Settings
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
@@ -27,8 +33,10 @@ CELL = Placement(base=Pose.of(x=450.0, y=-100.0, z=300.0), tool=Pose.of(z=100.0)
 
 
 @pytest.fixture
-def motions() -> Motions:
-    return Motions(Settings(placement=CELL, velocity=0.25, approximation=Approximation(cdis=20.0)))
+def motions() -> MotionFactory:
+    return MotionFactory(
+        Settings(placement=CELL, velocity=0.25, approximation=Approximation(cdis=20.0))
+    )
 
 
 def made(kind: type[ControlCore] = ControlCore) -> tuple[ControlCore, list[tuple[int, Any]]]:
@@ -37,7 +45,7 @@ def made(kind: type[ControlCore] = ControlCore) -> tuple[ControlCore, list[tuple
     return kind(arm, lambda path, _, time: switched.append((time, path)), 12_000), switched
 
 
-def first(motions: Motions) -> MotionCommand:
+def first(motions: MotionFactory) -> MotionCommand:
     return motions.ptp(x=0, y=0, z=0, a=0, b=0, c=180, s=2, t=2)
 
 
@@ -45,7 +53,7 @@ def times(events: list[CoreEvent], what: str) -> list[int]:
     return [event.time for event in events if event.what == what]
 
 
-def test_a_transaction_that_fails_leaves_the_path_as_it_was(motions: Motions) -> None:
+def test_a_transaction_that_fails_leaves_the_path_as_it_was(motions: MotionFactory) -> None:
     """A good motion before a bad one would blend; after the fault the arm stops as before."""
     paths = []
     for is_disturbed in (False, True):
@@ -57,14 +65,14 @@ def test_a_transaction_that_fails_leaves_the_path_as_it_was(motions: Motions) ->
             good, beyond = motions.lin(y=100, criteria=["C_DIS"]), motions.lin(x=5_000.0)
             with pytest.raises(Fault):
                 core.load(12_000, Transaction(good, beyond))
-            assert [State.CREATED] * 2 == [good.state, beyond.state]
+            assert [CommandState.CREATED] * 2 == [good.state, beyond.state]
         ends = times(core.run_out(), "ended")
         paths.append((ends, core.arm.sample(np.arange(0, ends[-1], 4_000)).axes))
     assert paths[0][0] == paths[1][0]
     np.testing.assert_array_equal(paths[0][1], paths[1][1])
 
 
-def test_cancelling_on_the_way(motions: Motions) -> None:
+def test_cancelling_on_the_way(motions: MotionFactory) -> None:
     """The arm brakes on its line and stands; the next motion starts from there."""
     core, switched = made()
     place = Place(1, "PATH", 0.0)
@@ -77,7 +85,7 @@ def test_cancelling_on_the_way(motions: Motions) -> None:
     begun = next(time for time in iter(lambda: _next(core, line), None) if time)
     core.apply(begun + 400_000, "cancel", line)
     events = core.run_out()
-    assert [State.CANCELLED] * 3 == [line.state, beyond.state, never.state]
+    assert [CommandState.CANCELLED] * 3 == [line.state, beyond.state, never.state]
     assert [] == switched
     stands = times(events, "stopped")[0]
     assert begun + 400_000 < stands < begun + 700_000
@@ -89,7 +97,7 @@ def test_cancelling_on_the_way(motions: Motions) -> None:
     core.run_out()
     x, *_ = CELL.point(core.arm.position(core.now).flange).components
     assert 0.0 == pytest.approx(x, abs=1e-6)
-    assert State.ENDED is back.state
+    assert CommandState.ENDED is back.state
 
 
 def _next(core: ControlCore, motion: MotionCommand) -> int:
@@ -100,7 +108,7 @@ def _next(core: ControlCore, motion: MotionCommand) -> int:
     return time if any(e.command is motion and e.what == "started" for e in events) else 0
 
 
-def test_batches_blend_as_look_ahead_does(motions: Motions) -> None:
+def test_batches_blend_as_look_ahead_does(motions: MotionFactory) -> None:
     """The path of a batch is that of the look-ahead, later by what the first motion waits."""
     starts, paths = [], []
     for kind in (ControlCore, BatchCore):
@@ -126,7 +134,7 @@ def test_batches_blend_as_look_ahead_does(motions: Motions) -> None:
 
 
 @pytest.mark.parametrize("what", ["x", "a1", "e1", "auxiliary", "angle", "place", "speed"])
-def test_what_is_no_number(motions: Motions, what: str) -> None:
+def test_what_is_no_number(motions: MotionFactory, what: str) -> None:
     """NaN anywhere in a motion is refused with 1422 or 1506, and the arm ends what it has begun."""
     core, switched = made()
     core.load(0, Transaction(first(motions)))

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.machine_data import Machine, MachineDataError
-from interp.robot.kinematics.solver import Arm, Array, matrix_of
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.poses import IDENTITY, Pose
 
-MakeArm = Callable[..., Arm]
+MakeArm = Callable[..., Kinematics]
 
 MANY = int(os.environ.get("KRL_ARM_POSES", "10000"))  # 100,000 where it is worth a few seconds
 OTHERS = {
@@ -30,7 +30,7 @@ OTHERS = {
 }
 
 
-def chain(machine: Machine, axes: list[float]) -> Pose:
+def chain(machine: MachineData, axes: list[float]) -> Pose:
     """The chain of the machine data, frame by frame."""
     a1, a2, a3, a4, a5, a6 = (
         axis.direction * value for axis, value in zip(machine.axes, axes, strict=True)
@@ -52,12 +52,12 @@ def chain(machine: Machine, axes: list[float]) -> Pose:
     )
 
 
-def limits(arm: Arm) -> tuple[Array, Array]:
+def limits(arm: Kinematics) -> tuple[Array, Array]:
     axes = arm.machine.axes
     return np.array([axis.lower for axis in axes]), np.array([axis.upper for axis in axes])
 
 
-def random_axes(arm: Arm, count: int, seed: int = 7) -> Array:
+def random_axes(arm: Kinematics, count: int, seed: int = 7) -> Array:
     """Axes spread over all that the software limits allow."""
     return np.random.default_rng(seed).uniform(*limits(arm), (count, 6))
 
@@ -68,7 +68,7 @@ def whole_turns_off(ways: Array, axes: Array) -> Array:
     return np.where(np.isnan(difference), math.inf, difference)
 
 
-def errors(arm: Arm, poses: Array, ways: Array) -> tuple[float, float]:
+def errors(arm: Kinematics, poses: Array, ways: Array) -> tuple[float, float]:
     """How far the ways miss their poses: the worst position in m, the worst rotation."""
     missed = np.abs(arm.forward(ways) - poses[:, None])
     return float(np.nanmax(missed[..., :3, 3])) / 1000.0, float(np.nanmax(missed[..., :3, :3]))
@@ -83,7 +83,7 @@ def test_forward_is_the_chain(make_arm: MakeArm, lines: tuple[str, ...]) -> None
     assert np.allclose(expected, arm.forward(axes), rtol=0, atol=1e-9)
 
 
-def test_published_dimensions(arm: Arm) -> None:
+def test_published_dimensions(arm: Kinematics) -> None:
     """With the upper arm upright and the forearm level, the flange is where the data sheet says."""
     x, y, z, a, b, c = Pose.from_matrix(arm.forward([0, -90, 90, 0, 0, 0]).tolist()).components
     assert (525, 0, 890, 0, 90, 0) == pytest.approx((x, y, z, a, b, c), abs=1e-9)
@@ -94,7 +94,7 @@ def test_published_dimensions(arm: Arm) -> None:
 @pytest.mark.parametrize(
     ("axis", "along", "sign"), [(0, 1, -1), (1, 2, -1), (2, 2, -1), (4, 2, -1)]
 )
-def test_senses_of_rotation(arm: Arm, axis: int, along: int, sign: int) -> None:
+def test_senses_of_rotation(arm: Kinematics, axis: int, along: int, sign: int) -> None:
     """Positive angles turn axis 1 clockwise from above, and axes 2, 3 and 5 downward."""
     home = np.array([0.0, -90.0, 90.0, 0.0, 0.0, 0.0])
     moved = home.copy()
@@ -104,7 +104,7 @@ def test_senses_of_rotation(arm: Arm, axis: int, along: int, sign: int) -> None:
 
 
 @pytest.mark.parametrize("axis", [3, 5])
-def test_senses_of_the_hand(arm: Arm, axis: int) -> None:
+def test_senses_of_the_hand(arm: Kinematics, axis: int) -> None:
     """Positive angles turn axes 4 and 6 against the sense of a screw along the forearm."""
     axes = [0.0, -90.0, 90.0, 0.0, 0.0, 0.0]
     axes[axis] = 10.0
@@ -112,7 +112,7 @@ def test_senses_of_the_hand(arm: Arm, axis: int) -> None:
     assert np.allclose(matrix_of(turned)[:3, :3], arm.forward(axes)[:3, :3], atol=1e-12)
 
 
-def test_there_and_back_on_many_poses(arm: Arm) -> None:
+def test_there_and_back_on_many_poses(arm: Kinematics) -> None:
     """All ways reach their poses, and Status and software limits leave the one that was taken."""
     axes = random_axes(arm, MANY)
     poses = arm.forward(axes)
@@ -145,7 +145,7 @@ def test_there_and_back_on_other_arms(make_arm: MakeArm, lines: tuple[str, ...])
 
 @pytest.mark.parametrize("a5", [0.0, 1e-9, -1e-7, 1e-5, -1e-3, 0.1])
 @pytest.mark.parametrize("main", [(10, -90, 90), (166.67, -76.94, -40.92), (0, 0, 0)])
-def test_a_straight_wrist(arm: Arm, main: tuple[float, ...], a5: float) -> None:
+def test_a_straight_wrist(arm: Kinematics, main: tuple[float, ...], a5: float) -> None:
     """Near and at A5 = 0 the pose is met exactly; where the wrist is straight, A4 is 0."""
     poses = arm.forward([[*main, 30.0, a5, 40.0]])
     ways = arm.inverse(poses)
@@ -175,7 +175,7 @@ def test_a_stretched_arm(make_arm: MakeArm, lines: tuple[str, ...], shoulder: fl
     assert rotation < 1e-12
 
 
-def test_the_wrist_above_axis_1(arm: Arm) -> None:
+def test_the_wrist_above_axis_1(arm: Kinematics) -> None:
     """With the wrist on axis 1 that axis is free, and taken as 0."""
     machine = arm.machine
     forearm = math.hypot(*machine.tx3p3.position)
@@ -191,7 +191,7 @@ def test_the_wrist_above_axis_1(arm: Arm) -> None:
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300, 1e12])
-def test_poses_that_are_none(arm: Arm, value: float) -> None:
+def test_poses_that_are_none(arm: Kinematics, value: float) -> None:
     """No way leads to what is no number or out of this world, and the other poses are solved."""
     poses = np.array([matrix_of(IDENTITY), arm.forward([0, -90, 90, 0, 45, 0])])
     poses[0, 0, 3] = value
@@ -200,14 +200,14 @@ def test_poses_that_are_none(arm: Arm, value: float) -> None:
     assert not np.isnan(ways[1]).all()
 
 
-def test_poses_out_of_reach(arm: Arm) -> None:
+def test_poses_out_of_reach(arm: Kinematics) -> None:
     """Too far away, and too near for a forearm that is shorter than the upper arm."""
     far, near = Pose.of(2000, 0, 400), Pose.of(1, 0, 400) @ arm.machine.tflwp
     ways = arm.inverse(np.array([matrix_of(far), matrix_of(near)]))
     assert np.isnan(ways).all()
 
 
-def test_shapes_are_kept(arm: Arm) -> None:
+def test_shapes_are_kept(arm: Kinematics) -> None:
     """Batches of any shape go in and come out."""
     axes = random_axes(arm, 6).reshape(2, 3, 6)
     assert (2, 3, 4, 4) == arm.forward(axes).shape
@@ -229,7 +229,7 @@ def test_shapes_are_kept(arm: Arm) -> None:
         ((0, -90, 4.75, 0, 10, 0), 0),
     ],
 )
-def test_status(arm: Arm, axes: tuple[float, ...], status: int) -> None:
+def test_status(arm: Kinematics, axes: tuple[float, ...], status: int) -> None:
     """Overhead area, elbow beyond stretched, and A5 negative make the bits [POS-03 to POS-05]."""
     assert status == int(arm.status(axes))
 

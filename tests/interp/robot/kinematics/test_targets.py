@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.solver import Arm, Array
+from interp.robot.kinematics.solver import Array, Kinematics
 from interp.robot.kinematics.targets import (
     Singularity,
     TargetStatus,
@@ -20,17 +20,17 @@ from interp.robot.kinematics.targets import (
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-MakeArm = Callable[..., Arm]
+MakeArm = Callable[..., Kinematics]
 
 HOME = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 AXES = (20.0, -80.0, 100.0, 30.0, 40.0, -50.0)
 
 
-def flange(arm: Arm, axes: tuple[float, ...]) -> Pose:
+def flange(arm: Kinematics, axes: tuple[float, ...]) -> Pose:
     return Pose.from_matrix(arm.forward(axes).tolist())
 
 
-def test_status_and_turn_of_axes_select_these_axes(arm: Arm) -> None:
+def test_status_and_turn_of_axes_select_these_axes(arm: Kinematics) -> None:
     """Wherever an arm stands, Status and Turn of its axes lead back to them [POS-12]."""
     machine_axes = arm.machine.axes
     lower = [axis.lower for axis in machine_axes]
@@ -57,33 +57,33 @@ WIDE = (("N", -180.0), ("P", 180.0))
 
 
 @pytest.mark.parametrize("status", [2 + 8, 2 + 16, 2 + 8 + 16])
-def test_bits_without_a_meaning(arm: Arm, status: int) -> None:
+def test_bits_without_a_meaning(arm: Kinematics, status: int) -> None:
     """Bit 4 marks an absolutely accurate robot, and selects nothing [POS-06]."""
     assert solve(arm, flange(arm, AXES), status=2) == solve(arm, flange(arm, AXES), status=status)
 
 
 @pytest.mark.parametrize(("turn", "a6"), [(0b000010, 310.0), (0b100010, -50.0)])
-def test_turn_selects_the_whole_turn(arm: Arm, turn: int, a6: float) -> None:
+def test_turn_selects_the_whole_turn(arm: Kinematics, turn: int, a6: float) -> None:
     """The bit of an axis that turns beyond 360 degrees says which way round it is [POS-07]."""
     found = solve(arm, flange(arm, AXES), status=2, turn=turn)
     assert (*AXES[:5], a6) == pytest.approx(found.axes)
     assert turn == found.turn
 
 
-def test_turn_of_an_axis_that_has_no_choice(arm: Arm) -> None:
+def test_turn_of_an_axis_that_has_no_choice(arm: Kinematics) -> None:
     """Where an axis reaches a point only once, its bit changes nothing [POS-12]."""
     assert AXES == pytest.approx(solve(arm, flange(arm, AXES), status=2, turn=0b110111).axes[:6])
 
 
 @pytest.mark.parametrize(("start", "a6"), [(-60.0, -50.0), (200.0, 310.0), (0.0, -50.0)])
-def test_without_turn_the_way_is_short(arm: Arm, start: float, a6: float) -> None:
+def test_without_turn_the_way_is_short(arm: Kinematics, start: float, a6: float) -> None:
     """Without a Turn each axis takes the shortest way from the start [POS-02]."""
     found = solve(arm, flange(arm, AXES), status=2, start=(*AXES[:5], start))
     assert a6 == pytest.approx(found.axes[5])
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
-def test_half_a_turn_is_positive(arm: Arm, noise: float) -> None:
+def test_half_a_turn_is_positive(arm: Kinematics, noise: float) -> None:
     """Half a turn either way is as short, and rounding has no say in it."""
     target = flange(arm, (*AXES[:5], 180.0 + noise))
     assert 180 == pytest.approx(solve(arm, target, status=2).axes[5])
@@ -98,7 +98,7 @@ def test_turn_has_a_bit_for_each_negative_axis() -> None:
 @pytest.mark.parametrize(
     ("preference", "a5"), [(TargetStatus.SOURCE, 40.0), (TargetStatus.BEST, -40.0)]
 )
-def test_without_status(arm: Arm, preference: TargetStatus, a5: float) -> None:
+def test_without_status(arm: Kinematics, preference: TargetStatus, a5: float) -> None:
     """The Status is that of the start, or of the way that is done soonest [POS-09]."""
     start = (20.0, -80.0, 100.0, -150.0, 1.0, 130.0)
     found = solve(arm, flange(arm, AXES), start=start, preference=preference)
@@ -119,7 +119,7 @@ def test_the_leading_axis_counts(make_arm: MakeArm) -> None:
     assert 30 == pytest.approx(chosen[1])
 
 
-def test_out_of_reach(arm: Arm) -> None:
+def test_out_of_reach(arm: Kinematics) -> None:
     """A pose that no way leads to is message 1366 [MOT-15]."""
     for pose in (Pose.of(5000), Pose.of(math.nan), Pose.of(a=math.inf)):
         with pytest.raises(Fault) as caught:
@@ -127,7 +127,7 @@ def test_out_of_reach(arm: Arm) -> None:
         assert 1366 == caught.value.number
 
 
-def test_a_way_that_does_not_exist(arm: Arm) -> None:
+def test_a_way_that_does_not_exist(arm: Kinematics) -> None:
     """A pose that only another Status reaches is out of reach for this one."""
     target = flange(arm, (0, -30, 30, 0, 40, 0))
     with pytest.raises(Fault) as caught:
@@ -135,14 +135,14 @@ def test_a_way_that_does_not_exist(arm: Arm) -> None:
     assert 1366 == caught.value.number
 
 
-def test_behind_a_limit_switch(arm: Arm) -> None:
+def test_behind_a_limit_switch(arm: Kinematics) -> None:
     """A pose reached only beyond a software limit is message 1447, with the axis [MOT-15]."""
     with pytest.raises(Fault, match="A1 at 175, not within -170 to 170") as caught:
         solve(arm, flange(arm, (175, *AXES[1:])), status=2)
     assert 1447 == caught.value.number
 
 
-def test_axis_targets_have_limits_too(arm: Arm) -> None:
+def test_axis_targets_have_limits_too(arm: Kinematics) -> None:
     """Axes that are given by a program are held against the same limits."""
     check_limits(arm.machine.axes, HOME)
     check_limits(arm.machine.axes, (170.0, *HOME[1:]))
@@ -162,20 +162,20 @@ def test_axis_targets_have_limits_too(arm: Arm) -> None:
     ],
 )
 def test_the_wrist_singularity(
-    arm: Arm, axes: tuple[float, ...], expected: tuple[Singularity, ...]
+    arm: Kinematics, axes: tuple[float, ...], expected: tuple[Singularity, ...]
 ) -> None:
     """Up to 0.01812 degrees of A5 the wrist counts as straight [POS-08]."""
     assert expected == singularities(arm, axes)
 
 
-def test_the_other_singularities(arm: Arm) -> None:
+def test_the_other_singularities(arm: Kinematics) -> None:
     """A stretched arm, and a wrist above axis 1, are singular as well [POS-08]."""
     stretched = (0.0, -60.0, arm.machine.elbow, 0.0, 40.0, 0.0)
     assert (Singularity.EXTENDED,) == singularities(arm, stretched)
     assert (Singularity.OVERHEAD,) == singularities(arm, above_axis_1(arm, 30.0))
 
 
-def above_axis_1(arm: Arm, a1: float) -> tuple[float, ...]:
+def above_axis_1(arm: Kinematics, a1: float) -> tuple[float, ...]:
     machine = arm.machine
     forearm = math.hypot(*machine.tx3p3.position)
     level = (machine.length_b / 2 - machine.length_a) / forearm
@@ -198,7 +198,7 @@ def test_a_target_with_a_straight_wrist(
 
 
 @pytest.mark.parametrize("bit", [0, 4])
-def test_a_straight_wrist_has_either_status(arm: Arm, bit: int) -> None:
+def test_a_straight_wrist_has_either_status(arm: Kinematics, bit: int) -> None:
     """With A5 = 0 bit 2 of the Status says nothing, and the point can be reached with both."""
     assert HOME == pytest.approx(solve(arm, flange(arm, HOME), status=2 | bit).axes, abs=1e-9)
 
@@ -213,12 +213,12 @@ def test_a_target_above_axis_1(make_arm: MakeArm, keep: int, a1: float) -> None:
     assert np.allclose(target.rows, flange(arm, found.axes).rows, rtol=0, atol=1e-9)
 
 
-def path(arm: Arm, first: tuple[float, ...], last: tuple[float, ...], count: int) -> Array:
+def path(arm: Kinematics, first: tuple[float, ...], last: tuple[float, ...], count: int) -> Array:
     """Poses along a way through axis space, and nothing said of the axes."""
     return arm.forward(np.linspace(first, last, count))
 
 
-def test_a_path_keeps_its_way(arm: Arm) -> None:
+def test_a_path_keeps_its_way(arm: Kinematics) -> None:
     """Axes along a path go on from where they start, beyond half a turn as well [POS-01]."""
     first, last = (20.0, -80.0, 100.0, 30.0, 40.0, 150.0), (60.0, -70.0, 90.0, 80.0, 60.0, 330.0)
     expected = np.linspace(first, last, 200)
@@ -227,14 +227,14 @@ def test_a_path_keeps_its_way(arm: Arm) -> None:
 
 
 @pytest.mark.parametrize("count", [50, 51])
-def test_a_path_through_a_straight_wrist(arm: Arm, count: int) -> None:
+def test_a_path_through_a_straight_wrist(arm: Kinematics, count: int) -> None:
     """A wrist that straightens on the way bends to the other side, and axis 4 stays."""
     first, last = (20.0, -80.0, 100.0, 30.0, 10.0, 50.0), (25.0, -78.0, 99.0, 30.0, -10.0, 50.0)
     expected = np.linspace(first, last, count)
     assert np.allclose(expected, follow(arm, arm.forward(expected), first), rtol=0, atol=1e-6)
 
 
-def test_a_path_out_of_reach(arm: Arm) -> None:
+def test_a_path_out_of_reach(arm: Kinematics) -> None:
     """The path ends where the arm does, with the message for it."""
     poses = np.array([Pose.of(x, 0, 800, b=90).matrix for x in np.linspace(500, 1500, 100)])
     start = solve(arm, Pose.from_matrix(poses[0].tolist()), status=2).axes
@@ -243,7 +243,7 @@ def test_a_path_out_of_reach(arm: Arm) -> None:
     assert 1366 == caught.value.number
 
 
-def test_a_path_beyond_a_limit_switch(arm: Arm) -> None:
+def test_a_path_beyond_a_limit_switch(arm: Kinematics) -> None:
     """A path that ends behind a limit is 1447, one that only leads over it 1211 [MOT-15]."""
     first, last = (0.0, -80.0, 100.0, 0.0, 40.0, 300.0), (0.0, -80.0, 100.0, 0.0, 40.0, 400.0)
     there = path(arm, first, last, 100)

@@ -1,4 +1,4 @@
-"""Courses: how far it is along them, and back from the way to the place."""
+"""Paths of poses: how far it is along them, and back from the way to the place."""
 
 import math
 
@@ -7,11 +7,11 @@ import pytest
 
 from interp.robot.path.circle import circle_through
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import Arc, Blend, Course, Line, Way
+from interp.robot.path.pose_path import Arc, Blend, PosePath, StraightLine, Way
 
 STILL = turning(np.eye(3), np.eye(3))
-FIRST = Line(np.zeros(3), np.array([100.0, 0.0, 0.0]), STILL)
-SECOND = Line(np.array([100.0, 0.0, 0.0]), np.array([100.0, 50.0, 0.0]), STILL)
+FIRST = StraightLine(np.zeros(3), np.array([100.0, 0.0, 0.0]), STILL)
+SECOND = StraightLine(np.array([100.0, 0.0, 0.0]), np.array([100.0, 50.0, 0.0]), STILL)
 ARC = Arc(
     circle_through(
         np.array([100.0, 0.0, 0.0]), np.array([150.0, 50.0, 0.0]), np.array([100.0, 100.0, 0.0])
@@ -21,35 +21,37 @@ ARC = Arc(
 COURSES = [FIRST, ARC, Blend(FIRST, 0.3, SECOND, 0.5), Blend(FIRST, 0.2, ARC, 0.4)]
 
 
-@pytest.mark.parametrize("course", COURSES, ids=lambda course: course.kind)
-def test_way_and_tangents(course: Course) -> None:
+@pytest.mark.parametrize("path", COURSES, ids=lambda pose_path: pose_path.kind)
+def test_way_and_tangents(pose_path: PosePath) -> None:
     """The way is the length of the curve, and tangents are its derivative."""
     u = np.linspace(0.0, 1.0, 20001)
-    places, _ = course.at(u)
+    places, _ = pose_path.at(u)
     chords = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))))
-    assert np.allclose(chords, course.distances(u), atol=1e-4)
-    assert course.length == pytest.approx(chords[-1], rel=1e-6)
-    assert np.allclose(np.gradient(places, u, axis=0)[1:-1], course.tangents(u)[1:-1], atol=1e-3)
+    assert np.allclose(chords, pose_path.distances(u), atol=1e-4)
+    assert pose_path.length == pytest.approx(chords[-1], rel=1e-6)
+    assert np.allclose(np.gradient(places, u, axis=0)[1:-1], pose_path.tangents(u)[1:-1], atol=1e-3)
 
 
-@pytest.mark.parametrize("course", COURSES, ids=lambda course: course.kind)
-def test_from_the_way_to_the_place(course: Course) -> None:
+@pytest.mark.parametrize("path", COURSES, ids=lambda pose_path: pose_path.kind)
+def test_from_the_way_to_the_place(pose_path: PosePath) -> None:
     """The parameter at a length has that length before it."""
-    way = Way(course.tangents)
+    way = Way(pose_path.tangents)
     lengths = np.linspace(0.0, way.length, 57)
     assert np.allclose(lengths, way.at(way.parameters(lengths)), atol=1e-9)
 
 
 def test_the_length_of_a_parabola() -> None:
     """A parabola with a right angle at its point has the length that calculus says."""
-    corner = Blend(FIRST, 0.4, Line(SECOND.start, np.array([100.0, 100.0, 0.0]), STILL), 0.4)
+    corner = Blend(
+        FIRST, 0.4, StraightLine(SECOND.start, np.array([100.0, 100.0, 0.0]), STILL), 0.4
+    )
     wanted = 40.0 * (1.0 + math.asinh(1.0) / math.sqrt(2.0))
     assert wanted == pytest.approx(corner.length, rel=1e-9)
 
 
 def test_a_way_that_turns_back() -> None:
     """Where a line goes back on itself the blend does too, and its way is that of both legs."""
-    back = Line(FIRST.end, FIRST.start, STILL)
+    back = StraightLine(FIRST.end, FIRST.start, STILL)
     blend = Blend(FIRST, 0.4, back, 0.4)
     places, _ = blend.at(np.array([0.0, 0.5, 1.0]))
     assert [60.0, 80.0, 60.0] == pytest.approx(places[:, 0])

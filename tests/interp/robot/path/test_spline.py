@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from interp.robot.arm import Approximation, Place, Settings, SplinePart, SplineRange
-from interp.robot.path.pose_path import Arc, Line
+from interp.port.requests import SplineRange
+from interp.robot.arm import Approximation, Place, Settings, SplinePart
+from interp.robot.path.pose_path import Arc, StraightLine
 from interp.robot.path.spline import Free
 from interp.values.faults import Fault
 
@@ -54,8 +55,8 @@ def test_through_all_points(driver: Driver) -> None:
     sections = run(driver, MIXED)
     assert len(MIXED) == len(sections)
     for section, part in zip(sections, MIXED, strict=True):
-        assert section.curve.course is not None
-        (place,), _ = section.curve.course.at(np.ones(1))
+        assert section.curve.pose_path is not None
+        (place,), _ = section.curve.pose_path.at(np.ones(1))
         assert [part.target[name] for name in "XYZ"] == pytest.approx(place)
     (end,) = sections[-1].curve.axes(np.ones(1))
     assert np.allclose(driver.samples().axes[-1], end)
@@ -64,8 +65,8 @@ def test_through_all_points(driver: Driver) -> None:
 def test_lines_and_arcs_are_exact(driver: Driver) -> None:
     """SLIN is a straight line and SCIRC an arc, whatever lies beside them."""
     sections = run(driver, MIXED)
-    kinds = [type(section.curve.course) for section in sections]
-    assert kinds == [Free, Free, Line, Free, Arc, Free]
+    kinds = [type(section.curve.pose_path) for section in sections]
+    assert kinds == [Free, Free, StraightLine, Free, Arc, Free]
 
 
 def test_tangent_and_curvature_go_on(driver: Driver) -> None:
@@ -73,7 +74,7 @@ def test_tangent_and_curvature_go_on(driver: Driver) -> None:
     sections = run(driver, MIXED)
     step = 1e-4
     for one, other in pairwise(sections):
-        before, behind = one.curve.course, other.curve.course
+        before, behind = one.curve.pose_path, other.curve.pose_path
         assert before is not None
         assert behind is not None
         assert before.length / behind.length == pytest.approx(other.gear)

@@ -50,8 +50,8 @@ def test_a_blend_of_lines_is_a_parabola(driver: Driver) -> None:
     corner(driver, ("C_DIS",), cdis=40.0)
     driver.play()
     section = blend(driver)
-    assert isinstance(section.curve.course, Blend)
-    points = section.curve.course.points
+    assert isinstance(section.curve.pose_path, Blend)
+    points = section.curve.pose_path.points
     wanted = [(500.0, -60.0, 600.0), (500.0, -100.0, 600.0), (460.0, -100.0, 600.0)]
     assert np.allclose(wanted, points, atol=1e-9)
     begin, end = driver.time("blend_start", 2), driver.time("blend_end", 3)
@@ -75,7 +75,7 @@ def test_the_point_is_not_passed(driver: Driver) -> None:
 def test_not_more_than_half_of_either_path(driver: Driver) -> None:
     """A zone larger than half of a path is reduced to it, on each side by itself [BLD-07]."""
     corner(driver, ("C_DIS",), cdis=800.0)
-    points = blend(driver).curve.course.points  # type: ignore[union-attr]
+    points = blend(driver).curve.pose_path.points  # type: ignore[union-attr]
     assert np.allclose([(500, 50, 600), (500, -100, 600), (450, -100, 600)], points, atol=1e-9)
     driver.play()
     driver.check_limits()
@@ -120,7 +120,7 @@ def test_where_a_blend_begins(
     settings: dict[str, Any] = {"approximation": Approximation(**values)}
     driver.move("LIN", target, criteria=(criterion,), velocity=0.25, acceleration=1.0, **settings)
     driver.move("LIN", {**target, "X": 300.0, "B": 160.0}, velocity=0.25, acceleration=1.0)
-    start, point, _ = blend(driver).curve.course.points  # type: ignore[union-attr]
+    start, point, _ = blend(driver).curve.pose_path.points  # type: ignore[union-attr]
     assert before == pytest.approx(float(np.linalg.norm(point - start)), rel=0.35)
 
 
@@ -209,14 +209,17 @@ def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
     driver.move(
         "CIRC", {"X": 400.0, "Y": -200.0}, auxiliary={"X": 430.0, "Y": -130.0}, **values, **others
     )
-    course = blend(driver).curve.course
-    assert isinstance(course, Blend)
-    (start, end), _ = course.at(np.array([0.0, 1.0]))
+    pose_path = blend(driver).curve.pose_path
+    assert isinstance(pose_path, Blend)
+    (start, end), _ = pose_path.at(np.array([0.0, 1.0]))
     assert (500.0, -80.0, 600.0) == pytest.approx(start)
-    assert np.allclose(course.second.at(np.array([course.after]))[0][0], end)
-    tangents = course.tangents(np.array([0.0, 1.0]))
+    assert np.allclose(pose_path.second.at(np.array([pose_path.after]))[0][0], end)
+    tangents = pose_path.tangents(np.array([0.0, 1.0]))
     wanted = np.stack(
-        (course.first.tangents(np.ones(1))[0], course.second.tangents(np.array([course.after]))[0])
+        (
+            pose_path.first.tangents(np.ones(1))[0],
+            pose_path.second.tangents(np.array([pose_path.after]))[0],
+        )
     )
     cosines = (tangents * wanted).sum(axis=1)
     lengths = np.linalg.norm(tangents, axis=1) * np.linalg.norm(wanted, axis=1)

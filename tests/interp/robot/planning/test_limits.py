@@ -10,31 +10,33 @@ import numpy as np
 import pytest
 
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import follow
-from interp.robot.path.axis_path import CourseCurve, InStep, JointLine
+from interp.robot.path.axis_path import InStep, JointLine, PosePathCurve
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import Line, poses_of
+from interp.robot.path.pose_path import StraightLine, poses_of
 from interp.robot.planning.limits import Ceiling, PathLimits, axis_limits, ceiling_of
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.machine_data import Machine
+    from interp.robot.kinematics.machine_data import MachineData
     from interp.robot.kinematics.solver import Array
 
 START = np.array([0.0, -90.0, 100.0, 0.0, 60.0, 0.0, 0.0])
 NONE = np.zeros(1)
 
 
-def line(machine: Machine, shift: tuple[float, float, float], start: Array = START) -> CourseCurve:
+def line(
+    machine: MachineData, shift: tuple[float, float, float], start: Array = START
+) -> PosePathCurve:
     """A straight line from axes on."""
-    arm = Arm(machine)
+    arm = Kinematics(machine)
     pose = arm.forward(start[:6])
     still = turning(pose[:3, :3], pose[:3, :3])
-    course = Line(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
-    return CourseCurve(arm, Placement(), course, start[:6], InStep(NONE, NONE))
+    pose_path = StraightLine(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
+    return PosePathCurve(arm, Placement(), pose_path, start[:6], InStep(NONE, NONE))
 
 
-def test_limits_are_those_of_the_machine_data(machine: Machine) -> None:
+def test_limits_are_those_of_the_machine_data(machine: MachineData) -> None:
     """Speeds follow from motor and gear, accelerations from the run-up time [MOT-06]."""
     limits = axis_limits(machine)
     assert [360, 300, 360, 381, 388, 615, 2500] == pytest.approx(limits.velocity)
@@ -44,22 +46,24 @@ def test_limits_are_those_of_the_machine_data(machine: Machine) -> None:
 @pytest.mark.parametrize(
     ("percent", "share"), [(30.0, 0.3), (100.0, 1.0), (130.0, 1.0), (0.0, 1.0)]
 )
-def test_percentages(machine: Machine, percent: float, share: float) -> None:
+def test_percentages(machine: MachineData, percent: float, share: float) -> None:
     """A percentage that is none counts as all [MOT-02]."""
     limits = axis_limits(machine)
     scaled = limits.scaled((percent,) * 12, (100.0,) * 12, ())
     assert limits.velocity * share == pytest.approx(scaled.velocity)
 
 
-def test_a_straight_line_of_axes(machine: Machine) -> None:
+def test_a_straight_line_of_axes(machine: MachineData) -> None:
     """The leading axis sets speed and acceleration of a PTP [MOT-01]."""
-    curve = JointLine(Arm(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100]))
+    curve = JointLine(
+        Kinematics(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100])
+    )
     limits = axis_limits(machine)
     (stretch,) = ceiling_of(curve, limits, limits, ()).stretches
     assert (4.0, 40.0 / 3.0) == pytest.approx((stretch.velocity, stretch.acceleration))
 
 
-def bounds_hold(curve: CourseCurve, ceiling: Ceiling, machine: Machine) -> None:
+def bounds_hold(curve: PosePathCurve, ceiling: Ceiling, machine: MachineData) -> None:
     """At the bounds of each stretch, no axis exceeds its own, wherever on the stretch."""
     limits = axis_limits(machine)
     for stretch in ceiling.stretches:
@@ -79,7 +83,7 @@ def bounds_hold(curve: CourseCurve, ceiling: Ceiling, machine: Machine) -> None:
 
 
 @pytest.mark.parametrize("shift", [(100, 0, 0), (0, 300, 0), (-150, 200, 100), (0, -1, 0)])
-def test_lines(machine: Machine, shift: tuple[float, float, float]) -> None:
+def test_lines(machine: MachineData, shift: tuple[float, float, float]) -> None:
     """The bounds of a line leave every axis within its limits, also between the samples."""
     curve = line(machine, shift)
     limits = axis_limits(machine)
@@ -88,7 +92,7 @@ def test_lines(machine: Machine, shift: tuple[float, float, float]) -> None:
     bounds_hold(curve, ceiling_of(curve, limits, limits, paths), machine)
 
 
-def test_a_line_past_a_singularity(machine: Machine) -> None:
+def test_a_line_past_a_singularity(machine: MachineData) -> None:
     """Where axis 4 has to turn fast only the stretches beside it are slow, and the rest is not."""
     start = np.array([0.0, -90.0, 100.0, 40.0, 6.0, 0.0, 0.0])
     curve = line(machine, (-40.0, 150.0, 60.0), start)
@@ -100,7 +104,7 @@ def test_a_line_past_a_singularity(machine: Machine) -> None:
     bounds_hold(curve, ceiling, machine)
 
 
-def test_cutting_a_ceiling(machine: Machine) -> None:
+def test_cutting_a_ceiling(machine: MachineData) -> None:
     """A part of a curve has the stretches between its ends, cut there."""
     curve = line(machine, (0, 300, 0))
     limits = axis_limits(machine)
@@ -110,19 +114,19 @@ def test_cutting_a_ceiling(machine: Machine) -> None:
     assert () == ceiling.between(0.5, 0.5)
 
 
-def test_axes_along_a_course_are_exact(machine: Machine) -> None:
-    """At any parameter the axes put the flange where the course says, in the way of the start."""
+def test_axes_along_a_pose_path_are_exact(machine: MachineData) -> None:
+    """At any parameter the axes put the flange where the path says, in the way of the start."""
     curve = line(machine, (-150, 200, 100))
     u = np.random.default_rng(2).uniform(0, 1, 300)
-    assert curve.course is not None
-    poses = poses_of(curve.course, u)
-    assert np.allclose(Arm(machine).forward(curve.axes(u)[:, :6]), poses, atol=1e-9)
+    assert curve.pose_path is not None
+    poses = poses_of(curve.pose_path, u)
+    assert np.allclose(Kinematics(machine).forward(curve.axes(u)[:, :6]), poses, atol=1e-9)
     rising = np.linspace(0, 1, 50)
-    followed = follow(curve.arm, poses_of(curve.course, rising), START[:6].tolist())
+    followed = follow(curve.arm, poses_of(curve.pose_path, rising), START[:6].tolist())
     assert np.allclose(followed, curve.axes(rising)[:, :6], atol=1e-9)
 
 
-def test_derivatives_along_a_course(machine: Machine) -> None:
+def test_derivatives_along_a_pose_path(machine: MachineData) -> None:
     """First and second derivatives are those of the axes, to a thousandth."""
     curve = line(machine, (-150, 200, 100))
     u, step = np.linspace(0.05, 0.95, 40), 1e-3

@@ -16,7 +16,7 @@ from interp.values.faults import Fault
 from interp.values.poses import Pose
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.machine_data import Machine
+    from interp.robot.kinematics.machine_data import MachineData
     from tests.interp.robot.conftest import Driver
 
 POINT = {"X": 500.0, "Y": 100.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
@@ -382,7 +382,7 @@ def test_what_cannot_be_done(
     ],
 )
 def test_the_first_motion(
-    machine: Machine, driver: Driver, kind: str, target: dict[str, float], is_allowed: bool
+    machine: MachineData, driver: Driver, kind: str, target: dict[str, float], is_allowed: bool
 ) -> None:
     """A program begins with a PTP that leaves nothing open [MOT-10]."""
     driver.arm = PlannedArm(machine, (0.0, -90.0, 90.0, 0.0, 0.0, 0.0))

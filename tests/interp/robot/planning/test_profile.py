@@ -7,13 +7,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from interp.robot.planning.profile import Bounds, Profile, ramp, stop, travel
+from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
 
 BOUNDS = Bounds(1000.0, 2000.0, 20000.0)
 speeds = st.floats(0.0, 1000.0)
 
 
-def check(profile: Profile, bounds: Bounds) -> None:
+def check(profile: SpeedProfile, bounds: Bounds) -> None:
     """Speed, acceleration and jerk stay within their bounds, and position grows."""
     times = np.linspace(0.0, profile.duration, 500)
     position, speed, acceleration = profile.at(times)

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from interp.robot.planning.limits import Stretch
-from interp.robot.planning.profile import Profile
-from interp.robot.planning.schedule import AtRest, State, Step, braking, schedule
+from interp.robot.planning.profile import SpeedProfile
+from interp.robot.planning.schedule import AtRest, GearedStretch, PathState, braking, schedule
 
 
 def stretch(start: float, end: float, velocity: float, size: float = 1000.0) -> Stretch:
@@ -14,12 +14,14 @@ def stretch(start: float, end: float, velocity: float, size: float = 1000.0) -> 
     return Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, size)
 
 
-def seams(steps: list[Step], profiles: list[Profile]) -> list[float]:
+def seams(steps: list[GearedStretch], profiles: list[SpeedProfile]) -> list[float]:
     """The speeds in which the steps end, per unit of u."""
     return [p.final / step.stretch.size for step, p in zip(steps, profiles, strict=True)]
 
 
-def laid(steps: list[Step], state: State = AtRest, override: float = 1.0) -> list[Profile]:
+def laid(
+    steps: list[GearedStretch], state: PathState = AtRest, override: float = 1.0
+) -> list[SpeedProfile]:
     """The profiles of a schedule that can be."""
     profiles = schedule(steps, state, override)
     assert profiles is not None
@@ -29,9 +31,9 @@ def laid(steps: list[Step], state: State = AtRest, override: float = 1.0) -> lis
 def test_a_slow_stretch_between_fast_ones() -> None:
     """A stretch is entered and left with no more than its own speed, and travelled with it."""
     steps = [
-        Step(stretch(0.0, 0.4, 1.0), 0.0),
-        Step(stretch(0.4, 0.6, 0.2), 1.0),
-        Step(stretch(0.6, 1.0, 1.0), 1.0),
+        GearedStretch(stretch(0.0, 0.4, 1.0), 0.0),
+        GearedStretch(stretch(0.4, 0.6, 0.2), 1.0),
+        GearedStretch(stretch(0.6, 1.0, 1.0), 1.0),
     ]
     profiles = laid(steps)
     assert [0.2, 0.2, 0.0] == pytest.approx(seams(steps, profiles), abs=1e-6)
@@ -40,7 +42,10 @@ def test_a_slow_stretch_between_fast_ones() -> None:
 
 def test_what_comes_is_braked_for_in_time() -> None:
     """A stretch that is too short to brake in is entered slowly enough."""
-    steps = [Step(stretch(0.0, 0.99, 1.0), 0.0), Step(stretch(0.99, 1.0, 1.0), 1.0)]
+    steps = [
+        GearedStretch(stretch(0.0, 0.99, 1.0), 0.0),
+        GearedStretch(stretch(0.99, 1.0, 1.0), 1.0),
+    ]
     out, end = seams(steps, laid(steps))
     assert 0.0 < out < 0.3
     assert 0.0 == pytest.approx(end, abs=1e-6)
@@ -48,7 +53,7 @@ def test_what_comes_is_braked_for_in_time() -> None:
 
 def test_units_change_with_the_gear() -> None:
     """The speed behind a seam is that before it, told in the next section's units."""
-    steps = [Step(stretch(0.0, 1.0, 0.5), 0.0), Step(stretch(0.0, 1.0, 3.0), 2.0)]
+    steps = [GearedStretch(stretch(0.0, 1.0, 0.5), 0.0), GearedStretch(stretch(0.0, 1.0, 3.0), 2.0)]
     profiles = laid(steps)
     assert 0.5 == pytest.approx(seams(steps, profiles)[0])
     assert 1.0 * 1000.0 == pytest.approx(profiles[1].knots[0][2])
@@ -56,21 +61,24 @@ def test_units_change_with_the_gear() -> None:
 
 def test_standing_between() -> None:
     """A gear of zero is a stop."""
-    steps = [Step(stretch(0.0, 1.0, 1.0), 0.0), Step(stretch(0.0, 1.0, 1.0), 0.0)]
+    steps = [GearedStretch(stretch(0.0, 1.0, 1.0), 0.0), GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)]
     assert [0.0, 0.0] == pytest.approx(seams(steps, laid(steps)), abs=1e-6)
 
 
 def test_too_late_to_brake() -> None:
     """What would be overrun cannot be laid strictly, and otherwise is passed as slow as can be."""
-    steps = [Step(stretch(0.0, 0.5, 1.0), 0.0), Step(stretch(0.5, 1.0, 0.1), 1.0)]
-    state = State(0.45, 1.0, 0.0)
+    steps = [GearedStretch(stretch(0.0, 0.5, 1.0), 0.0), GearedStretch(stretch(0.5, 1.0, 0.1), 1.0)]
+    state = PathState(0.45, 1.0, 0.0)
     assert schedule(steps, state, 1.0, is_strict=True) is None
     assert seams(steps, laid(steps, state))[0] > 0.5
 
 
 def test_an_acceleration_that_cannot_be_taken_back() -> None:
     """Too near to the end of a stretch nothing can be changed any more."""
-    assert schedule([Step(stretch(0.0, 1.0, 1.0), 0.0)], State(0.9999, 0.5, 2.0), 1.0) is None
+    assert (
+        schedule([GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)], PathState(0.9999, 0.5, 2.0), 1.0)
+        is None
+    )
 
 
 @given(
@@ -85,7 +93,7 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
         ends.append(ends[-1] + length)
     speeds = [data.draw(st.floats(0.01, 3.0)) for _ in lengths]
     steps = [
-        Step(stretch(start, end, speed), 1.0)
+        GearedStretch(stretch(start, end, speed), 1.0)
         for start, end, speed in zip(ends, ends[1:], speeds, strict=False)
     ]
     before = 0.0
@@ -101,8 +109,8 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
 
 def test_braking_crosses_a_seam() -> None:
     """Who is too fast to stop within a stretch stops in the next one."""
-    steps = [Step(stretch(0.0, 0.5, 1.0), 0.0), Step(stretch(0.5, 1.0, 1.0), 1.0)]
-    profiles = braking(steps, State(0.45, 1.0, 0.0), 1.0, is_hard=False)
+    steps = [GearedStretch(stretch(0.0, 0.5, 1.0), 0.0), GearedStretch(stretch(0.5, 1.0, 1.0), 1.0)]
+    profiles = braking(steps, PathState(0.45, 1.0, 0.0), 1.0, is_hard=False)
     assert profiles is not None
     assert 2 == len(profiles)
     assert 50.0 == pytest.approx(profiles[0].length)
@@ -111,10 +119,10 @@ def test_braking_crosses_a_seam() -> None:
 
 def test_the_hardest_ramp_is_the_shortest() -> None:
     """BRAKE F stops sooner than BRAKE [INT-09]."""
-    steps = [Step(stretch(0.0, 1.0, 1.0), 0.0)]
+    steps = [GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)]
     lengths = []
     for is_hard in (False, True):
-        profiles = braking(steps, State(0.0, 1.0, 0.0), 1.0, is_hard=is_hard)
+        profiles = braking(steps, PathState(0.0, 1.0, 0.0), 1.0, is_hard=is_hard)
         assert profiles is not None
         lengths.append(profiles[0].length)
     assert lengths[1] < 0.6 * lengths[0]

@@ -8,11 +8,11 @@ import pytest
 
 from interp.robot.api.commands import Transaction
 from interp.robot.api.control_core import ControlCore
-from interp.robot.api.motions import Motions
+from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Samples, Settings
 from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine
 from interp.robot.simulation.factory import make_robot
@@ -46,7 +46,7 @@ def smooth(count: int) -> Array:
 
 def line(along: float, milliseconds: int) -> tuple[tuple[float, ...], Array, Array]:
     """Start, axes and flanges of a straight line of so many mm along Y, with HOME in its middle."""
-    arm = Arm(default_machine())
+    arm = Kinematics(default_machine())
     poses = np.repeat(arm.forward(np.array(HOME))[None], milliseconds, axis=0)
     first = poses[0].copy()
     first[1, 3] -= along / 2
@@ -65,7 +65,7 @@ def test_a_straight_line_at_a_metre_a_second() -> None:
     measured = np.concatenate(
         [robot.follow(samples_of(axes[at : at + 120], 1_000 * at)) for at in range(0, 900, 120)]
     )
-    flanges = Arm(default_machine()).forward(measured)
+    flanges = Kinematics(default_machine()).forward(measured)
     off = np.linalg.norm(flanges[:, :3, 3] - poses[:, :3, 3], axis=1)
     assert 1e-4 < off.max() < 0.05
 
@@ -149,7 +149,7 @@ def test_a_planned_line_at_a_metre_a_second() -> None:
     """From the plan to the record: LIN at $VEL.CP 1 m/s is measured within 0.05 mm of its plan."""
     machine = default_machine()
     tool = Placement(base=Pose.of(x=450.0, z=400.0), tool=Pose.of(z=100.0))
-    motions = Motions(Settings(placement=tool, velocity=1.0, acceleration=8.0))
+    motions = MotionFactory(Settings(placement=tool, velocity=1.0, acceleration=8.0))
     home = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)
@@ -176,7 +176,7 @@ def test_a_planned_line_at_a_metre_a_second() -> None:
 def test_any_path_up_to_a_metre_a_second() -> None:
     """Where the tool is no faster than 1 m/s it is within 0.05 mm, on the way of fast axes too."""
     machine = default_machine()
-    motions = Motions(Settings(velocity=1.0, acceleration=5.0))
+    motions = MotionFactory(Settings(velocity=1.0, acceleration=5.0))
     home = (0.0, -90.0, 90.0, 0.0, 90.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)

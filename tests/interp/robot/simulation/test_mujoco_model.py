@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.machine_data import Machine, read_machine
-from interp.robot.kinematics.solver import Arm
+from interp.robot.kinematics.machine_data import MachineData, read_machine
+from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.mujoco_model import FLANGE, Box, mjcf_of, reach_of
@@ -18,12 +18,12 @@ mujoco = pytest.importorskip("mujoco")
 HOME = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 
 
-def loaded(machine: Machine, *boxes: Box) -> tuple[Any, Any]:
+def loaded(machine: MachineData, *boxes: Box) -> tuple[Any, Any]:
     model = mujoco.MjModel.from_xml_string(mjcf_of(machine, boxes))
     return model, mujoco.MjData(model)
 
 
-def touching(machine: Machine, axes: tuple[float, ...], *boxes: Box) -> int:
+def touching(machine: MachineData, axes: tuple[float, ...], *boxes: Box) -> int:
     model, data = loaded(machine, *boxes)
     data.qpos[:] = np.radians(axes)
     mujoco.mj_forward(model, data)
@@ -69,7 +69,7 @@ def test_the_flange_stands_where_the_kinematics_have_it(
     machine = read_machine(machine_text(*lines))
     model, data = loaded(machine)
     axes = np.random.default_rng(7).uniform(-180.0, 180.0, (200, 6))
-    flanges = np.array(machine.robroot.matrix) @ Arm(machine).forward(axes)
+    flanges = np.array(machine.robroot.matrix) @ Kinematics(machine).forward(axes)
     for row, expected in zip(axes, flanges, strict=True):
         data.qpos[:] = np.radians(row)
         mujoco.mj_kinematics(model, data)
@@ -102,7 +102,7 @@ def test_what_an_arm_touches() -> None:
     """Its hand touches its own foot, and a box that stands in its way."""
     machine = default_machine()
     assert 0 < touching(machine, (0.0, 0.0, 144.0, 0.0, 0.0, 0.0))
-    flange = Arm(machine).forward(np.array(HOME))
+    flange = Kinematics(machine).forward(np.array(HOME))
     box = Box("box", Pose.from_matrix(flange.tolist()), (50.0, 50.0, 50.0))
     assert 0 < touching(machine, HOME, box)
 
