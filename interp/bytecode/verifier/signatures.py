@@ -65,7 +65,7 @@ def _kinds(request: type) -> tuple[str, ...]:
 def _kind(name: str, annotation: str) -> str:
     required = annotation.removesuffix(" | None")
     mark = "" if required == annotation else "?"
-    if required == "Code":
+    if required == "CodeHandle":
         return ("condition" if name == "condition" else "action") + mark
     return _KINDS[required] + mark
 
