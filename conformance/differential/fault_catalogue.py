@@ -31,7 +31,7 @@ from conformance.differential.fault_patterns import (
 from conformance.differential.instruction_faults import OF_ITS_OWN
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.instruction_set.table import Shape, instructions
-from interp.bytecode.vm.context import Here, Rule
+from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 
 __all__ = ["Mutant", "mutants"]
@@ -58,7 +58,7 @@ class Mutant:
         wrong = self.change(rules, state)
         left = [_ENDLESS]
 
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             operation = wrong(here, *operands)
 
             def counted() -> Operation | None:

@@ -39,7 +39,7 @@ def mutated(mutant: Mutant) -> Factory:
 
     def made(program: Prepared, limits: Limits, sink: Sink) -> Machine:
         machine = Machine(program.verified, program.start, limits, sink)
-        threads, state, services = machine._threads, machine._state, machine._services
+        threads, state, services = machine._threaded, machine._state, machine._services
 
         def telling(op: Op) -> Callable[..., Any]:
             return lambda here, *operands: services.tell(Instruction(op, operands), here.after)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.vm.context import Here, Rule
+from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import Fault
 
@@ -46,7 +46,7 @@ def before(act: Callable[[list[Any]], object], op: Op) -> Change:
     """Something is done to the stack first."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             right = rules[op](here, *operands)
 
             def operation() -> Operation | None:
@@ -64,12 +64,12 @@ def behind(act: Callable[[list[Any]], object], op: Op) -> Change:
     """Something is done to the stack afterwards, where the program goes on with the next."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             def after() -> Operation:
                 act(state.stack)
                 return here.after
 
-            return rules[op](Here(here.code, here.place, here.body, after), *operands)
+            return rules[op](Site(here.code, here.place, here.body, after), *operands)
 
         return made
 
@@ -90,7 +90,7 @@ def doing(other: Op) -> Change:
     return lambda rules, _state: rules[other]
 
 
-def instead(act: Callable[[State, Here, tuple[int, ...]], Operation]) -> Change:
+def instead(act: Callable[[State, Site, tuple[int, ...]], Operation]) -> Change:
     """It does something else altogether."""
 
     def change(_rules: Rules, state: State) -> Rule:
@@ -102,7 +102,7 @@ def instead(act: Callable[[State, Here, tuple[int, ...]], Operation]) -> Change:
 def computing(compute: Callable[..., Any], count: int = 2) -> Change:
     """It computes something else from its operands."""
 
-    def act(state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
+    def act(state: State, here: Site, _operands: tuple[int, ...]) -> Operation:
         stack, after = state.stack, here.after
 
         def operation() -> Operation:
@@ -119,7 +119,7 @@ def computing(compute: Callable[..., Any], count: int = 2) -> Change:
 def pushing(raw: int) -> Change:
     """It pushes this."""
 
-    def act(state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
+    def act(state: State, here: Site, _operands: tuple[int, ...]) -> Operation:
         def operation() -> Operation:
             state.stack.append(raw)
             return here.after
@@ -132,7 +132,7 @@ def pushing(raw: int) -> Change:
 def taking(count: int, *, goes: bool) -> Change:
     """It takes so much from the stack, and always or never goes to its last operand."""
 
-    def act(state: State, here: Here, operands: tuple[int, ...]) -> Operation:
+    def act(state: State, here: Site, operands: tuple[int, ...]) -> Operation:
         def operation() -> Operation:
             if count:
                 del state.stack[-count:]
@@ -147,7 +147,7 @@ def quiet(op: Op, *slugs: str) -> Change:
     """A fault of these is not raised: what would be the result is 0."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             right = rules[op](here, *operands)
             takes = _TAKES[op]
 
@@ -204,9 +204,9 @@ def twice(op: Op) -> Change:
     """It is done twice."""
 
     def change(rules: Rules, _state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             again = rules[op](here, *operands)
-            return rules[op](Here(here.code, here.place, here.body, again), *operands)
+            return rules[op](Site(here.code, here.place, here.body, again), *operands)
 
         return made
 

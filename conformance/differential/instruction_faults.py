@@ -24,7 +24,7 @@ from conformance.differential.fault_patterns import (
     wrapped,
 )
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.vm.context import Here, Rule
+from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import fault
 
@@ -64,13 +64,13 @@ def _blocks(op: Op, takes: int) -> list[tuple[str, Change]]:
     """Instructions that write several cells."""
 
     def short(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             def after() -> Operation:
                 state.cells[:] = state.cells
                 state.cells[state.last] = None
                 return here.after
 
-            return rules[op](Here(here.code, here.place, here.body, after), *operands)
+            return rules[op](Site(here.code, here.place, here.body, after), *operands)
 
         return made
 
@@ -87,11 +87,11 @@ def _clamped(op: Op) -> list[tuple[str, Change]]:
     ]
 
 
-def _guard(_state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
+def _guard(_state: State, here: Site, _operands: tuple[int, ...]) -> Operation:
     return here.after
 
 
-def _into_first_cell(state: State, here: Here, _operands: tuple[int, ...]) -> Operation:
+def _into_first_cell(state: State, here: Site, _operands: tuple[int, ...]) -> Operation:
     def operation() -> Operation:
         state.cells[state.fp] = state.stack.pop()
         return here.after
@@ -103,7 +103,7 @@ def _indices_exchanged(op: Op) -> tuple[str, Change]:
     """With two indices and more the last two are exchanged."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             right = rules[op](here, *operands)
 
             def operation() -> Operation | None:
@@ -122,7 +122,7 @@ def _indices_exchanged(op: Op) -> tuple[str, Change]:
 def _line(_rules: Rules, state: State) -> Rule:
     """Statements are neither counted nor told."""
 
-    def made(here: Here, *_operands: int) -> Operation:
+    def made(here: Site, *_operands: int) -> Operation:
         def operation() -> Operation:
             state.statement = here.place
             return here.after
@@ -133,7 +133,7 @@ def _line(_rules: Rules, state: State) -> Rule:
 
 
 def _line_not_counted(rules: Rules, state: State) -> Rule:
-    def made(here: Here, *operands: int) -> Operation:
+    def made(here: Site, *operands: int) -> Operation:
         right = rules[Op.LINE](here, *operands)
 
         def operation() -> Operation | None:
@@ -149,14 +149,14 @@ def _line_not_counted(rules: Rules, state: State) -> Rule:
 def _line_place_kept(rules: Rules, state: State) -> Rule:
     """The place of the statement stays that of the one before."""
 
-    def made(here: Here, *operands: int) -> Operation:
+    def made(here: Site, *operands: int) -> Operation:
         before: list[int] = []
 
         def after() -> Operation:
             state.statement = before[0] if before[0] >= 0 else here.place
             return here.after
 
-        right = rules[Op.LINE](Here(here.code, here.place, here.body, after), *operands)
+        right = rules[Op.LINE](Site(here.code, here.place, here.body, after), *operands)
 
         def operation() -> Operation | None:
             before[:] = [state.statement]
@@ -168,7 +168,7 @@ def _line_place_kept(rules: Rules, state: State) -> Rule:
 
 
 def _case_always(_rules: Rules, state: State) -> Rule:
-    def made(here: Here, _constant: int, target: int) -> Operation:
+    def made(here: Site, _constant: int, target: int) -> Operation:
         def operation() -> Operation:
             state.stack.pop()
             return here.body[target]
@@ -181,7 +181,7 @@ def _case_always(_rules: Rules, state: State) -> Rule:
 def _call_mixed(rules: Rules, state: State) -> Rule:
     """The frame is one cell too far on."""
 
-    def made(here: Here, *operands: int) -> Operation:
+    def made(here: Site, *operands: int) -> Operation:
         right = rules[Op.CALL](here, *operands)
 
         def operation() -> Operation | None:
@@ -198,7 +198,7 @@ def _call_mixed(rules: Rules, state: State) -> Rule:
 def _call_keeps_base(rules: Rules, state: State) -> Rule:
     """The statement that the routine began with counts as that of the caller."""
 
-    def made(here: Here, *operands: int) -> Operation:
+    def made(here: Site, *operands: int) -> Operation:
         right = rules[Op.CALL](here, *operands)
 
         def operation() -> Operation | None:
@@ -215,7 +215,7 @@ def _call_keeps_base(rules: Rules, state: State) -> Rule:
 def _call_keeps_cells(rules: Rules, state: State) -> Rule:
     """Local data has a value from the beginning."""
 
-    def made(here: Here, *operands: int) -> Operation:
+    def made(here: Site, *operands: int) -> Operation:
         right = rules[Op.CALL](here, *operands)
 
         def operation() -> Operation | None:
@@ -235,7 +235,7 @@ def _return_elsewhere(op: Op) -> Change:
     """The frame of the caller is not restored."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             right = rules[op](here, *operands)
 
             def operation() -> Operation | None:
@@ -268,14 +268,14 @@ def _again(op: Op) -> Change:
     """What it took is put back, and it is done again."""
 
     def change(rules: Rules, state: State) -> Rule:
-        def made(here: Here, *operands: int) -> Operation:
+        def made(here: Site, *operands: int) -> Operation:
             def after() -> Operation | None:
                 state.stack[:] = kept
                 return again()
 
             kept: list[Any] = []
             again = rules[op](here, *operands)
-            first = rules[op](Here(here.code, here.place, here.body, after), *operands)
+            first = rules[op](Site(here.code, here.place, here.body, after), *operands)
 
             def operation() -> Operation | None:
                 kept[:] = state.stack
@@ -298,7 +298,7 @@ def _for(op: Op) -> list[tuple[str, Change]]:
 
 def _for_beyond(op: Op) -> Change:
     def change(rules: Rules, _state: State) -> Rule:
-        def made(here: Here, counter: int, limit: int, step: int, target: int) -> Operation:
+        def made(here: Site, counter: int, limit: int, step: int, target: int) -> Operation:
             gone: list[bool] = []
 
             def after() -> Operation:
@@ -306,7 +306,7 @@ def _for_beyond(op: Op) -> Change:
                 return here.body[target] if len(gone) % 2 else here.after
 
             return rules[op](
-                Here(here.code, here.place, here.body, after), counter, limit, step, target
+                Site(here.code, here.place, here.body, after), counter, limit, step, target
             )
 
         return made

@@ -19,7 +19,7 @@ from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.services import Services
 from interp.bytecode.vm.state import Completion, Operation, State
-from interp.bytecode.vm.threaded_code import Threads
+from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
 from interp.port.events import Kind, Sink, wanting
 from interp.port.executor import Reader
@@ -120,18 +120,18 @@ class _State(Core):
 class _Body:
     """The operations of a code object, by the places of instructions that are targets."""
 
-    __slots__ = ("_code", "_threads")
+    __slots__ = ("_code", "_threaded")
 
-    def __init__(self, threads: _Threads, code: int) -> None:
-        self._threads = threads
+    def __init__(self, threaded: _NativeCode, code: int) -> None:
+        self._threaded = threaded
         self._code = code
 
     def __getitem__(self, place: int) -> Operation:
-        return self._threads.at(self._code, place)
+        return self._threaded.at(self._code, place)
 
 
-class _Threads:
-    """Runs in C, in place of `interp.bytecode.vm.threaded_code.Threads`."""
+class _NativeCode:
+    """Runs in C, in place of `interp.bytecode.vm.threaded_code.ThreadedCode`."""
 
     def __init__(self, program: Program, state: _State, services: Services) -> None:
         self._program = program
@@ -229,9 +229,9 @@ class Machine(vm.Machine):
         beside = cast("_State", self._together[0]._state) if self._together else None
         return cast("State", _State(self._verified.image, self._told, limits.depth, beside))
 
-    def _made_ready(self, program: Program) -> Threads:
+    def _made_ready(self, program: Program) -> ThreadedCode:
         state = cast("_State", self._state)
-        return cast("Threads", _Threads(program, state, self._services))
+        return cast("ThreadedCode", _NativeCode(program, state, self._services))
 
     def _begin(self, number: int) -> None:
         self._core.begin(number)

@@ -1,8 +1,8 @@
-"""How large arrays of unknown size can be, which the room for a copy of one depends on.
+"""How large arrays of unknown size can be, for the buffers that copies of them need.
 
 A formal array ``X[]`` has the size of what it receives. Where it is passed on :IN it is copied, as
 everything passed :IN is [SCO-06] (unconfirmed: by SCO-07 formal arrays are :OUT). Nothing is
-allocated while a program runs, so the copy has room in the frame of the caller for the largest
+allocated while a program runs, so the copy has a buffer in the frame of the caller for the largest
 array that can come there: the largest that any routine passes, whichever way it took through
 others. That is known when all of them have been compiled.
 """

@@ -22,18 +22,18 @@ from interp.bytecode.compiler.array_bounds import Bound
 from interp.bytecode.compiler.context import Binding
 from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.expressions import Expressions
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
-    FormalView,
-    Hole,
-    Place,
+from interp.bytecode.compiler.locations import (
+    FrameCells,
+    IndexCell,
+    Location,
     PushedView,
-    Remote,
+    Reference,
     Scalar,
+    SystemVariable,
     Text,
     Value,
     View,
+    ViewParameter,
     is_view_of,
 )
 from interp.bytecode.compiler.predefined_calls import PredefinedCalls
@@ -110,13 +110,13 @@ class Calls:
         program = self._context.program
         formals = formals_of(routine, program.type_of)
         result = program.result_of(routine)
-        kept: Cells | None = None
+        kept: FrameCells | None = None
         if result is not None and not is_complete(result):
             raise self._emitter.refuse(str(untyped_result(routine.name)))
         if result is not None:
             result = self._emitter.closed(result)
             if not isinstance(result, Plain):
-                kept = Cells(self._writer.temporary(result), result)
+                kept = FrameCells(self._writer.temporary(result), result)
                 self._memory.refer(kept)
         bindings: list[Binding] = []
         bounds: list[Bound | None] = []
@@ -138,7 +138,7 @@ class Calls:
         self._emit(Op.CALL, number)
         if kept is not None:
             self._memory.refer(kept)
-            return Block(kept.type)
+            return Reference(kept.type)
         return None if result is None else Scalar(result)
 
     def _passed(
@@ -157,7 +157,7 @@ class Calls:
             return None, self._left_out(type_, is_in, is_view)
         if not is_in and is_variable(self._context.unit, argument):
             place = self._designators.place(argument)
-            if isinstance(place, Remote):
+            if isinstance(place, SystemVariable):
                 return self._bound(place), None
             return None, self._referred(place, type_, is_view)
         if is_view:
@@ -170,10 +170,10 @@ class Calls:
             self._copied(self._emitter.closed(type_), argument, is_in and not _calls(later))
         return None, None
 
-    def _bound(self, place: Remote) -> Binding:
+    def _bound(self, place: SystemVariable) -> Binding:
         """Push the indices of a system variable; its path becomes part of the routine."""
         self._memory.pushed_path(place)
-        path = tuple(None if isinstance(step, Hole) else step for step in place.path)
+        path = tuple(None if isinstance(step, IndexCell) else step for step in place.path)
         return path, place.type
 
     def _left_out(self, type_: Type, is_in: bool, is_view: bool) -> Bound | None:
@@ -184,24 +184,24 @@ class Calls:
         if is_in and isinstance(closed, Plain):
             self._emit(Op.PUSH_NOTHING)
             return None
-        kept = Cells(self._writer.temporary(closed), closed)
+        kept = FrameCells(self._writer.temporary(closed), closed)
         self._memory.refer(kept)
         self._emit(Op.CLEAR, self._emitter.number(closed))
         self._memory.refer(kept)
-        return self._memory.as_view(Block(closed)).most if is_view else None
+        return self._memory.as_view(Reference(closed)).most if is_view else None
 
-    def _referred(self, place: Place, type_: Type, is_view: bool) -> Bound | None:
+    def _referred(self, place: Location, type_: Type, is_view: bool) -> Bound | None:
         """Push a reference to a variable, or a view of an array.
 
         An array parameter that was left out is passed on as one [SCO-13].
         """
-        assert not isinstance(place, Remote), "it is bound"
-        given: Block | View
-        if isinstance(place, FormalView | PushedView):
+        assert not isinstance(place, SystemVariable), "it is bound"
+        given: Reference | View
+        if isinstance(place, ViewParameter | PushedView):
             given = self._memory.view(place, may_be_missing=True)
         else:
             self._memory.refer(place)
-            given = Block(place.type)
+            given = Reference(place.type)
         if isinstance(type_, Array) and is_view:
             is_array = isinstance(given, View) or isinstance(given.type, Array)
             view = self._memory.as_view(given) if is_array else None
@@ -209,16 +209,16 @@ class Calls:
                 view, self._emitter.closed(type_.element), len(type_.sizes)
             ):
                 return view.most
-        elif given == Block(self._emitter.closed(type_)):
+        elif given == Reference(self._emitter.closed(type_)):
             return None
         raise self._emitter.unlinked(str(mismatched(type_)))
 
     def _copied(self, type_: Type, argument: ast.Expression, is_copied_by_call: bool) -> None:
         """Push a reference to a value; the call copies it, unless something comes between."""
-        kept = Cells(self._writer.temporary(type_), type_)
+        kept = FrameCells(self._writer.temporary(type_), type_)
         behind = self._writer.here
         value = self._expressions.value(argument, type_)
-        if value == Block(type_) and is_copied_by_call:
+        if value == Reference(type_) and is_copied_by_call:
             return
         if isinstance(type_, Plain):
             self._memory.convert(value, type_)
@@ -235,13 +235,13 @@ class Calls:
         behind = self._writer.here
         value = self._expressions.value(argument, type_)
         if isinstance(value, View) and None in type_.sizes:
-            return self._copied_to_room(type_, value)
+            return self._copied_to_buffer(type_, value)
         made: Type = type_
         if None in type_.sizes:
             match value:
                 case Text(text):
                     made = Array(CHAR, (max(1, len(text)),))
-                case Block(Array() as made):
+                case Reference(Array() as made):
                     pass
                 case _:
                     raise self._emitter.refuse(_other_type(type_))
@@ -252,18 +252,18 @@ class Calls:
             len(type_.sizes),
         ):
             raise self._emitter.refuse(_other_type(type_))
-        kept = Cells(self._writer.temporary(made), made)
+        kept = FrameCells(self._writer.temporary(made), made)
         self._memory.refer_below(kept, behind)
         self._memory.store_block(made, value, behind + 1)
         self._memory.refer(kept)
-        return self._memory.as_view(Block(made)).most
+        return self._memory.as_view(Reference(made)).most
 
-    def _copied_to_room(self, type_: Array, value: View) -> Bound:
+    def _copied_to_buffer(self, type_: Array, value: View) -> Bound:
         """Make of the view on top one of a copy of the array, whose size only running tells."""
         if not is_view_of(value, self._emitter.closed(type_.element), len(type_.sizes)):
             raise self._emitter.refuse(_other_type(type_))
-        room = self._writer.room(value.element, value.dimensions, value.most)
-        self._emit(Op.COPY_VIEW, room.offset, room.type)
+        buffer = self._writer.copy_buffer(value.element, value.dimensions, value.most)
+        self._emit(Op.COPY_VIEW, buffer.offset, buffer.type)
         return value.most
 
 

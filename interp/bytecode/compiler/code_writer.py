@@ -24,7 +24,7 @@ from interp.bytecode.program import (
 )
 from interp.bytecode.verifier.successors import ENDS
 
-__all__ = ["Label", "Room", "Writer"]
+__all__ = ["CopyBuffer", "Label", "Writer"]
 
 
 @dataclass(slots=True, eq=False)
@@ -42,7 +42,7 @@ class Later:
 
 
 @dataclass(slots=True, eq=False)
-class Room:
+class CopyBuffer:
     """A place of the frame for copies of arrays of unknown size: its offset, and its type.
 
     ``given`` are the bounds of all that is copied there.
@@ -84,8 +84,8 @@ class Writer:
     _code: list[Written] = field(default_factory=list)
     _labels: list[Label] = field(default_factory=list)
     _free: dict[int, list[int]] = field(default_factory=dict)
-    _rooms: list[Room] = field(default_factory=list)
-    _free_rooms: dict[tuple[int, int], list[Room]] = field(default_factory=dict)
+    _buffers: list[CopyBuffer] = field(default_factory=list)
+    _free_buffers: dict[tuple[int, int], list[CopyBuffer]] = field(default_factory=dict)
     #: What is taken for a while, each behind the list that it goes back to.
     _taken: list[tuple[list[Any], Any]] = field(default_factory=list)
 
@@ -120,17 +120,17 @@ class Writer:
         self._taken.append((free, offset))
         return offset
 
-    def room(self, element: Type, dimensions: int, most: Bound) -> Room:
+    def copy_buffer(self, element: Type, dimensions: int, most: Bound) -> CopyBuffer:
         """A place for a copy of an array, until the end of `temporaries`."""
-        free = self._free_rooms.setdefault((self.tables.number(element), dimensions), [])
+        free = self._free_buffers.setdefault((self.tables.number(element), dimensions), [])
         if free:
-            room = free.pop()
+            buffer = free.pop()
         else:
-            room = Room(element, dimensions)
-            self._rooms.append(room)
-        room.given.add(most)
-        self._taken.append((free, room))
-        return room
+            buffer = CopyBuffer(element, dimensions)
+            self._buffers.append(buffer)
+        buffer.given.add(most)
+        self._taken.append((free, buffer))
+        return buffer
 
     @contextmanager
     def temporaries(self) -> Iterator[None]:
@@ -183,7 +183,7 @@ class Writer:
 
     def code(self, sizes: Sizes) -> Code:
         """The code object, without what is never reached; its stack is not known yet."""
-        self._make_rooms(sizes)
+        self._allocate_buffers(sizes)
         reached = self._reached()
         places = {place: number for number, place in enumerate(reached)}
         return Code(
@@ -200,14 +200,14 @@ class Writer:
             tuple(self._instruction(self._code[place], places) for place in reached),
         )
 
-    def _make_rooms(self, sizes: Sizes) -> None:
-        """Rooms become locals; what does not fit into memory faults when it is copied."""
-        for room in self._rooms:
-            left = (MAX_CELLS - self.tables.cells - self._cells) // size(room.element)
-            count = max(1, min(sizes.most(room.given), left))
-            type_ = Array(room.element, (count, *[1] * (room.dimensions - 1)))
-            room.offset.value = self.local(f"%{len(self._locals)}", type_)
-            room.type.value = self.tables.number(type_)
+    def _allocate_buffers(self, sizes: Sizes) -> None:
+        """Buffers become locals; what does not fit into memory faults when it is copied."""
+        for buffer in self._buffers:
+            left = (MAX_CELLS - self.tables.cells - self._cells) // size(buffer.element)
+            count = max(1, min(sizes.most(buffer.given), left))
+            type_ = Array(buffer.element, (count, *[1] * (buffer.dimensions - 1)))
+            buffer.offset.value = self.local(f"%{len(self._locals)}", type_)
+            buffer.type.value = self.tables.number(type_)
 
     def _instruction(self, written: Written, places: dict[int, int]) -> Instruction:
         operands: list[int] = []

@@ -11,7 +11,7 @@ from grammar.semantics.types import Type
 from grammar.syntax import ast
 from interp.bytecode.compiler.array_bounds import Sizes
 from interp.bytecode.compiler.code_writer import Writer
-from interp.bytecode.compiler.places import Place
+from interp.bytecode.compiler.locations import Location
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.program import CodeKind
 from interp.program.load import CheckedProgram, Routine, Unit
@@ -72,7 +72,7 @@ class Context:
     unit: Unit
     scope: Scope
     writer: Writer
-    variables: dict[Symbol, Place] = field(default_factory=dict)
+    variables: dict[Symbol, Location] = field(default_factory=dict)
     result: Type | None = None
     target: int | None = None
     line: int = 0

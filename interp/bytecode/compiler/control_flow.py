@@ -15,7 +15,13 @@ from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.emitter import Ended
 from interp.bytecode.compiler.expressions import Expressions
-from interp.bytecode.compiler.places import Cells, DataCells, Formal, Place, Scalar
+from interp.bytecode.compiler.locations import (
+    DataCells,
+    FrameCells,
+    Location,
+    ReferenceParameter,
+    Scalar,
+)
 from interp.values.values import letters
 
 __all__ = ["ControlFlow"]
@@ -112,7 +118,7 @@ class ControlFlow:
                 self._emit(Op.CASE, word, label)
             self._emit(Op.DROP)
             return
-        kept = Cells(self._writer.temporary(type_), type_)
+        kept = FrameCells(self._writer.temporary(type_), type_)
         self._emit(Op.STORE_LOCAL, kept.offset)
         for value, label in pairs:
             self._case(kept, value, label)
@@ -131,7 +137,7 @@ class ControlFlow:
                 return self._expressions.literal_integer(node)
         return None
 
-    def _case(self, kept: Cells, node: ast.Expression, label: Label) -> None:
+    def _case(self, kept: FrameCells, node: ast.Expression, label: Label) -> None:
         """Go on at the label where the value kept is this one."""
         self._memory.load(kept)
         between = self._writer.here
@@ -196,7 +202,7 @@ class ControlFlow:
         """FOR."""
         step = self._step(node.step)
         counter = self._designators.variable(node.counter)
-        if step is None or not isinstance(counter, Cells | DataCells) or counter.type != INT:
+        if step is None or not isinstance(counter, FrameCells | DataCells) or counter.type != INT:
             self._general_for(node, counter, step, end)
             return
         self._store_integer(counter, node.first)
@@ -211,7 +217,7 @@ class ControlFlow:
         self._writer.place(body)
         self._pass(node.body, end)
         self.begin(node, end)
-        if isinstance(counter, Cells):
+        if isinstance(counter, FrameCells):
             self._emit(Op.FOR_LOCAL, counter.offset, last.offset, step, again)
         else:
             self._emit(Op.FOR_DATA, counter.address, last.offset, step, again)
@@ -224,13 +230,13 @@ class ControlFlow:
         number = self._expressions.literal_integer(node)
         return number if number else None
 
-    def _limit(self, node: ast.Expression) -> Cells:
+    def _limit(self, node: ast.Expression) -> FrameCells:
         self._expressions.integer(node)
-        last = Cells(self._writer.temporary(INT), INT)
+        last = FrameCells(self._writer.temporary(INT), INT)
         self._emit(Op.STORE_LOCAL, last.offset)
         return last
 
-    def _store_integer(self, counter: Place, node: ast.Expression) -> None:
+    def _store_integer(self, counter: Location, node: ast.Expression) -> None:
         """Give the counter a number, rounded if need be, and tell it."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
@@ -238,9 +244,9 @@ class ControlFlow:
         self._memory.store(ready, Scalar(INT), behind)
         self._memory.tell(ready)
 
-    def _general_for(self, node: ast.For, counter: Place, known: int | None, end: Label) -> None:
+    def _general_for(self, node: ast.For, counter: Location, known: int | None, end: Label) -> None:
         """A loop whose counter is anywhere, or whose step is known when it runs."""
-        step = Cells(self._writer.temporary(INT), INT)
+        step = FrameCells(self._writer.temporary(INT), INT)
         if node.step is None or known is not None:
             self._emit(Op.PUSH_INT, known or 1)
         else:
@@ -264,7 +270,7 @@ class ControlFlow:
         self._emit(Op.JUMP, test)
 
     def _compare(
-        self, counter: Place, last: Cells, operator: str, go_on: Label, end: Label
+        self, counter: Location, last: FrameCells, operator: str, go_on: Label, end: Label
     ) -> None:
         """Leave the loop where the counter is beyond its last value."""
         value = self._memory.load(counter)
@@ -281,7 +287,7 @@ class ControlFlow:
         self._emit(Op.JUMP_IF, end)
         self._emit(Op.JUMP, go_on)
 
-    def _count(self, counter: Place, step: Cells) -> None:
+    def _count(self, counter: Location, step: FrameCells) -> None:
         """Add the step to the counter."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
@@ -324,5 +330,5 @@ class ControlFlow:
             self._emit(Op.RETURN_VALUE)
         else:
             assert self._context.target is not None, "a large result has a place"
-            self._expressions.assign(Formal(self._context.target, type_), node.value)
+            self._expressions.assign(ReferenceParameter(self._context.target, type_), node.value)
             self._emit(Op.RETURN)

@@ -14,7 +14,7 @@ from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Context, Shared
 from interp.bytecode.compiler.emitter import Emitter, Ended
-from interp.bytecode.compiler.places import Remote
+from interp.bytecode.compiler.locations import SystemVariable
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Program
@@ -81,7 +81,7 @@ class _DataList:
         with self._writer.temporaries():
             try:
                 place = self._expressions.designators.place(target)
-                if isinstance(place, Remote):
+                if isinstance(place, SystemVariable):
                     raise self._emitter.unlinked("a value is given to what is declared elsewhere")
                 self._expressions.assign(place, value)
                 if {Op.ASK, Op.CALL} & self._writer.ops(start):

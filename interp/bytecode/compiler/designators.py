@@ -17,21 +17,21 @@ from grammar.syntax.walk import without_parentheses
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, elements
 from interp.bytecode.compiler.emitter import Emitter
-from interp.bytecode.compiler.memory import Memory
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
+from interp.bytecode.compiler.locations import (
     DataCells,
-    Formal,
-    FormalView,
-    Hole,
-    Place,
+    FrameCells,
+    IndexCell,
+    Location,
     Pushed,
     PushedView,
-    Remote,
+    Reference,
+    ReferenceParameter,
+    SystemVariable,
     Value,
     View,
+    ViewParameter,
 )
+from interp.bytecode.compiler.memory import Memory
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 
@@ -58,7 +58,7 @@ class Designators:
         self._memory = memory
         self._value = value
 
-    def place(self, node: ast.Expression) -> Place:
+    def place(self, node: ast.Expression) -> Location:
         """Where an expression has its value."""
         match node:
             case ast.Variable():
@@ -73,22 +73,22 @@ class Designators:
             case ast.Subscript():
                 return self.element(self.place(node.base), node.indices)
         match self._value(node):
-            case Block(type_):
+            case Reference(type_):
                 return Pushed(type_, None)
             case View(element, dimensions, most):
                 return PushedView(element, dimensions, None, most)
         raise self._emitter.unlinked("a part of what has none")
 
-    def variable(self, name: ast.Name) -> Place:
+    def variable(self, name: ast.Name) -> Location:
         """The place of a variable."""
         found = self._context.unit.found(name)
         if found is not None:
             return self.declared(found)
         if name.key.startswith("$"):  # another release may have it
-            return Remote((name.key,), UNKNOWN)
+            return SystemVariable((name.key,), UNKNOWN)
         raise self._emitter.unlinked(f"{name.text} is declared nowhere")
 
-    def declared(self, found: Found, signals: int = 0) -> Place:
+    def declared(self, found: Found, signals: int = 0) -> Location:
         """The place of what a name means: of a frame, of a data list, or of the world."""
         try:
             found = self._context.program.declaration(found)
@@ -100,7 +100,7 @@ class Designators:
                 return self._context.variables[symbol]
             raise self._emitter.refuse(str(untyped(symbol.name)))
         if self._is_remote(found):
-            return Remote((symbol.key,), self._context.program.type_of(found))
+            return SystemVariable((symbol.key,), self._context.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
             if signals == _MOST_SIGNALS:
                 raise self._emitter.unlinked(f"the signal {symbol.name} leads nowhere")
@@ -117,25 +117,27 @@ class Designators:
             return False
         return found.module is None or found.symbol.key.startswith("$")
 
-    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> Remote:
+    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemVariable:
         """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)`` [IOT-03]."""
         assert found.module is not None, "the controller's signals are variables"
         unit = self._context.program.units[found.module]
-        ends: list[Remote] = []
+        ends: list[SystemVariable] = []
         for name, numbers in signal_ends(symbol):
             means = unit.found(name)
-            place = self.declared(means, signals + 1) if means else Remote((name.key,), UNKNOWN)
-            if isinstance(place, Remote):
+            place = (
+                self.declared(means, signals + 1) if means else SystemVariable((name.key,), UNKNOWN)
+            )
+            if isinstance(place, SystemVariable):
                 ends.append(_remote_element(place, tuple(numbers)) if numbers else place)
         if not ends:
-            return Remote((symbol.key,), BOOL)  # connected to nothing
+            return SystemVariable((symbol.key,), BOOL)  # connected to nothing
         if symbol.last is None:
             return ends[0]
-        return Remote((*ends[0].path, "TO", ends[-1].path[-1]), INT)
+        return SystemVariable((*ends[0].path, "TO", ends[-1].path[-1]), INT)
 
     # ----------------------------------------------------------------------- elements
 
-    def element(self, base: Place, nodes: tuple[ast.Expression | None, ...]) -> Place:
+    def element(self, base: Location, nodes: tuple[ast.Expression | None, ...]) -> Location:
         """An element; an index left out, and all behind it, mean the rest of the array."""
         given: list[ast.Expression] = []
         for node in nodes:
@@ -144,19 +146,19 @@ class Designators:
             given.append(node)
         if not given:
             return base
-        if isinstance(base, Remote):
+        if isinstance(base, SystemVariable):
             return self._remote_element(base, given)
-        if isinstance(base, FormalView | PushedView):
+        if isinstance(base, ViewParameter | PushedView):
             return self._view_element(base, given)
         if not isinstance(base.type, Array):
             raise self._emitter.unlinked("an index of what is no array")
         sizes = base.type.sizes
         fixed = [number for node in given if (number := literal(node)) is not None]
-        if isinstance(base, Cells | DataCells) and len(fixed) == len(given) <= len(sizes):
+        if isinstance(base, FrameCells | DataCells) and len(fixed) == len(given) <= len(sizes):
             found = self._memory.fixed_element(base, tuple(fixed))
             if found is not None:
                 return found
-        through = base.offset if isinstance(base, Formal) else None
+        through = base.offset if isinstance(base, ReferenceParameter) else None
         through = base.through if isinstance(base, Pushed) else through
         if len(given) == len(sizes):
             return self._indexed(base, base.type, given, through)
@@ -170,14 +172,14 @@ class Designators:
 
     def _indexed(
         self,
-        base: Cells | DataCells | Formal | Pushed,
+        base: FrameCells | DataCells | ReferenceParameter | Pushed,
         type_: Array,
         nodes: list[ast.Expression],
         through: int | None,
     ) -> Pushed:
         number = self._emitter.number(type_)
         match base:
-            case Cells(offset):
+            case FrameCells(offset):
                 self._indices(nodes)
                 self._emit(Op.INDEX_LOCAL, offset, number)
             case DataCells(address):
@@ -190,7 +192,7 @@ class Designators:
         return Pushed(type_.element, through)
 
     def _view_element(
-        self, base: FormalView | PushedView, nodes: list[ast.Expression]
+        self, base: ViewParameter | PushedView, nodes: list[ast.Expression]
     ) -> Pushed | PushedView:
         if isinstance(base, PushedView):
             raise self._emitter.refuse("an index of a part of an array")
@@ -203,13 +205,13 @@ class Designators:
         self._emit(Op.ROW_VIEW, base.offset, len(nodes))
         return PushedView(base.element, base.dimensions - len(nodes), base.offset, base.most)
 
-    def _remote_element(self, base: Remote, nodes: list[ast.Expression]) -> Remote:
-        steps: list[int | Hole] = []
+    def _remote_element(self, base: SystemVariable, nodes: list[ast.Expression]) -> SystemVariable:
+        steps: list[int | IndexCell] = []
         for node in nodes:
             number = literal(node)
             if number is None:
                 self._memory.convert(self._value(node), INT)
-                hole = Hole(self._writer.temporary(INT))
+                hole = IndexCell(self._writer.temporary(INT))
                 self._emit(Op.STORE_LOCAL, hole.offset)
                 steps.append(hole)
             else:
@@ -229,7 +231,7 @@ def literal(node: ast.Expression) -> int | None:
     return None
 
 
-def _remote_element(base: Remote, steps: tuple[int | Hole, ...]) -> Remote:
+def _remote_element(base: SystemVariable, steps: tuple[int | IndexCell, ...]) -> SystemVariable:
     is_whole = isinstance(base.type, Array) and len(base.type.sizes) == len(steps)
     element = base.type.element if isinstance(base.type, Array) and is_whole else UNKNOWN
-    return Remote((*base.path, *steps), element)
+    return SystemVariable((*base.path, *steps), element)

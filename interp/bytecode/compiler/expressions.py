@@ -29,17 +29,17 @@ from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.designators import Designators, literal
 from interp.bytecode.compiler.emitter import Emitter
-from interp.bytecode.compiler.memory import Memory
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
-    FormalView,
-    Place,
+from interp.bytecode.compiler.locations import (
+    FrameCells,
+    Location,
     PushedView,
+    Reference,
     Scalar,
     Text,
     Value,
+    ViewParameter,
 )
+from interp.bytecode.compiler.memory import Memory
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
 from interp.values.values import constant, letters, position_type, single
@@ -178,14 +178,14 @@ class Expressions:
         self._apply(selection.primitive)
         return self._result(selection, value)
 
-    def operand(self, node: ast.Expression, wanted: Type) -> Scalar | Block:
+    def operand(self, node: ast.Expression, wanted: Type) -> Scalar | Reference:
         """A value that an operator works on."""
         value = self.value(node, wanted)
         match value:
             case Text(text) if len(text) == 1:
                 self._emit(Op.PUSH_CHAR, ord(text))
                 return Scalar(CHAR)
-            case Scalar() | Block():
+            case Scalar() | Reference():
                 return value
         raise self._emitter.fail("operand")
 
@@ -237,23 +237,23 @@ class Expressions:
                 return
         self._emit(Op[primitive.name.upper()])
 
-    def _result(self, selection: Selection, operand: Scalar | Block) -> Value:
+    def _result(self, selection: Selection, operand: Scalar | Reference) -> Value:
         found = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}.get(selection.result)
         return operand if found is None else Scalar(found)
 
-    def _composed(self, left: Scalar | Block, right: Scalar | Block, first: int) -> Value:
+    def _composed(self, left: Scalar | Reference, right: Scalar | Reference, first: int) -> Value:
         """The geometric operator: its result has a place below its operands."""
-        kept = Cells(self._writer.temporary(right.type), right.type)
+        kept = FrameCells(self._writer.temporary(right.type), right.type)
         self._memory.refer_below(kept, first)
         self._emit(Op.COMPOSE, self._emitter.number(left.type), self._emitter.number(right.type))
         self._memory.refer(kept)
-        return Block(right.type)
+        return Reference(right.type)
 
     # ----------------------------------------------------------------------- aggregates
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Value:
         type_ = self._emitter.closed(self._structure(node, wanted))
-        whole = Cells(self._writer.temporary(type_), type_)
+        whole = FrameCells(self._writer.temporary(type_), type_)
         self._memory.refer(whole)
         self._emit(Op.CLEAR, self._emitter.number(type_))
         for component in node.components:
@@ -262,7 +262,7 @@ class Expressions:
                 place = self._designators.element(place, component.indices)
             self.assign(place, component.value)
         self._memory.refer(whole)
-        return Block(type_)
+        return Reference(type_)
 
     def _structure(self, node: ast.Aggregate, wanted: Type) -> Structure:
         type_: Type | None = self._context.unit.checked.types.get(node, UNKNOWN)
@@ -275,11 +275,11 @@ class Expressions:
             raise self._emitter.unlinked("nothing tells which structure an aggregate is")
         return type_
 
-    def assign(self, place: Place, node: ast.Expression) -> Place:
+    def assign(self, place: Location, node: ast.Expression) -> Location:
         """Store the value of an expression; gives the place to tell of."""
         ready = self._memory.ready(place)
         behind = self._writer.here
-        wanted = UNKNOWN if isinstance(ready, FormalView | PushedView) else ready.type
+        wanted = UNKNOWN if isinstance(ready, ViewParameter | PushedView) else ready.type
         self._memory.store(ready, self.value(node, wanted), behind)
         return ready
 

@@ -9,21 +9,21 @@ from grammar.semantics.types import CHAR, INT, REAL, UNKNOWN, Array, Structure, 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, bits_of, elements, offset_of, shared_cells
 from interp.bytecode.compiler.emitter import Emitter
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
+from interp.bytecode.compiler.locations import (
     DataCells,
-    Formal,
-    FormalView,
-    Hole,
-    Place,
+    FrameCells,
+    IndexCell,
+    Location,
     Pushed,
     PushedView,
-    Remote,
+    Reference,
+    ReferenceParameter,
     Scalar,
+    SystemVariable,
     Text,
     Value,
     View,
+    ViewParameter,
 )
 from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
 from interp.program.variables import is_complete, untyped_value
@@ -51,26 +51,26 @@ class Memory:
 
     # ----------------------------------------------------------------------- reading
 
-    def load(self, place: Place) -> Value:
+    def load(self, place: Location) -> Value:
         """The value of a place."""
         match place:
-            case Remote():
+            case SystemVariable():
                 return self.read(place)
-            case FormalView() | PushedView():
+            case ViewParameter() | PushedView():
                 return self.view(place)
         if isinstance(place.type, Plain):
             self._load_cell(place)
             return Scalar(place.type)
         self.refer(place)
-        return Block(place.type)
+        return Reference(place.type)
 
-    def _load_cell(self, place: Cells | DataCells | Formal | Pushed) -> None:
+    def _load_cell(self, place: FrameCells | DataCells | ReferenceParameter | Pushed) -> None:
         match place:
-            case Cells(offset):
+            case FrameCells(offset):
                 self._emit(Op.LOAD_LOCAL, offset)
             case DataCells(address):
                 self._emit(Op.LOAD_DATA, address)
-            case Formal(offset):
+            case ReferenceParameter(offset):
                 self._emit(Op.LOAD_REF, offset)
                 self._emit(Op.LOAD)
             case Pushed():
@@ -81,27 +81,27 @@ class Memory:
                 else:
                     last.op = element
 
-    def refer(self, place: Cells | DataCells | Formal | Pushed) -> None:
+    def refer(self, place: FrameCells | DataCells | ReferenceParameter | Pushed) -> None:
         """Leave a reference to a place on the stack."""
         match place:
-            case Cells(offset, type_):
+            case FrameCells(offset, type_):
                 self._emit(Op.REF_LOCAL, offset, self._emitter.number(type_))
             case DataCells(address, type_):
                 self._emit(Op.REF_DATA, address, self._emitter.number(type_))
-            case Formal(offset):
+            case ReferenceParameter(offset):
                 self._emit(Op.LOAD_REF, offset)
 
-    def refer_below(self, place: Cells, at: int) -> None:
+    def refer_below(self, place: FrameCells, at: int) -> None:
         """Leave a reference to cells of the frame below what was pushed from ``at`` on."""
         self._writer.insert(at, Op.REF_LOCAL, place.offset, self._emitter.number(place.type))
 
-    def view(self, place: FormalView | PushedView, *, may_be_missing: bool = False) -> View:
+    def view(self, place: ViewParameter | PushedView, *, may_be_missing: bool = False) -> View:
         """Leave a view on the stack."""
-        if isinstance(place, FormalView):
+        if isinstance(place, ViewParameter):
             self._emit(Op.PASS_VIEW if may_be_missing else Op.LOAD_VIEW, place.offset)
         return View(place.element, place.dimensions, place.most)
 
-    def as_view(self, value: Block | View, at: int | None = None) -> View:
+    def as_view(self, value: Reference | View, at: int | None = None) -> View:
         """Make a view of a reference to an array: of the one on top, or of one pushed before."""
         if isinstance(value, View):
             return value
@@ -110,7 +110,7 @@ class Memory:
         self._writer.insert(place, Op.VIEW, self._emitter.number(value.type))
         return View(value.type.element, len(value.type.sizes), elements(value.type))
 
-    def read(self, place: Remote) -> Value:
+    def read(self, place: SystemVariable) -> Value:
         """Ask the world for a value."""
         type_ = place.type
         if not is_complete(type_):
@@ -122,50 +122,52 @@ class Memory:
         if isinstance(type_, Plain):
             self._emit(Op.ASK, ask)
             return Scalar(type_)
-        kept = Cells(self._writer.temporary(type_), type_)
+        kept = FrameCells(self._writer.temporary(type_), type_)
         self.refer(kept)
         self._emit(Op.ASK, ask)
         self.refer(kept)
-        return Block(type_)
+        return Reference(type_)
 
-    def pushed_path(self, place: Remote) -> Items:
+    def pushed_path(self, place: SystemVariable) -> Items:
         """The path of a system variable as a part of a request; its indices are pushed."""
         parts: list[Argument] = []
         for step in place.path:
-            if isinstance(step, Hole):
+            if isinstance(step, IndexCell):
                 self._push_hole(step)
                 parts.append(Input(Mode.IN, self._emitter.number(INT)))
             else:
                 parts.append(Constant(step))
         return Items(tuple(parts))
 
-    def _push_hole(self, hole: Hole) -> None:
+    def _push_hole(self, hole: IndexCell) -> None:
         self._emit(Op.LOAD_REF if hole.is_formal else Op.LOAD_LOCAL, hole.offset)
         if hole.is_formal:
             self._emit(Op.LOAD)
 
     # ----------------------------------------------------------------------- parts
 
-    def member(self, base: Place, name: str) -> Place:
+    def member(self, base: Location, name: str) -> Location:
         """A component of a structure."""
         key = name.upper()
-        if isinstance(base, Remote):
+        if isinstance(base, SystemVariable):
             known = base.type.member(key) if isinstance(base.type, Structure) else None
-            return Remote((*base.path, key), known or UNKNOWN)
-        if isinstance(base, FormalView | PushedView) or not isinstance(base.type, Structure):
+            return SystemVariable((*base.path, key), known or UNKNOWN)
+        if isinstance(base, ViewParameter | PushedView) or not isinstance(base.type, Structure):
             raise self._emitter.unlinked(f"{key} is a member of nothing")
         found = offset_of(base.type, (key,))
         if found is None:
             raise self._emitter.unlinked(f"{base.type} has no component {name} that is known")
         return self._part(base, *found)
 
-    def _part(self, base: Cells | DataCells | Formal | Pushed, offset: int, type_: Type) -> Place:
+    def _part(
+        self, base: FrameCells | DataCells | ReferenceParameter | Pushed, offset: int, type_: Type
+    ) -> Location:
         match base:
-            case Cells(first):
-                return Cells(first + offset, type_)
+            case FrameCells(first):
+                return FrameCells(first + offset, type_)
             case DataCells(first):
                 return DataCells(first + offset, type_)
-        through = base.offset if isinstance(base, Formal) else base.through
+        through = base.offset if isinstance(base, ReferenceParameter) else base.through
         self.refer(base)
         last = self._writer.last()
         if last is not None and last.op is Op.MEMBER:
@@ -177,14 +179,14 @@ class Memory:
         return Pushed(type_, through)
 
     def fixed_element(
-        self, base: Cells | DataCells, indices: tuple[int, ...]
-    ) -> Cells | DataCells | None:
+        self, base: FrameCells | DataCells, indices: tuple[int, ...]
+    ) -> FrameCells | DataCells | None:
         """An element, or what is left of an array, by indices that are known and inside."""
         found = offset_of(base.type, indices)
         if found is None:
             return None
-        if isinstance(base, Cells):
-            return Cells(base.offset + found[0], found[1])
+        if isinstance(base, FrameCells):
+            return FrameCells(base.offset + found[0], found[1])
         return DataCells(base.address + found[0], found[1])
 
     # ----------------------------------------------------------------------- converting
@@ -212,32 +214,32 @@ class Memory:
 
     # ----------------------------------------------------------------------- storing
 
-    def ready(self, place: Place) -> Place:
+    def ready(self, place: Location) -> Location:
         """Push what a place needs below the value that is to be stored."""
         match place:
-            case Formal():
+            case ReferenceParameter():
                 self.refer(place)
                 return Pushed(place.type, place.offset)
-            case FormalView():
+            case ViewParameter():
                 self.view(place)
                 return PushedView(place.element, place.dimensions, place.offset, place.most)
-            case Cells() | DataCells() if not isinstance(place.type, Plain):
+            case FrameCells() | DataCells() if not isinstance(place.type, Plain):
                 self.refer(place)
         return place
 
-    def store(self, place: Place, value: Value, behind: int) -> None:
+    def store(self, place: Location, value: Value, behind: int) -> None:
         """Store the value on top in a place made `ready`; ``behind`` is where the value begins."""
-        if isinstance(place, Remote):
+        if isinstance(place, SystemVariable):
             self._write(place, value, behind)
             return
         if isinstance(place, PushedView):
             self._fill(View(place.element, place.dimensions, place.most), value)
             return
-        assert not isinstance(place, FormalView), "made ready"
+        assert not isinstance(place, ViewParameter), "made ready"
         if isinstance(place.type, Plain):
             self.convert(value, place.type)
             match place:
-                case Cells(offset):
+                case FrameCells(offset):
                     self._emit(Op.STORE_LOCAL, offset)
                 case DataCells(address):
                     self._emit(Op.STORE_DATA, address)
@@ -249,12 +251,12 @@ class Memory:
     def store_block(self, type_: Type, value: Value, behind: int) -> None:
         """Store in a structure or array whose reference lies below the value."""
         match value:
-            case Block(of) if of == type_:
+            case Reference(of) if of == type_:
                 self._emit(Op.COPY, self._emitter.number(type_))
-            case Block(of) if shared_cells(type_, of) is not None:
+            case Reference(of) if shared_cells(type_, of) is not None:
                 self._emit(Op.FILL_POSE, self._emitter.number(type_), self._emitter.number(of))
             case _ if isinstance(type_, Array):
-                target = self.as_view(Block(type_), at=behind)
+                target = self.as_view(Reference(type_), at=behind)
                 self._fill(target, value)
             case _:
                 raise self._emitter.fail("inadmissible")
@@ -267,7 +269,7 @@ class Memory:
             self._emit(Op.SET_TEXT, self._context.tables.text(value.text))
             return
         if isinstance(value, Scalar) or (
-            isinstance(value, Block) and not isinstance(value.type, Array)
+            isinstance(value, Reference) and not isinstance(value.type, Array)
         ):
             raise self._emitter.fail("inadmissible")
         given = self.as_view(value)
@@ -277,17 +279,17 @@ class Memory:
             raise self._emitter.refuse(f"an array of {given.element} fills one of {target.element}")
         self._emit(Op.FILL_ARRAY, self._emitter.number(target.element), target.dimensions)
 
-    def _write(self, place: Remote, value: Value, behind: int) -> None:
+    def _write(self, place: SystemVariable, value: Value, behind: int) -> None:
         """Tell the world a value. The indices of the path come before the value."""
         path = self._path_below(place, behind)
-        part = self.remote_value(place.type, value, behind + _pushes(place))
+        part = self.remote_value(place.type, value, behind + _pushed_by(place))
         self._emitter.ask("Write", path, part)
 
-    def _path_below(self, place: Remote, behind: int) -> Items:
+    def _path_below(self, place: SystemVariable, behind: int) -> Items:
         """The path as a part of a request; its indices are pushed below the value."""
         parts: list[Argument] = []
         for step in place.path:
-            if isinstance(step, Hole):
+            if isinstance(step, IndexCell):
                 parts.append(Input(Mode.IN, self._emitter.number(INT)))
                 self._writer.insert(
                     behind, Op.LOAD_REF if step.is_formal else Op.LOAD_LOCAL, step.offset
@@ -308,8 +310,8 @@ class Memory:
         if isinstance(type_, Plain):
             self.convert(value, type_)
             return Input(Mode.IN, self._emitter.number(type_))
-        if value != Block(type_):
-            kept = Cells(self._writer.temporary(type_), type_)
+        if value != Reference(type_):
+            kept = FrameCells(self._writer.temporary(type_), type_)
             self.refer_below(kept, behind)
             self.store_block(type_, value, behind + 1)
             self.refer(kept)
@@ -322,16 +324,16 @@ class Memory:
                 return Constant(text)
             case Scalar(type_):
                 return Input(Mode.IN, self._emitter.number(type_))
-            case Block(type_):
+            case Reference(type_):
                 return Input(Mode.REF, self._emitter.number(type_))
         return Input(Mode.VIEW, self._emitter.number(value.element), value.dimensions)
 
     # ----------------------------------------------------------------------- telling
 
-    def tell(self, place: Place) -> None:
+    def tell(self, place: Location) -> None:
         """Tell the trace that a place was assigned, just now."""
         match place:
-            case Cells(offset, type_):
+            case FrameCells(offset, type_):
                 self._emit(Op.TELL_LOCAL, offset, self._emitter.number(type_))
             case DataCells(address, type_):
                 self._emit(Op.TELL_DATA, address, self._emitter.number(type_))
@@ -350,7 +352,7 @@ class Memory:
 _ELEMENTS = {Op.INDEX_LOCAL: Op.ELEMENT_LOCAL, Op.INDEX_DATA: Op.ELEMENT_DATA}
 
 
-def _pushes(place: Remote) -> int:
+def _pushed_by(place: SystemVariable) -> int:
     """How many instructions push the indices of a path."""
-    holes = [step for step in place.path if isinstance(step, Hole)]
+    holes = [step for step in place.path if isinstance(step, IndexCell)]
     return sum(2 if hole.is_formal else 1 for hole in holes)

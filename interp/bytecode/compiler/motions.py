@@ -11,14 +11,14 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Deferred
 from interp.bytecode.compiler.expressions import Expressions
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
-    Place,
+from interp.bytecode.compiler.locations import (
+    FrameCells,
+    Location,
     Pushed,
     PushedView,
-    Remote,
+    Reference,
     Scalar,
+    SystemVariable,
     Value,
 )
 from interp.bytecode.program import (
@@ -64,14 +64,14 @@ class Motions:
 
     def _move(self, node: ast.Motion, *, is_early: bool = False) -> tuple[Argument, ...]:
         """The parts of a motion; ``is_early`` where something may change before the request."""
-        auxiliary: Cells | None = None
+        auxiliary: FrameCells | None = None
         if node.auxiliary is not None:
             auxiliary = self._kept(node.auxiliary)
         target = self._memory.handed(self._target(node, is_early=is_early))
         parts: list[Argument] = [Constant(node.kind), target, Constant(None)]
         if auxiliary is not None:
             self._memory.refer(auxiliary)
-            parts[2] = self._memory.handed(Block(auxiliary.type))
+            parts[2] = self._memory.handed(Reference(auxiliary.type))
         parts.append(self._optional(node.angle))
         parts.append(self._values(node.values, is_early=is_early))
         parts.append(Items(tuple(Constant(one) for one in node.criteria)))
@@ -101,26 +101,26 @@ class Motions:
         if found is None:
             return True
         place = self._context.variables.get(found.symbol)
-        return isinstance(place, Remote) or (
+        return isinstance(place, SystemVariable) or (
             place is None and found.symbol not in self._context.tables.places
         )
 
-    def _kept(self, node: ast.Expression) -> Cells:
+    def _kept(self, node: ast.Expression) -> FrameCells:
         """A copy of a value, in the frame."""
         behind = self._writer.here
         value = self._expressions.value(node)
-        if not isinstance(value, Block | Scalar):
+        if not isinstance(value, Reference | Scalar):
             raise self._emitter.refuse("a motion goes to what is no position")
         return self._kept_value(value, behind)
 
-    def _kept_value(self, value: Block | Scalar, behind: int) -> Cells:
+    def _kept_value(self, value: Reference | Scalar, behind: int) -> FrameCells:
         """A copy of what has been pushed since the code was ``behind`` instructions long."""
-        kept = Cells(self._writer.temporary(value.type), value.type)
+        kept = FrameCells(self._writer.temporary(value.type), value.type)
         self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
         self._emit(
             *(
                 (Op.COPY, self._emitter.number(kept.type))
-                if isinstance(value, Block)
+                if isinstance(value, Reference)
                 else (Op.STORE,)
             )
         )
@@ -137,12 +137,12 @@ class Motions:
         found: list[Argument] = []
         for number, node in enumerate(nodes, 1):
             place = self._designators.place(node.target)
-            if not isinstance(place, Remote):
+            if not isinstance(place, SystemVariable):
                 raise self._emitter.unlinked("WITH gives a value to what is no system variable")
             path = self._memory.pushed_path(place)
             behind = self._writer.here
             value = self._expressions.value(node.value, place.type)
-            if isinstance(value, Block) and (
+            if isinstance(value, Reference) and (
                 is_early or self._disturbs(_parts_of_values(nodes[number:]))
             ):
                 kept = self._kept_value(value, behind)
@@ -158,7 +158,7 @@ class Motions:
 
     def _word(self, node: ast.Expression) -> Argument:
         value = self._expressions.value(node)
-        if isinstance(value, Block):
+        if isinstance(value, Reference):
             value = self._memory.as_view(value)
         if isinstance(value, Scalar):
             raise self._emitter.fail("argument")
@@ -236,17 +236,17 @@ class Motions:
             return Constant(None)
         before = self._writer.here
         place = self._designators.place(action.target)
-        if not isinstance(place, Remote):
+        if not isinstance(place, SystemVariable):
             self._forget(place, before)
             return Constant(None)
         value = self._known(action.value, place.type)
         path = self._memory.pushed_path(place)
         return Items((path, self._as_part(value)))
 
-    def _forget(self, place: Place, behind: int) -> None:
+    def _forget(self, place: Location, behind: int) -> None:
         """Take a place from the stack that was only looked for; its index may be wrong."""
         if isinstance(place, Pushed):
-            kept = Cells(self._writer.temporary(place.type), place.type)
+            kept = FrameCells(self._writer.temporary(place.type), place.type)
             self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
             self._emit(Op.COPY, self._emitter.number(kept.type))
         elif isinstance(place, PushedView):

@@ -18,18 +18,18 @@ from grammar.syntax.references import Space
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.expressions import Expressions
-from interp.bytecode.compiler.places import (
-    Block,
-    Cells,
-    Formal,
-    FormalView,
-    Place,
+from interp.bytecode.compiler.locations import (
+    FrameCells,
+    Location,
     Pushed,
     PushedView,
-    Remote,
+    Reference,
+    ReferenceParameter,
     Scalar,
+    SystemVariable,
     Text,
     Value,
+    ViewParameter,
     is_view_of,
 )
 from interp.bytecode.program import (
@@ -43,7 +43,7 @@ from interp.bytecode.program import (
     Mode,
     Program,
 )
-from interp.bytecode.verifier.signatures import unlike
+from interp.bytecode.verifier.signatures import call_mismatch
 from interp.program.reads import is_variable
 from interp.program.variables import untyped_result
 from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
@@ -90,11 +90,11 @@ class PredefinedCalls:
         if isinstance(closed, Plain):
             self._cross(name, parts, number, is_builtin=is_builtin)
             return Scalar(closed)
-        kept = Cells(self._writer.temporary(closed), closed)
+        kept = FrameCells(self._writer.temporary(closed), closed)
         self._memory.refer(kept)
         self._cross(name, parts, number, is_builtin=is_builtin)
         self._memory.refer(kept)
-        return Block(closed)
+        return Reference(closed)
 
     def _cross(
         self, name: str, parts: list[Argument], result: int | None, *, is_builtin: bool
@@ -106,7 +106,7 @@ class PredefinedCalls:
             self._emit(Op.ASK, tables.ask(ask))
             return
         builtin = Builtin(name, tuple(parts), result)
-        reason = unlike(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
+        reason = call_mismatch(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
         if reason is not None:
             raise self._emitter.refuse(f"{name}: {reason}")
         self._emit(Op.BUILTIN, tables.builtin(builtin))
@@ -163,32 +163,32 @@ class PredefinedCalls:
         if not (is_builtin and reads_text(type_) and is_variable(self._context.unit, argument)):
             return self._expressions.value(argument, type_)
         place = self._designators.place(argument)
-        if isinstance(place, FormalView) and is_view_of(place, CHAR, 1):
+        if isinstance(place, ViewParameter) and is_view_of(place, CHAR, 1):
             return self._memory.view(place, may_be_missing=True)
         return self._memory.load(place)
 
-    def _changed(self, place: Place) -> Argument:
-        if isinstance(place, Remote):
+    def _changed(self, place: Location) -> Argument:
+        if isinstance(place, SystemVariable):
             return self._changed_remote(place)
         through: int | None = None
-        if isinstance(place, Formal | FormalView):
+        if isinstance(place, ReferenceParameter | ViewParameter):
             through = place.offset
         elif isinstance(place, Pushed | PushedView):
             through = place.through
-        if isinstance(place, FormalView | PushedView):
+        if isinstance(place, ViewParameter | PushedView):
             given = self._memory.handed(self._memory.view(place))
         else:
             self._memory.refer(place)
-            given = self._memory.handed(Block(place.type))
+            given = self._memory.handed(Reference(place.type))
         assert isinstance(given, Input), "it is on the stack"
         return Changed(given, through)
 
-    def _changed_remote(self, place: Remote) -> Argument:
+    def _changed_remote(self, place: SystemVariable) -> Argument:
         """A copy of a system variable, which is written back if it has changed."""
         behind = self._writer.here
         value = self._memory.read(place)
-        assert isinstance(value, Scalar | Block), "what is read has a known type"
-        kept = Cells(self._writer.temporary(value.type), value.type)
+        assert isinstance(value, Scalar | Reference), "what is read has a known type"
+        kept = FrameCells(self._writer.temporary(value.type), value.type)
         if isinstance(value, Scalar):
             self._emit(Op.STORE_LOCAL, kept.offset)
         else:

@@ -16,16 +16,16 @@ from interp.bytecode.compiler.calls import Formals, formals_of
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Binding, Context, Deferred, Refusal, Shared
 from interp.bytecode.compiler.data import declare_data, initial_values
-from interp.bytecode.compiler.places import (
-    Cells,
+from interp.bytecode.compiler.locations import (
     DataCells,
-    Formal,
-    FormalView,
-    Hole,
-    Place,
+    FrameCells,
+    IndexCell,
+    Location,
     Pushed,
     PushedView,
-    Remote,
+    ReferenceParameter,
+    SystemVariable,
+    ViewParameter,
 )
 from interp.bytecode.compiler.predefined_calls import BY_TEXT
 from interp.bytecode.compiler.statements import Statements
@@ -146,20 +146,26 @@ class Project:
         if binding is not None:
             path, type_ = binding
             steps = tuple(
-                Hole(writer.parameter(f"%{symbol.key}", Mode.IN, INT)) if step is None else step
+                IndexCell(writer.parameter(f"%{symbol.key}", Mode.IN, INT))
+                if step is None
+                else step
                 for step in path
             )
-            context.variables[symbol] = Remote(steps, type_)
+            context.variables[symbol] = SystemVariable(steps, type_)
             return
         type_, is_in = formals.types[place], formals.is_in[place]
         if isinstance(type_, Array) and (not is_in or None in type_.sizes):
             element, count = self._tables.closed(type_.element), len(type_.sizes)
             offset = writer.parameter(symbol.name, Mode.VIEW, element, count)
-            context.variables[symbol] = FormalView(offset, element, count, (context.number, place))
+            context.variables[symbol] = ViewParameter(
+                offset, element, count, (context.number, place)
+            )
             return
         closed = self._tables.closed(type_)
         offset = writer.parameter(symbol.name, Mode.IN if is_in else Mode.REF, closed)
-        context.variables[symbol] = Cells(offset, closed) if is_in else Formal(offset, closed)
+        context.variables[symbol] = (
+            FrameCells(offset, closed) if is_in else ReferenceParameter(offset, closed)
+        )
 
     def _declare(self, context: Context, routine: Routine, formals: set[Symbol]) -> None:
         """The local data. What has no known type is refused where it is used."""
@@ -175,7 +181,7 @@ class Project:
                     continue
                 closed = self._tables.closed(type_)
                 offset = context.writer.local(found.symbol.name, closed)
-                context.variables[found.symbol] = Cells(offset, closed)
+                context.variables[found.symbol] = FrameCells(offset, closed)
 
     # ----------------------------------------------------------------------- deferred
 
@@ -210,30 +216,32 @@ class Project:
                 found.update(dict.fromkeys(_named_by_text(owner, one)))
         return list(found)
 
-    def _captured(self, writer: Writer, symbol: Symbol, place: Place) -> Place:
+    def _captured(self, writer: Writer, symbol: Symbol, place: Location) -> Location:
         """A variable of the owner as a parameter."""
         match place:
-            case Cells(offset, type_) | Formal(offset, type_):
+            case FrameCells(offset, type_) | ReferenceParameter(offset, type_):
                 writer.captures.append(offset)
-                return Formal(writer.parameter(symbol.name, Mode.REF, type_), type_)
-            case FormalView(offset, element, dimensions, most):
+                return ReferenceParameter(writer.parameter(symbol.name, Mode.REF, type_), type_)
+            case ViewParameter(offset, element, dimensions, most):
                 writer.captures.append(offset)
                 mine = writer.parameter(symbol.name, Mode.VIEW, element, dimensions)
-                return FormalView(mine, element, dimensions, most)
-            case Remote():
+                return ViewParameter(mine, element, dimensions, most)
+            case SystemVariable():
                 return self._captured_remote(writer, symbol, place)
         assert not isinstance(place, DataCells | Pushed | PushedView), "a variable of a frame"
         return place
 
-    def _captured_remote(self, writer: Writer, symbol: Symbol, place: Remote) -> Remote:
-        steps: list[str | int | Hole] = []
+    def _captured_remote(
+        self, writer: Writer, symbol: Symbol, place: SystemVariable
+    ) -> SystemVariable:
+        steps: list[str | int | IndexCell] = []
         for step in place.path:
-            if isinstance(step, Hole):
+            if isinstance(step, IndexCell):
                 writer.captures.append(step.offset)
-                steps.append(Hole(writer.parameter(f"%{symbol.key}", Mode.REF, INT), True))
+                steps.append(IndexCell(writer.parameter(f"%{symbol.key}", Mode.REF, INT), True))
             else:
                 steps.append(step)
-        return Remote(tuple(steps), place.type)
+        return SystemVariable(tuple(steps), place.type)
 
 
 def _named_by_text(owner: Context, call: ast.Call) -> list[Symbol]:

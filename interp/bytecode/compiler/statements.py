@@ -18,8 +18,14 @@ from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Context
 from interp.bytecode.compiler.control_flow import ControlFlow
 from interp.bytecode.compiler.emitter import Emitter, Ended
+from interp.bytecode.compiler.locations import (
+    FrameCells,
+    IndexCell,
+    Reference,
+    Scalar,
+    SystemVariable,
+)
 from interp.bytecode.compiler.motions import Motions
-from interp.bytecode.compiler.places import Block, Cells, Hole, Remote, Scalar
 from interp.bytecode.program import CodeKind, Constant, Input, Mode
 from interp.values.faults import FAULTS
 
@@ -76,7 +82,7 @@ class Statements:
                     found = self._context.unit.found(declarator.name)
                     if declarator.value is not None and found is not None:
                         place = self._context.variables.get(found.symbol)
-                        if isinstance(place, Cells):
+                        if isinstance(place, FrameCells):
                             self._expressions.assign(place, declarator.value)
 
     # ----------------------------------------------------------------------- statements
@@ -96,7 +102,7 @@ class Statements:
     def _assignment(self, node: ast.Assignment, _end: Label) -> None:
         place = self._designators.place(node.target)
         match place:
-            case Remote(path=("$CYCFLAG", int() | Hole())):
+            case SystemVariable(path=("$CYCFLAG", int() | IndexCell())):
                 number = self._memory.pushed_path(place).parts[1]
                 condition = self.motions.deferred(node.value, CodeKind.CONDITION)
                 self._emitter.ask("SetCyclicFlag", number, condition)
@@ -107,7 +113,7 @@ class Statements:
         value = self._calls.called(node.call, is_value=False)
         if isinstance(value, Scalar):
             self._emit(Op.DROP)
-        elif isinstance(value, Block):  # nothing takes the reference
+        elif isinstance(value, Reference):  # nothing takes the reference
             self._emit(Op.CLEAR, self._emitter.number(value.type))
 
     def _proceed(self, _node: ast.OnErrorProceed, _end: Label) -> None:

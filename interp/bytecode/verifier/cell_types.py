@@ -7,7 +7,7 @@ from bisect import bisect_right
 from grammar.semantics.types import Array, Type
 from interp.bytecode.cell_layout import kind_at, path_to
 from interp.bytecode.program import Code, Mode, Parameter, Program, Slot
-from interp.bytecode.verifier.stack_types import Held, Refused, handed_over
+from interp.bytecode.verifier.stack_types import Refused, StackItem, item_of
 
 __all__ = ["CellTypes"]
 
@@ -22,8 +22,8 @@ class CellTypes:
         self._starts = [slot.offset for slot in self._slots]
         self._numbers = {type_: number for number, type_ in enumerate(program.types)}
 
-    def _value(self, type_: Type) -> Held:
-        return Held(Mode.IN, self._numbers[type_])
+    def _value(self, type_: Type) -> StackItem:
+        return StackItem(Mode.IN, self._numbers[type_])
 
     def slot(self, place: int) -> Slot:
         """The parameter or local that a cell of the frame belongs to."""
@@ -46,11 +46,11 @@ class CellTypes:
         type_ = self._types[self._program.data[number].type]
         return type_, address - self._program.addresses[number]
 
-    def local(self, place: int) -> Held:
+    def local(self, place: int) -> StackItem:
         """What a cell of the frame holds."""
         return self._value(kind_at(*self._variable(place)))
 
-    def data(self, address: int) -> Held:
+    def data(self, address: int) -> StackItem:
         """What a cell of the data lists holds."""
         return self._value(kind_at(*self._data_variable(address)))
 
@@ -67,7 +67,7 @@ class CellTypes:
         if path_to(whole, offset, self._types[number]) is None:
             raise Refused(f"no {self._types[number]} is there")
 
-    def parameter(self, place: int, mode: Mode) -> Held:
+    def parameter(self, place: int, mode: Mode) -> StackItem:
         """The reference or view that a parameter is."""
         slot = self.slot(place)
         parameter = slot.variable
@@ -75,7 +75,7 @@ class CellTypes:
             raise Refused("no parameter begins there")
         if parameter.mode is not mode:
             raise Refused(f"the parameter is no {mode.value}")
-        return handed_over(parameter)
+        return item_of(parameter)
 
     def array(self, number: int) -> Array:
         """The array type of a number."""

@@ -53,7 +53,7 @@ class Flow:
     def largest(self, stacks: Sequence[Stack | None]) -> int:
         """The most cells that the stack ever has."""
         return max(
-            (sum(held.cells for held in stack) for stack in stacks if stack is not None), default=0
+            (sum(item.cells for item in stack) for stack in stacks if stack is not None), default=0
         )
 
     def _after(self, place: int, before: Stack) -> Iterator[tuple[int, Stack]]:

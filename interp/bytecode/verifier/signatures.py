@@ -31,7 +31,7 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.values.builtins import BUILTINS, reads_text
 
-__all__ = ["may_be_missing", "misfit", "unlike"]
+__all__ = ["call_mismatch", "may_be_missing", "request_mismatch"]
 
 #: What a field of a request may be, by its annotation.
 _KINDS: Mapping[str, str] = {
@@ -83,7 +83,7 @@ _SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
 # ------------------------------------------------------------------------------ do they fit?
 
 
-def misfit(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
+def request_mismatch(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
     """Why the parts are not those of the request, or ``None`` where they are."""
     if request not in _REQUESTS:
         return f"{request} is nothing that can be asked"
@@ -176,7 +176,7 @@ class _Fit:
         return isinstance(part, Input)
 
 
-def unlike(program: Program, builtin: Builtin) -> str | None:
+def call_mismatch(program: Program, builtin: Builtin) -> str | None:
     """Why an entry is no call of a predefined function, or ``None`` where it is one."""
     known = BUILTINS.get(builtin.name.upper())
     if known is None:

@@ -36,10 +36,10 @@ from interp.bytecode.verifier.cell_types import CellTypes
 from interp.bytecode.verifier.signatures import may_be_missing
 from interp.bytecode.verifier.stack_types import (
     NOTHING,
-    Held,
     Refused,
     Stack,
-    handed_over,
+    StackItem,
+    item_of,
     view_of,
 )
 from interp.bytecode.verifier.stack_types import reference as reference_to
@@ -58,7 +58,7 @@ class StackEffects:
         self._code = code
         self._types = program.types
         self._cells = CellTypes(program, code)
-        self._stack: list[Held] = []
+        self._stack: list[StackItem] = []
         #: What ``t`` and ``ENUM`` stand for in the effect at hand.
         self._same = NOTHING
 
@@ -78,86 +78,86 @@ class StackEffects:
         else:
             self._stack.append(getattr(self, step.name)(*given))
 
-    def _take(self, wanted: Held) -> None:
+    def _take(self, wanted: StackItem) -> None:
         if not self._stack or self._stack.pop() != wanted:
             raise Refused("the stack does not hold what it takes")
 
-    def _pop(self) -> Held:
+    def _pop(self) -> StackItem:
         if not self._stack:
             raise Refused("the stack is empty")
         return self._stack.pop()
 
     # ----------------------------------------------------------------------- items
 
-    def value(self, type_: int) -> Held:
+    def value(self, type_: int) -> StackItem:
         """A value of this type."""
-        return Held(Mode.IN, type_)
+        return StackItem(Mode.IN, type_)
 
-    def nothing(self) -> Held:
+    def nothing(self) -> StackItem:
         """What an argument that was left out is."""
         return NOTHING
 
-    def same(self) -> Held:
+    def same(self) -> StackItem:
         """What was taken as any value."""
         return self._same
 
-    def local(self, cell: int) -> Held:
+    def local(self, cell: int) -> StackItem:
         """A value such as a cell of the frame holds."""
         return self._cells.local(cell)
 
-    def data(self, cell: int) -> Held:
+    def data(self, cell: int) -> StackItem:
         """A value such as a cell of the data lists holds."""
         return self._cells.data(cell)
 
-    def reference(self, type_: int) -> Held:
+    def reference(self, type_: int) -> StackItem:
         """A reference to this type."""
         return reference_to(type_)
 
-    def parameter(self, place: int) -> Held:
+    def parameter(self, place: int) -> StackItem:
         """The reference that a parameter is."""
         return self._cells.parameter(place, Mode.REF)
 
-    def element(self, array: int) -> Held:
+    def element(self, array: int) -> StackItem:
         """A reference to an element of an array type."""
         return reference_to(self._element(array))
 
-    def element_value(self, array: int) -> Held:
+    def element_value(self, array: int) -> StackItem:
         """The value of an element of an array type."""
         return self._cell_of(self.element(array))
 
-    def view(self, element: int, dimensions: int) -> Held:
+    def view(self, element: int, dimensions: int) -> StackItem:
         """A view of elements of this type."""
         return view_of(element, dimensions)
 
-    def missing_view(self, element: int, dimensions: int) -> Held:
+    def missing_view(self, element: int, dimensions: int) -> StackItem:
         """The same where it may be missing."""
         return replace(view_of(element, dimensions), is_missing=True)
 
-    def letters(self) -> Held:
+    def letters(self) -> StackItem:
         """A view of CHARs in one dimension."""
         return view_of(SCALARS.index("CHAR"), 1)
 
-    def array_view(self, array: int) -> Held:
+    def array_view(self, array: int) -> StackItem:
         """A view of an array type."""
         return view_of(self._element(array), self._rank(array))
 
-    def row(self, array: int, count: int) -> Held:
+    def row(self, array: int, count: int) -> StackItem:
         """A view of what is left of an array type behind so many indices."""
         return view_of(self._element(array), self._rank(array) - count)
 
-    def view_parameter(self, place: int) -> Held:
+    def view_parameter(self, place: int) -> StackItem:
         """The view that a parameter is."""
         return self._cells.parameter(place, Mode.VIEW)
 
-    def missing_view_parameter(self, place: int) -> Held:
+    def missing_view_parameter(self, place: int) -> StackItem:
         """The same where it may be missing."""
         return replace(self.view_parameter(place), is_missing=True)
 
-    def view_element(self, place: int) -> Held:
+    def view_element(self, place: int) -> StackItem:
         """A reference to an element of the view that a parameter is."""
         return reference_to(self.view_parameter(place).type)
 
-    def view_row(self, place: int, count: int) -> Held:
+    def view_row(self, place: int, count: int) -> StackItem:
         """A view of what is left of that view behind so many indices."""
         whole = self.view_parameter(place)
         return view_of(whole.type, whole.cells - 1 - count)
@@ -168,11 +168,11 @@ class StackEffects:
     def _rank(self, array: int) -> int:
         return len(self._cells.array(array).sizes)
 
-    def _cell_of(self, held: Held) -> Held:
+    def _cell_of(self, item: StackItem) -> StackItem:
         """What the cell holds that a reference leads to."""
-        if held.mode is not Mode.REF or not isinstance(self._types[held.type], Plain):
+        if item.mode is not Mode.REF or not isinstance(self._types[item.type], Plain):
             raise Refused("a reference to a cell is needed")
-        return Held(Mode.IN, held.type)
+        return StackItem(Mode.IN, item.type)
 
     # ----------------------------------------------------------------------- taken by rules
 
@@ -206,10 +206,10 @@ class StackEffects:
 
     def take_whole(self, offset: int, number: int) -> None:
         """A reference to something with a part of this type so many cells behind its start."""
-        held = self._pop()
-        if held.mode is not Mode.REF:
+        item = self._pop()
+        if item.mode is not Mode.REF:
             raise Refused("a reference is needed")
-        self._cells.check_part(self._types[held.type], offset, number)
+        self._cells.check_part(self._types[item.type], offset, number)
 
     def take_integers(self, count: int) -> None:
         """So many INTs."""
@@ -232,17 +232,17 @@ class StackEffects:
         if callee.kind is not CodeKind.ROUTINE:
             raise Refused(f"{callee.name} is no routine")
         for parameter in reversed(callee.parameters):
-            held = self._pop()
+            item = self._pop()
             wanted = self._argument(parameter)
-            is_left_out = held == NOTHING and wanted.mode is Mode.IN
-            if replace(held, is_missing=False) != wanted and not is_left_out:
+            is_left_out = item == NOTHING and wanted.mode is Mode.IN
+            if replace(item, is_missing=False) != wanted and not is_left_out:
                 raise Refused(f"the argument for {parameter.name} is of another kind")
 
-    def _argument(self, parameter: Parameter) -> Held:
+    def _argument(self, parameter: Parameter) -> StackItem:
         """What the stack holds for a parameter: a structure lies there by reference."""
         if parameter.mode is Mode.IN and not isinstance(self._types[parameter.type], Plain):
             return reference_to(parameter.type)
-        return handed_over(parameter)
+        return item_of(parameter)
 
     def push_result(self, number: int) -> None:
         """The result of a routine, if it has one."""
@@ -277,8 +277,8 @@ class StackEffects:
             self._take(reference_to(entry.result))
         inputs = list(inputs_of(entry.parts))
         for given, is_text in zip_longest(reversed(inputs), reversed(missing)):
-            held = self._pop()
-            if (replace(held, is_missing=False) if is_text else held) != handed_over(given):
+            item = self._pop()
+            if (replace(item, is_missing=False) if is_text else item) != item_of(given):
                 raise Refused("an input is of another kind")
 
     def _push_entry(self, entry: Ask | Builtin) -> None:
@@ -361,7 +361,7 @@ class StackEffects:
         """A loop can be counted in a cell of the data lists."""
         self._check_counter(self.data(counter), limit, step)
 
-    def _check_counter(self, counter: Held, limit: int, step: int) -> None:
+    def _check_counter(self, counter: StackItem, limit: int, step: int) -> None:
         integer = self.value(_INT)
         if counter != integer or self.local(limit) != integer or step == 0:
             raise Refused("a counter and a limit that are INT and a step that is not 0 are needed")

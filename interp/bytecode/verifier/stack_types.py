@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from grammar.semantics.types import SCALARS
 from interp.bytecode.program import Input, Mode, Parameter
 
-__all__ = ["NOTHING", "SCALAR", "Held", "Refused", "Stack", "handed_over", "reference", "view_of"]
+__all__ = ["NOTHING", "Refused", "Stack", "StackItem", "item_of", "reference", "view_of"]
 
 
 class Refused(Exception):
@@ -16,7 +14,7 @@ class Refused(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class StackItem:
     """What lies on the stack.
 
     ``mode`` is ``IN`` for a value of one cell. ``type`` is a number of the program; -1 stands for
@@ -29,23 +27,21 @@ class Held:
     is_missing: bool = False
 
 
-Stack = tuple[Held, ...]
+Stack = tuple[StackItem, ...]
 
-NOTHING = Held(Mode.IN, -1)
-#: A value of each scalar type, by its name.
-SCALAR: Mapping[str, Held] = {name: Held(Mode.IN, number) for number, name in enumerate(SCALARS)}
+NOTHING = StackItem(Mode.IN, -1)
 
 
-def reference(type_: int) -> Held:
+def reference(type_: int) -> StackItem:
     """A reference to a place of this type."""
-    return Held(Mode.REF, type_)
+    return StackItem(Mode.REF, type_)
 
 
-def view_of(type_: int, dimensions: int) -> Held:
+def view_of(type_: int, dimensions: int) -> StackItem:
     """A view of an array that has elements of this type."""
-    return Held(Mode.VIEW, type_, 1 + dimensions)
+    return StackItem(Mode.VIEW, type_, 1 + dimensions)
 
 
-def handed_over(given: Parameter | Input) -> Held:
+def item_of(given: Parameter | Input) -> StackItem:
     """An argument, as it lies on the stack."""
-    return Held(given.mode, given.type, 1 + given.dimensions)
+    return StackItem(given.mode, given.type, 1 + given.dimensions)

@@ -39,7 +39,7 @@ from interp.bytecode.program import (
     Record,
     printable,
 )
-from interp.bytecode.verifier.signatures import misfit, unlike
+from interp.bytecode.verifier.signatures import call_mismatch, request_mismatch
 from interp.values.faults import LinkError
 from interp.values.values import single
 
@@ -81,13 +81,13 @@ class _Tables:
             self._head(code)
         for ask in self._program.asks:
             self._entry(ask.request, ask.parts, ask.result, ask.request == "Invoke")
-            reason = misfit(self._program, ask.request, ask.parts)
+            reason = request_mismatch(self._program, ask.request, ask.parts)
             if reason is not None:
                 raise VerificationError(f"request {ask.request}: {reason}")
             self._result(ask.request, ask.result)
         for builtin in self._program.builtins:
             self._entry(builtin.name, builtin.parts, builtin.result, True)
-            reason = unlike(self._program, builtin)
+            reason = call_mismatch(self._program, builtin)
             if reason is not None:
                 raise VerificationError(f"function {builtin.name}: {reason}")
         for code in self._program.codes:

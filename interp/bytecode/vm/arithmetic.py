@@ -13,23 +13,23 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import cells_of, size, value_at
-from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed
 from interp.values.operators import PRIMITIVES, Primitive
 from interp.values.values import StructureValue, single
 
-__all__ = ["Computing"]
+__all__ = ["ArithmeticRules"]
 
 
-class Computing:
+class ArithmeticRules:
     """Makes the operations that compute."""
 
-    def __init__(self, kit: Kit) -> None:
-        self._types = kit.program.types
-        self._cells = kit.state.cells
-        self._stack = kit.state.stack
+    def __init__(self, runtime: Runtime) -> None:
+        self._types = runtime.program.types
+        self._cells = runtime.state.cells
+        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
@@ -46,13 +46,13 @@ class Computing:
             **rules,
             Op.ADD_INT: self._add_int,
             Op.ADD_CONSTANT: self._add_constant,
-            Op.CHAR_TO_INT: lambda here: here.after,  # a cell holds the code
+            Op.CHAR_TO_INT: lambda site: site.after,  # a cell holds the code
             Op.INT_TO_CHAR: self._int_to_char,
             Op.COMPOSE: self._compose,
         }
 
-    def _primitive(self, primitive: Primitive, here: Here) -> Operation:
-        compute, stack, after = primitive.function, self._stack, here.after
+    def _primitive(self, primitive: Primitive, site: Site) -> Operation:
+        compute, stack, after = primitive.function, self._stack, site.after
         if len(primitive.operands) == 1:
 
             def of_one() -> Operation:
@@ -68,8 +68,8 @@ class Computing:
 
         return of_two
 
-    def _unless(self, compare: Callable[[Any, Any], bool], here: Here, target: int) -> Operation:
-        pop, after, body = self._stack.pop, here.after, here.body
+    def _unless(self, compare: Callable[[Any, Any], bool], site: Site, target: int) -> Operation:
+        pop, after, body = self._stack.pop, site.after, site.body
 
         def operation() -> Operation:
             right = pop()
@@ -77,8 +77,8 @@ class Computing:
 
         return operation
 
-    def _whole(self, compute: Callable[[int, int], int], here: Here) -> Operation:
-        stack, after = self._stack, here.after
+    def _whole(self, compute: Callable[[int, int], int], site: Site) -> Operation:
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             right = stack.pop()
@@ -90,8 +90,8 @@ class Computing:
 
         return operation
 
-    def _single(self, compute: Callable[[float, float], float], here: Here) -> Operation:
-        stack, after = self._stack, here.after
+    def _single(self, compute: Callable[[float, float], float], site: Site) -> Operation:
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             right = stack.pop()
@@ -100,8 +100,8 @@ class Computing:
 
         return operation
 
-    def _add_int(self, here: Here) -> Operation:
-        stack, after = self._stack, here.after
+    def _add_int(self, site: Site) -> Operation:
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             right = stack.pop()
@@ -113,8 +113,8 @@ class Computing:
 
         return operation
 
-    def _add_constant(self, here: Here, constant: int) -> Operation:
-        stack, after = self._stack, here.after
+    def _add_constant(self, site: Site, constant: int) -> Operation:
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             result = stack[-1] + constant
@@ -125,8 +125,8 @@ class Computing:
 
         return operation
 
-    def _int_to_char(self, here: Here) -> Operation:
-        stack, after = self._stack, here.after
+    def _int_to_char(self, site: Site) -> Operation:
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             if not 0 <= stack[-1] <= 255:
@@ -135,8 +135,8 @@ class Computing:
 
         return operation
 
-    def _compose(self, here: Here, left: int, right: int) -> Operation:
-        cells, pop, after = self._cells, self._stack.pop, here.after
+    def _compose(self, site: Site, left: int, right: int) -> Operation:
+        cells, pop, after = self._cells, self._stack.pop, site.after
         left_type, right_type = self._types[left], self._types[right]
         width = size(right_type)
 

@@ -1,4 +1,4 @@
-"""Arrays: what the instructions for elements, rows, views and whole arrays do."""
+"""ArrayRules: what the instructions for elements, rows, views and whole arrays do."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from grammar.semantics.types import Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, size
 from interp.bytecode.program import Parameter
-from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.data_movement import load
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 
-__all__ = ["Arrays"]
+__all__ = ["ArrayRules"]
 
 
-class Arrays:
+class ArrayRules:
     """Makes the operations that work on arrays."""
 
-    def __init__(self, kit: Kit) -> None:
-        self._program = kit.program
-        self._types = kit.program.types
-        self._state = kit.state
-        self._cells = kit.state.cells
-        self._stack = kit.state.stack
+    def __init__(self, runtime: Runtime) -> None:
+        self._program = runtime.program
+        self._types = runtime.program.types
+        self._state = runtime.state
+        self._cells = runtime.state.cells
+        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
@@ -47,9 +47,9 @@ class Arrays:
             Op.SET_TEXT: self._set_text,
         }
 
-    def _index(self, here: Here, number: int) -> Operation:
+    def _index(self, site: Site, number: int) -> Operation:
         sizes, width = self._array(number)
-        stack, after = self._stack, here.after
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             place = _flat(stack, sizes) * width
@@ -58,9 +58,9 @@ class Arrays:
 
         return operation
 
-    def _index_local(self, here: Here, place: int, number: int) -> Operation:
+    def _index_local(self, site: Site, place: int, number: int) -> Operation:
         sizes, width = self._array(number)
-        state, stack, after = self._state, self._stack, here.after
+        state, stack, after = self._state, self._stack, site.after
         if len(sizes) > 1:
 
             def general() -> Operation:
@@ -79,9 +79,9 @@ class Arrays:
 
         return operation
 
-    def _index_data(self, here: Here, place: int, number: int) -> Operation:
+    def _index_data(self, site: Site, place: int, number: int) -> Operation:
         sizes, width = self._array(number)
-        stack, after = self._stack, here.after
+        stack, after = self._stack, site.after
         if len(sizes) > 1:
 
             def general() -> Operation:
@@ -100,11 +100,11 @@ class Arrays:
 
         return operation
 
-    def _element_local(self, here: Here, place: int, number: int) -> Operation:
+    def _element_local(self, site: Site, place: int, number: int) -> Operation:
         sizes, _ = self._array(number)
         if len(sizes) > 1:
-            return self._index_local(self._before(here, load(self._state, here)), place, number)
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+            return self._index_local(self._before(site, load(self._state, site)), place, number)
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
         length, before = sizes[0], place - 1
 
         def operation() -> Operation:
@@ -119,11 +119,11 @@ class Arrays:
 
         return operation
 
-    def _element_data(self, here: Here, place: int, number: int) -> Operation:
+    def _element_data(self, site: Site, place: int, number: int) -> Operation:
         sizes, _ = self._array(number)
         if len(sizes) > 1:
-            return self._index_data(self._before(here, load(self._state, here)), place, number)
-        cells, stack, after = self._cells, self._stack, here.after
+            return self._index_data(self._before(site, load(self._state, site)), place, number)
+        cells, stack, after = self._cells, self._stack, site.after
         length, before = sizes[0], place - 1
 
         def operation() -> Operation:
@@ -138,13 +138,13 @@ class Arrays:
 
         return operation
 
-    def _before(self, here: Here, after: Operation) -> Here:
+    def _before(self, site: Site, after: Operation) -> Site:
         """The place before an operation that the same instruction consists of."""
-        return Here(here.code, here.place, here.body, after)
+        return Site(site.code, site.place, site.body, after)
 
-    def _index_view(self, here: Here, place: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
-        dimensions, width = self._view_at(here, place)
+    def _index_view(self, site: Site, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
+        dimensions, width = self._view_at(site, place)
 
         def operation() -> Operation:
             base, *sizes = _view(cells, state.fp + place, dimensions)
@@ -153,8 +153,8 @@ class Arrays:
 
         return operation
 
-    def _push_no_view(self, here: Here, _type: int, dimensions: int) -> Operation:
-        stack, after = self._stack, here.after
+    def _push_no_view(self, site: Site, _type: int, dimensions: int) -> Operation:
+        stack, after = self._stack, site.after
         nothing = [None, *[0] * dimensions]
 
         def operation() -> Operation:
@@ -163,9 +163,9 @@ class Arrays:
 
         return operation
 
-    def _view(self, here: Here, number: int) -> Operation:
+    def _view(self, site: Site, number: int) -> Operation:
         sizes, _ = self._array(number)
-        stack, after = self._stack, here.after
+        stack, after = self._stack, site.after
 
         def operation() -> Operation:
             stack.extend(sizes)
@@ -173,9 +173,9 @@ class Arrays:
 
         return operation
 
-    def _load_view(self, here: Here, place: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
-        dimensions, _ = self._view_at(here, place)
+    def _load_view(self, site: Site, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
+        dimensions, _ = self._view_at(site, place)
 
         def operation() -> Operation:
             stack.extend(_view(cells, state.fp + place, dimensions))
@@ -183,9 +183,9 @@ class Arrays:
 
         return operation
 
-    def _pass_view(self, here: Here, place: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
-        dimensions, _ = self._view_at(here, place)
+    def _pass_view(self, site: Site, place: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
+        dimensions, _ = self._view_at(site, place)
 
         def operation() -> Operation:
             first = state.fp + place
@@ -197,9 +197,9 @@ class Arrays:
 
         return operation
 
-    def _row(self, here: Here, number: int, count: int) -> Operation:
+    def _row(self, site: Site, number: int, count: int) -> Operation:
         sizes, width = self._array(number)
-        stack, after = self._stack, here.after
+        stack, after = self._stack, site.after
         given, rest = sizes[:count], sizes[count:]
         for one in rest:
             width *= one
@@ -212,9 +212,9 @@ class Arrays:
 
         return operation
 
-    def _row_view(self, here: Here, place: int, count: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
-        dimensions, width = self._view_at(here, place)
+    def _row_view(self, site: Site, place: int, count: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
+        dimensions, width = self._view_at(site, place)
 
         def operation() -> Operation:
             base, *sizes = _view(cells, state.fp + place, dimensions)
@@ -227,8 +227,8 @@ class Arrays:
 
         return operation
 
-    def _fill_array(self, here: Here, number: int, dimensions: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+    def _fill_array(self, site: Site, number: int, dimensions: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
         width = size(self._types[number])
 
         def operation() -> Operation:
@@ -247,8 +247,8 @@ class Arrays:
 
         return operation
 
-    def _copy_view(self, here: Here, place: int, number: int) -> Operation:
-        state, cells, stack, after = self._state, self._cells, self._stack, here.after
+    def _copy_view(self, site: Site, place: int, number: int) -> Operation:
+        state, cells, stack, after = self._state, self._cells, self._stack, site.after
         type_ = self._types[number]
         assert isinstance(type_, Array), "verified"
         width, room = size(type_.element), size(type_)
@@ -267,8 +267,8 @@ class Arrays:
 
         return operation
 
-    def _set_text(self, here: Here, number: int) -> Operation:
-        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+    def _set_text(self, site: Site, number: int) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, site.after
         codes: list[Any] = [ord(letter) for letter in self._program.texts[number]]
 
         def operation() -> Operation:
@@ -285,9 +285,9 @@ class Arrays:
         assert isinstance(type_, Array), "verified"
         return array_sizes(type_), size(type_.element)
 
-    def _view_at(self, here: Here, place: int) -> tuple[int, int]:
+    def _view_at(self, site: Site, place: int) -> tuple[int, int]:
         """The dimensions of a parameter that is a view, and the cells of an element."""
-        for slot in self._program.slots(self._program.codes[here.code]):
+        for slot in self._program.slots(self._program.codes[site.code]):
             if slot.offset == place and isinstance(slot.variable, Parameter):
                 return slot.variable.dimensions, size(self._types[slot.variable.type])
         raise AssertionError("verified")

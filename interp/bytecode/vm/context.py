@@ -9,7 +9,7 @@ from typing import Protocol
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.state import Operation, State
 
-__all__ = ["Here", "Hooks", "Kit", "Rule"]
+__all__ = ["Hooks", "Rule", "Runtime", "Site"]
 
 #: Makes an operation of the place of an instruction and its operands.
 Rule = Callable[..., Operation]
@@ -50,7 +50,7 @@ class Hooks(Protocol):
         """The routine that runs is about to end."""
 
 
-class Here:
+class Site:
     """Where an instruction stands: its code object, place, and the operations around it."""
 
     __slots__ = ("after", "body", "code", "place")
@@ -63,7 +63,7 @@ class Here:
 
 
 @dataclass(frozen=True, slots=True)
-class Kit:
+class Runtime:
     """The program, the state it works on, and what is around it.
 
     ``entries`` are the first operations of code objects, ``frames`` the sizes of their frames,

@@ -9,32 +9,32 @@ from typing import Any
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, size
 from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
-from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import FAULTS, LinkError, fault
 
-__all__ = ["Control"]
+__all__ = ["ControlRules"]
 
 
-class Control:
+class ControlRules:
     """Makes the operations that decide what comes next."""
 
-    def __init__(self, kit: Kit) -> None:
-        self._kit = kit
-        self._program = kit.program
-        self._types = kit.program.types
-        self._state = kit.state
-        self._cells = kit.state.cells
-        self._stack = kit.state.stack
+    def __init__(self, runtime: Runtime) -> None:
+        self._kit = runtime
+        self._program = runtime.program
+        self._types = runtime.program.types
+        self._state = runtime.state
+        self._cells = runtime.state.cells
+        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
         hooks = self._kit.hooks
         return {
-            Op.LINE: lambda here, _line, _to: hooks.line(here.place, here.after),
-            Op.PROCEED: lambda here: hooks.proceed(here.after),
-            Op.ASK: lambda here, number: hooks.ask(number, here.after),
-            Op.BUILTIN: lambda here, number: hooks.builtin(number, here.after),
+            Op.LINE: lambda site, _line, _to: hooks.line(site.place, site.after),
+            Op.PROCEED: lambda site: hooks.proceed(site.after),
+            Op.ASK: lambda site, number: hooks.ask(number, site.after),
+            Op.BUILTIN: lambda site, number: hooks.builtin(number, site.after),
             Op.JUMP: _jump,
             Op.JUMP_IF: self._jump_if,
             Op.JUMP_UNLESS: self._jump_unless,
@@ -44,21 +44,21 @@ class Control:
             Op.RETURN_VALUE: self._return,
             Op.FAIL: _fail,
             Op.UNLINKED: self._unlinked,
-            Op.AT: lambda here, _line, _to: hooks.other_line(here.place, here.after),
+            Op.AT: lambda site, _line, _to: hooks.other_line(site.place, site.after),
             Op.FOR_LOCAL: self._for_local,
             Op.FOR_DATA: self._for_data,
         }
 
-    def _jump_if(self, here: Here, target: int) -> Operation:
-        pop, after, body = self._stack.pop, here.after, here.body
+    def _jump_if(self, site: Site, target: int) -> Operation:
+        pop, after, body = self._stack.pop, site.after, site.body
         return lambda: body[target] if pop() else after
 
-    def _jump_unless(self, here: Here, target: int) -> Operation:
-        pop, after, body = self._stack.pop, here.after, here.body
+    def _jump_unless(self, site: Site, target: int) -> Operation:
+        pop, after, body = self._stack.pop, site.after, site.body
         return lambda: after if pop() else body[target]
 
-    def _case(self, here: Here, constant: int, target: int) -> Operation:
-        stack, after, body = self._stack, here.after, here.body
+    def _case(self, site: Site, constant: int, target: int) -> Operation:
+        stack, after, body = self._stack, site.after, site.body
 
         def operation() -> Operation:
             if stack[-1] != constant:
@@ -68,11 +68,11 @@ class Control:
 
         return operation
 
-    def _call(self, here: Here, number: int) -> Operation:
-        state, stack, cells, after = self._state, self._stack, self._cells, here.after
+    def _call(self, site: Site, number: int) -> Operation:
+        state, stack, cells, after = self._state, self._stack, self._cells, site.after
         calls, entries = state.calls, self._kit.entries
         callee = self._program.codes[number]
-        own, frame = self._kit.frames[here.code], self._kit.frames[number]
+        own, frame = self._kit.frames[site.code], self._kit.frames[number]
         count = sum(map(stack_cells, callee.parameters))
         blank: list[Any] = [None] * (frame - sum(map(self._program.width, callee.parameters)))
         receive = self._receiver(callee.parameters)
@@ -131,9 +131,9 @@ class Control:
 
         return receive
 
-    def _return(self, here: Here) -> Operation:
+    def _return(self, site: Site) -> Operation:
         state, calls, hooks = self._state, self._state.calls, self._kit.hooks
-        kind = self._program.codes[here.code].kind
+        kind = self._program.codes[site.code].kind
         if kind is CodeKind.ACTION:
             return hooks.leave_action
         is_told = hooks.returns_are_told and kind is CodeKind.ROUTINE
@@ -148,7 +148,7 @@ class Control:
 
         return operation
 
-    def _unlinked(self, _here: Here, number: int) -> Operation:
+    def _unlinked(self, _here: Site, number: int) -> Operation:
         text = self._program.texts[number]
 
         def operation() -> Operation:
@@ -156,8 +156,8 @@ class Control:
 
         return operation
 
-    def _for_local(self, here: Here, counter: int, limit: int, step: int, target: int) -> Operation:
-        state, cells, after, body = self._state, self._cells, here.after, here.body
+    def _for_local(self, site: Site, counter: int, limit: int, step: int, target: int) -> Operation:
+        state, cells, after, body = self._state, self._cells, site.after, site.body
         goes_on = operator.le if step > 0 else operator.ge
 
         def operation() -> Operation:
@@ -173,8 +173,8 @@ class Control:
 
         return operation
 
-    def _for_data(self, here: Here, counter: int, limit: int, step: int, target: int) -> Operation:
-        state, cells, after, body = self._state, self._cells, here.after, here.body
+    def _for_data(self, site: Site, counter: int, limit: int, step: int, target: int) -> Operation:
+        state, cells, after, body = self._state, self._cells, site.after, site.body
         goes_on = operator.le if step > 0 else operator.ge
 
         def operation() -> Operation:
@@ -193,14 +193,14 @@ class Control:
 _SLUGS = {kind.code: slug for slug, kind in FAULTS.items()}
 
 
-def _jump(here: Here, target: int) -> Operation:
-    body = here.body
-    if target > here.place:  # made ready already
+def _jump(site: Site, target: int) -> Operation:
+    body = site.body
+    if target > site.place:  # made ready already
         return body[target]
     return lambda: body[target]
 
 
-def _fail(_here: Here, code: int) -> Operation:
+def _fail(_here: Site, code: int) -> Operation:
     slug = _SLUGS[code]
 
     def operation() -> Operation:

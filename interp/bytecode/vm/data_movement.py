@@ -7,40 +7,40 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import real_of, shared_cells, size
-from interp.bytecode.vm.context import Here, Kit, Rule
+from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import fault
 
-__all__ = ["Moving", "load"]
+__all__ = ["MovementRules", "load"]
 
 
-class Moving:
+class MovementRules:
     """Makes the operations that move what lies in cells."""
 
-    def __init__(self, kit: Kit) -> None:
-        self._types = kit.program.types
-        self._state = kit.state
-        self._cells = kit.state.cells
-        self._stack = kit.state.stack
+    def __init__(self, runtime: Runtime) -> None:
+        self._types = runtime.program.types
+        self._state = runtime.state
+        self._cells = runtime.state.cells
+        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
         return {
             Op.PUSH_INT: self._push,
-            Op.PUSH_REAL: lambda here, bits: self._push(here, real_of(bits)),
-            Op.PUSH_BOOL: lambda here, word: self._push(here, bool(word)),
+            Op.PUSH_REAL: lambda site, bits: self._push(site, real_of(bits)),
+            Op.PUSH_BOOL: lambda site, word: self._push(site, bool(word)),
             Op.PUSH_CHAR: self._push,
-            Op.PUSH_ENUM: lambda here, _type, place: self._push(here, place),
-            Op.PUSH_NOTHING: lambda here: self._push(here, None),
+            Op.PUSH_ENUM: lambda site, _type, place: self._push(site, place),
+            Op.PUSH_NOTHING: lambda site: self._push(site, None),
             Op.DROP: self._drop,
             Op.LOAD_LOCAL: self._load_local,
             Op.LOAD_DATA: self._load_data,
             Op.STORE_LOCAL: self._store_local,
             Op.STORE_DATA: self._store_data,
-            Op.REF_LOCAL: lambda here, place, _type: self._ref_local(here, place),
-            Op.REF_DATA: lambda here, place, _type: self._push(here, place),
+            Op.REF_LOCAL: lambda site, place, _type: self._ref_local(site, place),
+            Op.REF_DATA: lambda site, place, _type: self._push(site, place),
             Op.LOAD_REF: self._load_local,
-            Op.LOAD: lambda here: load(self._state, here),
+            Op.LOAD: lambda site: load(self._state, site),
             Op.STORE: self._store,
             Op.MEMBER: self._member,
             Op.COPY: self._copy,
@@ -48,8 +48,8 @@ class Moving:
             Op.FILL_POSE: self._fill_pose,
         }
 
-    def _push(self, here: Here, raw: Any) -> Operation:
-        push, after = self._stack.append, here.after
+    def _push(self, site: Site, raw: Any) -> Operation:
+        push, after = self._stack.append, site.after
 
         def operation() -> Operation:
             push(raw)
@@ -57,8 +57,8 @@ class Moving:
 
         return operation
 
-    def _drop(self, here: Here) -> Operation:
-        pop, after = self._stack.pop, here.after
+    def _drop(self, site: Site) -> Operation:
+        pop, after = self._stack.pop, site.after
 
         def operation() -> Operation:
             pop()
@@ -66,8 +66,8 @@ class Moving:
 
         return operation
 
-    def _load_local(self, here: Here, place: int) -> Operation:
-        state, cells, push, after = self._state, self._cells, self._stack.append, here.after
+    def _load_local(self, site: Site, place: int) -> Operation:
+        state, cells, push, after = self._state, self._cells, self._stack.append, site.after
 
         def operation() -> Operation:
             raw = cells[state.fp + place]
@@ -78,8 +78,8 @@ class Moving:
 
         return operation
 
-    def _load_data(self, here: Here, place: int) -> Operation:
-        cells, push, after = self._cells, self._stack.append, here.after
+    def _load_data(self, site: Site, place: int) -> Operation:
+        cells, push, after = self._cells, self._stack.append, site.after
 
         def operation() -> Operation:
             raw = cells[place]
@@ -90,8 +90,8 @@ class Moving:
 
         return operation
 
-    def _store_local(self, here: Here, place: int) -> Operation:
-        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+    def _store_local(self, site: Site, place: int) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, site.after
 
         def operation() -> Operation:
             cells[state.fp + place] = pop()
@@ -99,8 +99,8 @@ class Moving:
 
         return operation
 
-    def _store_data(self, here: Here, place: int) -> Operation:
-        cells, pop, after = self._cells, self._stack.pop, here.after
+    def _store_data(self, site: Site, place: int) -> Operation:
+        cells, pop, after = self._cells, self._stack.pop, site.after
 
         def operation() -> Operation:
             cells[place] = pop()
@@ -108,8 +108,8 @@ class Moving:
 
         return operation
 
-    def _ref_local(self, here: Here, place: int) -> Operation:
-        state, push, after = self._state, self._stack.append, here.after
+    def _ref_local(self, site: Site, place: int) -> Operation:
+        state, push, after = self._state, self._stack.append, site.after
 
         def operation() -> Operation:
             push(state.fp + place)
@@ -117,8 +117,8 @@ class Moving:
 
         return operation
 
-    def _store(self, here: Here) -> Operation:
-        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+    def _store(self, site: Site) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, site.after
 
         def operation() -> Operation:
             raw = pop()
@@ -128,8 +128,8 @@ class Moving:
 
         return operation
 
-    def _member(self, here: Here, offset: int, _type: int) -> Operation:
-        stack, after = self._stack, here.after
+    def _member(self, site: Site, offset: int, _type: int) -> Operation:
+        stack, after = self._stack, site.after
         if offset == 0:
             return after
 
@@ -139,8 +139,8 @@ class Moving:
 
         return operation
 
-    def _copy(self, here: Here, number: int) -> Operation:
-        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+    def _copy(self, site: Site, number: int) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, site.after
         width = size(self._types[number])
 
         def operation() -> Operation:
@@ -151,8 +151,8 @@ class Moving:
 
         return operation
 
-    def _clear(self, here: Here, number: int) -> Operation:
-        cells, pop, after = self._cells, self._stack.pop, here.after
+    def _clear(self, site: Site, number: int) -> Operation:
+        cells, pop, after = self._cells, self._stack.pop, site.after
         width = size(self._types[number])
         blank = [None] * width
 
@@ -163,8 +163,8 @@ class Moving:
 
         return operation
 
-    def _fill_pose(self, here: Here, to: int, of: int) -> Operation:
-        state, cells, pop, after = self._state, self._cells, self._stack.pop, here.after
+    def _fill_pose(self, site: Site, to: int, of: int) -> Operation:
+        state, cells, pop, after = self._state, self._cells, self._stack.pop, site.after
         shared = shared_cells(self._types[to], self._types[of])
         assert shared is not None, "verified"
         width = size(self._types[to])
@@ -179,9 +179,9 @@ class Moving:
         return operation
 
 
-def load(state: State, here: Here) -> Operation:
+def load(state: State, site: Site) -> Operation:
     """What `LOAD` does: the cell that the reference on top leads to."""
-    cells, stack, after = state.cells, state.stack, here.after
+    cells, stack, after = state.cells, state.stack, site.after
 
     def operation() -> Operation:
         raw = cells[stack[-1]]

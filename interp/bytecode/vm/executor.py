@@ -22,7 +22,7 @@ from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services
 from interp.bytecode.vm.state import Completion, Operation, State
 from interp.bytecode.vm.statement_budget import Guard
-from interp.bytecode.vm.threaded_code import Threads
+from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
 from interp.port.inspection import Seen
@@ -88,12 +88,12 @@ class Machine:
         self._together.append(self)
         self._services = Services(program, self._state, limits, sink, self._random)
         self._services.leave_action, self._services.finish = self._leave_action, self._finish
-        self._threads = self._made_ready(program)
+        self._threaded = self._made_ready(program)
         self._entered: list[_Entered] = []
         self._final: Request | None = None
         number = _routine(program, routine.upper() if isinstance(routine, str) else routine)
         self._begin(number)
-        self._open = _Open(self._threads.entries[number])
+        self._open = _Open(self._threaded.entries[number])
 
     # ----------------------------------------------------------------------- what it is made of
 
@@ -108,13 +108,13 @@ class Machine:
         cells += [None] * (first - len(cells))
         return State(cells, limits.depth, first, first + MAX_CELLS - data)
 
-    def _made_ready(self, program: Program) -> Threads:
-        return Threads(program, self._state, self._services)
+    def _made_ready(self, program: Program) -> ThreadedCode:
+        return ThreadedCode(program, self._state, self._services)
 
     def _begin(self, number: int) -> None:
         """Make the first frame."""
         state = self._state
-        state.code, first, frame = number, state.fp, self._threads.frames[number]
+        state.code, first, frame = number, state.fp, self._threaded.frames[number]
         state.cells[first : first + frame] = [None] * frame
         state.serials = state.serial = 1
 
@@ -160,20 +160,20 @@ class Machine:
         if before.request is not None:  # it will be asked again
             before = _Open(None, before.request, before.completion)
         number, serial = self._parts_of(code, CodeKind.ACTION)
-        self._push_frame(number, serial, self._threads.entries[number])
+        self._push_frame(number, serial, self._threaded.entries[number])
         self._entered.append(_Entered(len(state.calls), before, counter.guard, self._final))
         self._final = None
         self._services.entered += 1
         state.most_calls += 1
         counter.guard = Guard.OFF
-        self._open = _Open(self._threads.entries[number])
+        self._open = _Open(self._threaded.entries[number])
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition; raises `interp.values.faults.Fault`."""
         state = self._state
         number, serial = self._parts_of(code, CodeKind.CONDITION)
         height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
-        operation: Operation | None = self._threads.entries[number]
+        operation: Operation | None = self._threaded.entries[number]
         self._push_frame(number, serial, lambda: None)
         self._services.counter.guard = Guard.OFF  # it holds for a statement, and this is none
         state.reader = read
@@ -221,7 +221,7 @@ class Machine:
             if one.op is Op.LINE and one.operands[0] == line:
                 del state.stack[state.base :]
                 self._services.counter.guard = Guard.OFF
-                self._open = _Open(self._threads.body(state.code)[place])
+                self._open = _Open(self._threaded.body(state.code)[place])
                 return
         raise ValueError(f"no statement begins in line {line}")
 
@@ -257,7 +257,7 @@ class Machine:
         state = self._state
         del state.stack[state.base :]
         _, target = self._program.codes[state.code].instructions[state.statement].operands
-        return self._threads.body(state.code)[target]
+        return self._threaded.body(state.code)[target]
 
     # ----------------------------------------------------------------------- frames
 
@@ -301,7 +301,7 @@ class Machine:
 
     def _push_frame(self, number: int, serial: int, after: Operation) -> None:
         """Make a frame for an action or a condition; faults `stack`."""
-        state, frames = self._state, self._threads.frames
+        state, frames = self._state, self._threaded.frames
         first = state.fp + frames[state.code]
         if first + frames[number] > state.most_cells:
             raise fault("stack")

@@ -154,7 +154,7 @@ class Names:
         return next((one for one in slots if one.variable.name.upper() == name), None)
 
     def _number(self, name: str) -> int | None:
-        """The variable of the data lists that a name means here."""
+        """The variable of the data lists that a name means site."""
         module = PurePosixPath(self._program.codes[self._state.code].file).stem.upper()
         numbers = self._by_name.get(name, ())
         own = [n for n in numbers if self._program.data[n].module.upper() == module]

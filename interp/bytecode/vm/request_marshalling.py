@@ -23,7 +23,7 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.port.requests import At, CodeHandle, Value
 
-__all__ = ["Makers", "Part"]
+__all__ = ["Part", "RequestBuilder"]
 
 #: Makes a part from the inputs, as values, and the place of the request.
 Part = Callable[[Sequence[Value | None], At], Any]
@@ -33,7 +33,7 @@ def _nothing(_inputs: Sequence[Value | None], _at: At) -> None:
     """What an argument has that is no system variable."""
 
 
-class Makers:
+class RequestBuilder:
     """Makes the functions that make requests; ``handle_of`` gives a code object in this frame."""
 
     def __init__(self, program: Program, handle_of: Callable[[int], CodeHandle]) -> None:

@@ -11,7 +11,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import shown
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
 from interp.bytecode.vm.names import Names
-from interp.bytecode.vm.request_marshalling import Makers
+from interp.bytecode.vm.request_marshalling import RequestBuilder
 from interp.bytecode.vm.state import Operation, State
 from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
@@ -54,7 +54,7 @@ class Services:
         self._calls, self._returns = wanting(sink, "call"), wanting(sink, "return")
         self._branches = wanting(sink, "branch")
         self._names = Names(program, state)
-        self._makers = Makers(program, self._handed_over)
+        self._makers = RequestBuilder(program, self._handed_over)
         self._surroundings = Surroundings(random, self._names.find)
         self.counter = Counter(state, limits)
         self.calls_are_told = self._calls is not None

@@ -3,7 +3,7 @@
 A code object is made ready from its last instruction to its first, so that each knows the one
 behind it; where it goes elsewhere it looks its target up. This is faster in Python than one loop
 that asks for every opcode, and keeps every instruction a few lines of its own: they stand in
-`interp.bytecode.vm.control_flow`, `moving`, `arrays` and `computing`.
+`interp.bytecode.vm.control_flow`, `data_movement`, `arrays` and `arithmetic`.
 
 Nothing of this looks at what `interp.bytecode.verifier.verify` has made sure of.
 """
@@ -14,17 +14,17 @@ from collections.abc import Mapping
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.program import Instruction, Program
-from interp.bytecode.vm.arithmetic import Computing
-from interp.bytecode.vm.arrays import Arrays
-from interp.bytecode.vm.context import Here, Hooks, Kit, Rule
-from interp.bytecode.vm.control_flow import Control
-from interp.bytecode.vm.data_movement import Moving
+from interp.bytecode.vm.arithmetic import ArithmeticRules
+from interp.bytecode.vm.arrays import ArrayRules
+from interp.bytecode.vm.context import Hooks, Rule, Runtime, Site
+from interp.bytecode.vm.control_flow import ControlRules
+from interp.bytecode.vm.data_movement import MovementRules
 from interp.bytecode.vm.state import Operation, State
 
-__all__ = ["Threads"]
+__all__ = ["ThreadedCode"]
 
 
-class Threads:
+class ThreadedCode:
     """The code objects of a program, made ready when they are first called.
 
     ``entries`` are their first operations, ``frames`` how many cells their frames have.
@@ -37,12 +37,12 @@ class Threads:
         self.frames = program.frames
         self.entries: list[Operation] = [self._stub(n) for n in range(len(program.codes))]
         owners = frozenset(code.owner for code in program.codes if code.captures)
-        kit = Kit(program, state, hooks, self.entries, self.frames, owners)
+        runtime = Runtime(program, state, hooks, self.entries, self.frames, owners)
         self._rules: Mapping[Op, Rule] = {
-            **Control(kit).rules(),
-            **Moving(kit).rules(),
-            **Arrays(kit).rules(),
-            **Computing(kit).rules(),
+            **ControlRules(runtime).rules(),
+            **MovementRules(runtime).rules(),
+            **ArrayRules(runtime).rules(),
+            **ArithmeticRules(runtime).rules(),
         }
 
     def body(self, number: int) -> list[Operation]:
@@ -60,15 +60,15 @@ class Threads:
         instructions = self._program.codes[number].instructions
         body: list[Operation] = [_fallen_off] * (len(instructions) + 1)
         for place in range(len(instructions) - 1, -1, -1):
-            here = Here(number, place, body, body[place + 1])
-            body[place] = self._operation(here, instructions[place])
+            site = Site(number, place, body, body[place + 1])
+            body[place] = self._operation(site, instructions[place])
         return body
 
-    def _operation(self, here: Here, instruction: Instruction) -> Operation:
+    def _operation(self, site: Site, instruction: Instruction) -> Operation:
         rule = self._rules.get(instruction.op)
         if rule is not None:
-            return rule(here, *instruction.operands)
-        return self._hooks.tell(instruction, here.after)  # what is left is for the trace
+            return rule(site, *instruction.operands)
+        return self._hooks.tell(instruction, site.after)  # what is left is for the trace
 
 
 def _fallen_off() -> Operation | None:

@@ -13,7 +13,7 @@ from interp.bytecode.instruction_set.table import OPERAND_KINDS, instructions
 from interp.bytecode.verifier.stack_effects import StackEffects
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
-from interp.bytecode.vm.threaded_code import Threads
+from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.values.operators import PRIMITIVES
 
 SMALLEST = """
@@ -76,5 +76,5 @@ def test_every_step_of_the_table_is_one_of_the_verifier() -> None:
 def test_the_machine_does_every_instruction(name: str) -> None:
     """The machine knows what each instruction does, but for what only the trace is told."""
     machine: Any = Machine(verify(assemble(SMALLEST)), "MAIN")
-    threads: Threads = machine._threads
-    assert Op[name] in threads._rules or "trace" in instructions()[Op[name]].flags
+    code: ThreadedCode = machine._threaded
+    assert Op[name] in code._rules or "trace" in instructions()[Op[name]].flags

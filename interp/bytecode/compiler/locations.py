@@ -8,26 +8,26 @@ from grammar.semantics.types import Type
 from interp.bytecode.compiler.array_bounds import Bound
 
 __all__ = [
-    "Block",
-    "Cells",
     "DataCells",
-    "Formal",
-    "FormalView",
-    "Hole",
-    "Place",
+    "FrameCells",
+    "IndexCell",
+    "Location",
     "Pushed",
     "PushedView",
-    "Remote",
+    "Reference",
+    "ReferenceParameter",
     "Scalar",
+    "SystemVariable",
     "Text",
     "Value",
     "View",
+    "ViewParameter",
     "is_view_of",
 ]
 
 
 @dataclass(frozen=True, slots=True)
-class Cells:
+class FrameCells:
     """In the frame."""
 
     offset: int
@@ -43,7 +43,7 @@ class DataCells:
 
 
 @dataclass(frozen=True, slots=True)
-class Formal:
+class ReferenceParameter:
     """What the parameter at this offset refers to."""
 
     offset: int
@@ -51,7 +51,7 @@ class Formal:
 
 
 @dataclass(frozen=True, slots=True)
-class FormalView:
+class ViewParameter:
     """The array that the parameter at this offset is a view of.
 
     ``most`` is how many elements a view has at most.
@@ -82,7 +82,7 @@ class PushedView:
 
 
 @dataclass(frozen=True, slots=True)
-class Hole:
+class IndexCell:
     """An index that a cell of the frame has, or what the parameter there refers to."""
 
     offset: int
@@ -90,14 +90,22 @@ class Hole:
 
 
 @dataclass(frozen=True, slots=True)
-class Remote:
+class SystemVariable:
     """A system variable or a part of one; ``type`` is `UNKNOWN` where nothing tells it."""
 
-    path: tuple[str | int | Hole, ...]
+    path: tuple[str | int | IndexCell, ...]
     type: Type
 
 
-Place = Cells | DataCells | Formal | FormalView | Pushed | PushedView | Remote
+Location = (
+    FrameCells
+    | DataCells
+    | ReferenceParameter
+    | ViewParameter
+    | Pushed
+    | PushedView
+    | SystemVariable
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +116,7 @@ class Scalar:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class Reference:
     """A reference to a structure or an array on the stack."""
 
     type: Type
@@ -130,9 +138,9 @@ class Text:
     text: str
 
 
-Value = Scalar | Block | View | Text
+Value = Scalar | Reference | View | Text
 
 
-def is_view_of(view: View | FormalView, element: Type, dimensions: int) -> bool:
+def is_view_of(view: View | ViewParameter, element: Type, dimensions: int) -> bool:
     """Whether a view is one of an array with such elements and so many dimensions."""
     return (view.element, view.dimensions) == (element, dimensions)
