@@ -66,10 +66,6 @@ class CandidateFinder:
         self.similarity = Similarity(self.profile)
         self._site_finder = EditSiteFinder(self.profile, self.similarity, self.phraser)
 
-    def find(self, line: LinePattern) -> list[Candidate]:
-        """Candidates for a line, the most restrictive first, each once."""
-        return self._ordered(self._of_line(line))
-
     def find_common(
         self, lines: Sequence[LinePattern], most: int, core: int = 0
     ) -> list[Candidate]:
@@ -153,13 +149,6 @@ class CandidateFinder:
             for edits, rank in ordered
             if not self.profile.is_left_recursive(edits[-1])
         ]
-
-    def _of_line(self, line: LinePattern) -> Iterator[RankedEdits]:
-        for found in self._site_finder.find(line):
-            if isinstance(found, EditSite):
-                yield from self._of_site(found)
-            else:
-                yield found
 
     def _of_site(self, site: EditSite) -> Iterator[RankedEdits]:
         near = self.profile.near(site.rule)

@@ -16,6 +16,7 @@ from grammar.parser.recognizer import Recognizer, State
 from recovery.proposals.candidates import Candidate, CandidateFinder
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
+from recovery.tuning import MOST_TRIED
 
 DAMAGED = """DEFDAT ARM PUBLIC
 DECL GLOBAL FRAME gfBlockBase[:}([(t1[3]
@@ -50,7 +51,7 @@ def candidates(monkeypatch: pytest.MonkeyPatch, *, backwards: bool) -> list[Cand
     line = LinePattern(found.forms[found.files[0].failures[0].form], ())
     with monkeypatch.context() as patched:
         patched.setattr(Recognizer, "sites", in_order)
-        return CandidateFinder(Recognizer(grammar)).find_common([line], 105)
+        return CandidateFinder(Recognizer(grammar)).find_common([line], MOST_TRIED)
 
 
 def test_the_order_of_configurations_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:

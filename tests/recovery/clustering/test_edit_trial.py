@@ -27,6 +27,7 @@ from recovery.clustering.edit_trial import EditTrial, TrialResult, edited
 from recovery.proposals.candidates import CandidateFinder
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
+from recovery.tuning import MOST_TRIED
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
@@ -158,7 +159,7 @@ def test_candidates_mend_what_they_say() -> None:
     finder = CandidateFinder(RECOGNIZER)
     chance = Random(3)
     for number in (0, 5, 9, 12, 17):
-        found = finder.find(trial().lines[number])
+        found = finder.find_common([trial().lines[number]], MOST_TRIED)
         for candidate in chance.sample(found, min(3, len(found))):
             grammar = Recognizer(read(apply(PRELIMINARY, candidate.edits).text))
             expected = {i for i, line in enumerate(FAILING) if grammar.accepts(program(line))}
