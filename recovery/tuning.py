@@ -14,7 +14,8 @@ it.
 
 # ---------------------------------------------------------- which lines are searched for edits
 
-#: Tokens of a failing line beyond which no edit is sought. Bound: nobody wrote such a line.
+#: Tokens of a failing line beyond which no edit is sought. Bound: no line written by hand is as
+#: long.
 LONGEST_LINE = 1_000
 #: Frames on the stacks that a line begins with, beyond which no edit is sought. Revised: 16, 5. A
 #: block adds two or three frames, the deepest failing line of our own programs has 15; with

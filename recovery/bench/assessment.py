@@ -269,25 +269,25 @@ def assess_all(
     on_done: Progress = no_progress,
 ) -> dict[str, Any]:
     """Assess mutants in ``jobs`` processes and gather the figures; see `assess`."""
-    verdicts: list[Assessment] = []
+    assessments: list[Assessment] = []
     if jobs == 1:
-        examiner = _Assessor(material)
+        assessor = _Assessor(material)
         for mutant in chosen:
-            verdicts.append(examiner(mutant))
+            assessments.append(assessor(mutant))
             on_done(1)
     else:
         with process_pool(jobs, _prepare, material) as pool:
-            for verdict in pool.map(_examine, chosen, chunksize=4):
-                verdicts.append(verdict)
+            for assessment in pool.map(_assess, chosen, chunksize=4):
+                assessments.append(assessment)
                 on_done(1)
     count = len(NegativeSet(material.negatives))
     return {
-        **figures(verdicts, count),
+        **figures(assessments, count),
         "by_kind": {
-            kind: figures([v for v in verdicts if v.mutant.kind == kind], count)
-            for kind in sorted({v.mutant.kind for v in verdicts})
+            kind: figures([v for v in assessments if v.mutant.kind == kind], count)
+            for kind in sorted({v.mutant.kind for v in assessments})
         },
-        "missed": [_missed(v, material.grammar) for v in verdicts if v.repair_rank != 1],
+        "missed": [_missed(v, material.grammar) for v in assessments if v.repair_rank != 1],
     }
 
 
@@ -310,34 +310,34 @@ class _Assessor:
         )
 
 
-_examiners: list[_Assessor] = []  # of a worker process
+_assessors: list[_Assessor] = []  # of a worker process
 
 
 def _prepare(material: BenchMaterial) -> None:
-    _examiners[:] = [_Assessor(material)]
+    _assessors[:] = [_Assessor(material)]
 
 
-def _examine(mutant: Mutant) -> Assessment:
-    return _examiners[0](mutant)
+def _assess(mutant: Mutant) -> Assessment:
+    return _assessors[0](mutant)
 
 
-def _missed(verdict: Assessment, whole: Grammar) -> dict[str, Any]:
+def _missed(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
     return {
-        "mutant": verdict.mutant.title(whole),
-        "detected": verdict.detected,
-        "rule_rank": verdict.rule_rank,
-        "item_rank": verdict.item_rank,
-        "repair_rank": verdict.repair_rank,
-        "clusters": verdict.clusters,
+        "mutant": assessment.mutant.title(whole),
+        "detected": assessment.detected,
+        "rule_rank": assessment.rule_rank,
+        "item_rank": assessment.item_rank,
+        "repair_rank": assessment.repair_rank,
+        "clusters": assessment.clusters,
     }
 
 
-def figures(verdicts: Sequence[Assessment], negative_count: int) -> dict[str, Any]:
-    """The figures of a set of verdicts."""
-    total = len(verdicts)
-    seen = [v for v in verdicts if v.detected]
+def figures(assessments: Sequence[Assessment], negative_count: int) -> dict[str, Any]:
+    """The figures of a set of assessments."""
+    total = len(assessments)
+    seen = [v for v in assessments if v.detected]
     ranks: dict[str, list[int | None]] = defaultdict(list)
-    for v in verdicts:
+    for v in assessments:
         ranks["rule"].append(v.rule_rank)
         ranks["item"].append(v.item_rank)
         ranks["repair"].append(v.repair_rank)
@@ -367,7 +367,7 @@ def figures(verdicts: Sequence[Assessment], negative_count: int) -> dict[str, An
         if seen
         else None,
         "reproducer_median_tokens": statistics.median(tokens) if tokens else None,
-        "seconds_per_mutant": round(statistics.mean(v.seconds for v in verdicts), 3)
+        "seconds_per_mutant": round(statistics.mean(v.seconds for v in assessments), 3)
         if total
         else None,
     }

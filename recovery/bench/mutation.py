@@ -10,7 +10,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import (
@@ -22,7 +21,7 @@ from grammar.notation.edits import (
     describe,
 )
 from grammar.notation.g4 import read
-from grammar.notation.model import Grammar, GrammarError, Literal, Reference, Repeat
+from grammar.notation.model import Element, Grammar, GrammarError, Literal, Reference, Repeat
 
 __all__ = ["Mutant", "combined", "mutants"]
 
@@ -120,7 +119,7 @@ def _removals(grammar: Grammar, name: str) -> list[Edit] | None:
     return edits or None
 
 
-def _sequence(grammar: Grammar, rule: str, address: tuple[int, ...]) -> tuple[Any, ...]:
+def _sequence(grammar: Grammar, rule: str, address: tuple[int, ...]) -> tuple[Element, ...]:
     return dict(sequences(grammar.by_name[rule]))[address].elements
 
 

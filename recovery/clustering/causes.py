@@ -58,8 +58,8 @@ def find_causes(
     """Group ``lines`` by cause.
 
     ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
-    heaviest first. ``on_done`` is told of each group dealt with. ``file_trial`` has the files in
-    which the lines fail, ``parsed_files`` those that can be read.
+    heaviest first. ``on_done`` gets each group dealt with. ``file_trial`` has the files in which
+    the lines fail, ``parsed_files`` those that can be read.
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
     causes: list[Cause] = []

@@ -58,7 +58,7 @@ class SourceListError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class KrlFile:
-    """A KRL file of somebody else's repository, known by its checksum."""
+    """A KRL file of another repository, known by its checksum."""
 
     path: str  # in the repository, parts joined by "/"
     size: int  # bytes

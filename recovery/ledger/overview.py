@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TypedDict
 
 from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence, LedgerError
@@ -11,11 +11,28 @@ from recovery.ledger.construct_record import construct_record
 from recovery.ledger.ledger import Ledger, grown, in_force
 from recovery.ledger.oracle import reason_to_ask
 
-__all__ = ["counts_of", "difference", "page_of", "row_of"]
+__all__ = ["ConstructRow", "counts_of", "difference", "page_of", "row_of"]
 
 
-def row_of(construct: Construct) -> dict[str, Any]:
-    """A construct as plain data; ``waits`` says why an oracle should be asked, if it should."""
+class ConstructRow(TypedDict):
+    """A construct in a list; ``waits`` says why an oracle should be asked, if it should."""
+
+    number: int | None
+    id: str
+    title: str
+    state: str
+    grounds: list[str]
+    files: int
+    origins: int
+    lines: int
+    rules: list[str]
+    manual: str
+    verdict: str
+    waits: str
+
+
+def row_of(construct: Construct) -> ConstructRow:
+    """A construct as a row of a list."""
     evidence = construct.evidence
     return {
         "number": construct.number,

@@ -35,8 +35,8 @@ never to be run.
    Leave the answer empty where you do not know.
 
 Only the form of the programs is asked for. Where the only messages are about names or files that
-do not exist, the answer is "accepted". Some programs are expected to be refused; nothing here tells
-which, so that nobody is led.
+do not exist, the answer is "accepted". Some programs are expected to be refused; nothing here says
+which, so that the answers are not biased.
 
 Send verdicts.toml back. It is read with
 
