@@ -7,16 +7,11 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from conformance import runner
-from conformance.differential import campaign
-from conformance.runner import CaseResult, Result, run_cases
-from conformance.suite.case import find_cases, selected
 from grammar.generation.cells.writing import write_cells
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
@@ -170,44 +165,6 @@ def test_survey_is_the_same_though_a_worker_is_killed(cluster: _Cluster, tmp_pat
     assert alone.forms == there.forms
     assert alone.skipped == there.skipped
     assert any(file.failures for file in there.files)
-
-
-def _timeless(results: list[CaseResult]) -> list[tuple[str, tuple[Result, ...]]]:
-    """Results by case, without the time they took."""
-    return [
-        (one.case.name, tuple(replace(result, seconds=0.0) for result in one.results))
-        for one in results
-    ]
-
-
-def test_cases_are_the_same_though_a_worker_is_killed(
-    cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Each case has the verdicts, checks and observations that it has here, once and in order."""
-    monkeypatch.setattr(runner, "_SHARE", 1)
-    cases = selected(find_cases(), ["control", "io"])[:24]
-    chosen = (["tree", "vm"], ["none"])
-    alone = run_cases(cases, *chosen, jobs=1)
-    done: list[int] = []
-    there = run_cases(cases, *chosen, on_done=_killing(cluster, 3, done), scheduler=cluster.address)
-    assert 2 == len(cluster.workers)
-    assert [1] * 24 == done
-    assert _timeless(alone) == _timeless(there)
-
-
-def test_random_programs_are_the_same_though_a_worker_is_killed(
-    cluster: _Cluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Every program is run once, and counts and coverage are those of local processes."""
-    monkeypatch.setattr(campaign, "_SHARD", 1)
-    alone = campaign.fuzz(20, 3, ["tree", "vm"])
-    done: list[int] = []
-    there = campaign.fuzz(
-        20, 3, ["tree", "vm"], on_done=_killing(cluster, 2, done), scheduler=cluster.address
-    )
-    assert 2 == len(cluster.workers)
-    assert [1] * 20 == done
-    assert campaign.record_of(alone, 0.0) == campaign.record_of(there, 0.0)
 
 
 # ------------------------------------------------------------------------------- the commands

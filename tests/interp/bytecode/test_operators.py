@@ -74,7 +74,7 @@ def test_primitives_are_the_same(primitive: Primitive) -> None:
     """Every operator on scalars gives the same value, of the same kind, or the same fault."""
 
     @given(st.tuples(*(_VALUES[kind] for kind in primitive.operands)))
-    @settings(max_examples=60)
+    @settings(max_examples=30)
     def agree(values: Any) -> None:
         values = tuple(
             _as_kept(kind, value) for kind, value in zip(primitive.operands, values, strict=True)
@@ -94,7 +94,7 @@ def test_fused_comparisons_are_the_same(name: str) -> None:
     kind = primitive.operands[0]
 
     @given(_VALUES[kind], _VALUES[kind])
-    @settings(max_examples=40)
+    @settings(max_examples=20)
     def agree(left: Any, right: Any) -> None:
         values = (_as_kept(kind, left), _as_kept(kind, right))
         operation = f"{name} L\nPUSH_BOOL TRUE\nJUMP M\nL:\nPUSH_BOOL FALSE\nM:"
@@ -118,7 +118,7 @@ def test_functions_are_the_same(primitive: Primitive) -> None:
     inputs = " ".join("in:REAL" for _ in primitive.operands)
 
     @given(st.tuples(*(_VALUES["REAL"] for _ in primitive.operands)))
-    @settings(max_examples=40)
+    @settings(max_examples=20)
     def agree(values: Any) -> None:
         values = tuple(_as_kept("REAL", value) for value in values)
         head = f"builtin F {name} {inputs} -> REAL"

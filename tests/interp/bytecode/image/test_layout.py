@@ -63,7 +63,7 @@ def _words(image: bytes) -> list[int]:
     return list(struct.unpack(f"<{len(image) // 4}I", image))
 
 
-@pytest.mark.parametrize("value", [0, 1, 2, 0x7FFFFFFF, 0xFFFFFFFF])
+@pytest.mark.parametrize("value", [0, 2, 0xFFFFFFFF])
 def test_every_word_may_be_wrong(everything: str, value: int) -> None:
     """Whatever a word becomes, reading gives a program or says what is damaged."""
     words = _words(write_image(assemble(everything)))
