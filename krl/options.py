@@ -1,5 +1,6 @@
 """Options and arguments that several commands have, said once."""
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
@@ -15,6 +16,7 @@ __all__ = [
     "JsonOption",
     "JsonTooOption",
     "ProgramsArgument",
+    "all_cores",
     "corpus_or_ours",
     "programs_or_ours",
 ]
@@ -55,6 +57,11 @@ CorpusArgument = Annotated[
 
 _CORPUS = Path("corpus")
 _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
+
+
+def all_cores(jobs: int | None) -> int:
+    """How many processes were asked for, or one a core."""
+    return jobs or os.cpu_count() or 1
 
 
 def programs_or_ours(paths: list[Path] | None) -> list[Path]:

@@ -41,8 +41,6 @@ def analyse(
 
     ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
     """
-    if cache is None:
-        return _worked_out(found, negatives, grammar_name, on_found, on_done)
     digest = _digest(found, negatives, grammar_name)
     with ResultStore(cache, key_of(found.grammar)) as store:
         record = cast("SurveyRecord | None", store.get_record(digest))

@@ -14,7 +14,6 @@ import os
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -90,15 +89,11 @@ def check_paths(
     size = sum(candidate.size for candidate in found)
     wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
-    with _store(cache) as store, StickyPool(wanted) as pool:
+    with ResultStore(cache, "check") as store, StickyPool(wanted) as pool:
         for result in _run(_projects(found), pool, store, options):
             results.append(result)
             on_done(result.files + len(result.skipped))
     return _together(results, skipped)
-
-
-def _store(cache: Path | None) -> AbstractContextManager[ResultStore | None]:
-    return nullcontext() if cache is None else ResultStore(cache, "check")
 
 
 def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
@@ -227,7 +222,7 @@ class _Project:
 def _run(
     projects: Iterator[list[Found]],
     pool: StickyPool,
-    store: ResultStore | None,
+    store: ResultStore,
     options: CheckOptions,
 ) -> Iterator[ProjectResult]:
     """The results of projects, in their order; only so many wait for their turn."""
@@ -241,13 +236,12 @@ def _run(
             return project
         size -= project.size
         result = project.result()
-        if store is not None:
-            store.put([(project.place, result_record(result, project.state))])
+        store.put([(project.place, result_record(result, project.state))])
         return result
 
     for number, members in enumerate(projects):
         project = _Project(members, options)
-        record = store.get_record(project.place) if store is not None else None
+        record = store.get_record(project.place)
         known = None if record is None else read_result(record, project.state)
         if known is not None:
             waiting.append(known)

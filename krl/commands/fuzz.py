@@ -1,6 +1,5 @@
 """`krl fuzz`: random programs on several executors, whose traces must be equal."""
 
-import os
 import time
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError
-from krl.options import JobsOption, JsonOption
+from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 
@@ -54,7 +53,7 @@ def fuzz(
     begun = time.perf_counter()
     try:
         with progress_bar("running programs", programs) as bar:
-            found = run(programs, seed, names, jobs or os.cpu_count() or 1, bar, scheduler)
+            found = run(programs, seed, names, all_cores(jobs), bar, scheduler)
     except WorkersError as error:
         raise InputError(str(error)) from error
     record = record_of(found, time.perf_counter() - begun)

@@ -69,9 +69,8 @@ def growth(
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_growth_page(record, out)
-    for target in {out / "growth.json", json_file} - {None}:
-        assert target is not None
-        write_json(record, target)
+    write_json(record, out / "growth.json")
+    write_json(record, json_file)
     _print(record, page)
     return FINE
 

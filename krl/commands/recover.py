@@ -87,9 +87,8 @@ def recover(
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
     page = write_survey_page(record, out)
-    for target in {out / "survey.json", json_file} - {None}:
-        assert target is not None
-        write_json(record, target)
+    write_json(record, out / "survey.json")
+    write_json(record, json_file)
     print_survey(record, page)
     return FINDINGS if strict and record["parsed"] < record["files"] else FINE
 

@@ -58,15 +58,12 @@ def growth(
     read = read_through(
         contents, grammars, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
     )
-    if cache is None:
-        record = _record(read, skipped, start, steps)
-    else:
-        digest = _digest(read, skipped, start, steps)
-        with ResultStore(cache, key_of(start)) as store:
-            kept = cast("GrowthRecord | None", store.get_record(digest))
-            record = kept or _record(read, skipped, start, steps)
-            if kept is None:
-                store.put([(digest, record)])
+    digest = _digest(read, skipped, start, steps)
+    with ResultStore(cache, key_of(start)) as store:
+        kept = cast("GrowthRecord | None", store.get_record(digest))
+        record = kept or _record(read, skipped, start, steps)
+        if kept is None:
+            store.put([(digest, record)])
     return {**record, "seconds": round(time.perf_counter() - began, 3)}
 
 

@@ -13,7 +13,6 @@ import math
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -119,7 +118,8 @@ def read_through(
     if not grammars:
         raise ValueError("there is no grammar to read under")
     names = [grammar.sha256 for grammar in grammars]
-    with _store(cache, grammars[0]) as store:
+    # results hang on the first grammar of the row, which is the one that seldom changes
+    with ResultStore(cache, key_of(grammars[0])) as store:
         known = [_recalled(store, content, names) for content in contents]
         blocks = list(_blocks(contents, known))
         on_found(sum(len(block.members) * len(block.missing) for block in blocks))
@@ -133,22 +133,16 @@ def read_through(
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
-            if store is not None:  # after each run, so that a killed growth goes on from there
-                store.put(
-                    (_key(member.content), known[member.index].record(names))
-                    for member in block.members
-                    if known[member.index].lasting
-                )
+            store.put(  # after each run, so that a killed growth goes on from there
+                (_key(member.content), known[member.index].record(names))
+                for member in block.members
+                if known[member.index].lasting
+            )
             on_done(len(block.members) * len(run))
     return [
         Timeline(content, dict(sorted(entry.failing.items())), entry.reason)
         for content, entry in zip(contents, known, strict=True)
     ]
-
-
-def _store(cache: Path | None, start: Grammar) -> AbstractContextManager[ResultStore | None]:
-    """Results are kept under the first grammar of the row, which is the one that seldom changes."""
-    return nullcontext() if cache is None else ResultStore(cache, key_of(start))
 
 
 def _processes(blocks: Iterable[_Block]) -> int:
@@ -196,9 +190,9 @@ def _key(content: Content) -> str:
     return f"timeline {content.digest}"
 
 
-def _recalled(store: ResultStore | None, content: Content, names: Sequence[str]) -> _Known:
+def _recalled(store: ResultStore, content: Content, names: Sequence[str]) -> _Known:
     """What was found under these grammars before, whatever the others of the row."""
-    kept = store.get_record(_key(content)) if store is not None else None
+    kept = store.get_record(_key(content))
     if kept is None:
         return _Known({}, "", tuple(range(len(names))))
     try:

@@ -11,7 +11,6 @@ import os
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -100,7 +99,7 @@ def survey(
     candidates = list(discover(roots))
     on_found(len(candidates))
     check_scheduler(scheduler)  # before anything is written
-    with _store(cache, grammar) as store:
+    with ResultStore(cache, key_of(grammar)) as store:
         gathered = _Gathered(store)
         tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
         count = jobs or _processes(candidates)
@@ -115,10 +114,6 @@ def _processes(candidates: Iterable[Found | Skipped]) -> int:
     """As many as there are cores, but one where starting more would cost more than it saves."""
     size = sum(c.size for c in candidates if isinstance(c, Found))
     return 1 if size < _SMALL else os.cpu_count() or 1
-
-
-def _store(cache: Path | None, grammar: Grammar) -> AbstractContextManager[ResultStore | None]:
-    return nullcontext() if cache is None else ResultStore(cache, key_of(grammar))
 
 
 def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Survey:
@@ -170,7 +165,7 @@ class _Content:
 class _Gathered:
     """Results so far, by content."""
 
-    def __init__(self, store: ResultStore | None) -> None:
+    def __init__(self, store: ResultStore) -> None:
         self.store = store
         self.contents: dict[str, _Content] = {}
         self.skipped: list[Skipped] = []
@@ -187,7 +182,7 @@ class _Gathered:
             known.places.append(place)
             return False
         self.contents[key] = _Content(found, [place], len(data))
-        kept = recall(self.store, key) if self.store else None
+        kept = recall(self.store, key)
         if kept is not None:
             self._take(key, kept)
             return False
@@ -197,8 +192,7 @@ class _Gathered:
     def add(self, done: list[Kept]) -> None:
         """Take the results of the next task."""
         keys = [self.submitted.popleft() for _ in done]
-        if self.store:
-            keep(self.store, zip(keys, done, strict=True))
+        keep(self.store, zip(keys, done, strict=True))
         for key, kept in zip(keys, done, strict=True):
             self._take(key, kept)
         self.read_now += len(done)

@@ -25,22 +25,26 @@ class ResultStore:
     """JSON values by digest, below one key; a context manager.
 
     The key says what all of them depend on besides what the digest is of: code, tables, a grammar.
-    What another key holds is not seen. A store that cannot be written to any more forgets.
+    What another key holds is not seen. Without a folder nothing is kept; a store that cannot be
+    written to any more forgets.
     """
 
-    def __init__(self, folder: Path, key: str) -> None:
+    def __init__(self, folder: Path | None, key: str) -> None:
         self._key = key
-        self._file = folder / "results.sqlite"
+        self._base: sqlite3.Connection | None = None
+        if folder is None:
+            return
         folder.mkdir(parents=True, exist_ok=True)
+        file = folder / "results.sqlite"
         try:
-            self._base = self._opened()
+            self._base = self._opened(file)
         except _DAMAGE:
             with contextlib.suppress(OSError):
-                self._file.replace(self._file.with_suffix(".damaged"))
-            self._base = self._opened()
+                file.replace(file.with_suffix(".damaged"))
+            self._base = self._opened(file)
 
-    def _opened(self) -> sqlite3.Connection:
-        base = sqlite3.connect(self._file, timeout=30)
+    def _opened(self, file: Path) -> sqlite3.Connection:
+        base = sqlite3.connect(file, timeout=30)
         try:
             base.execute("PRAGMA journal_mode=WAL")
             base.execute(
@@ -62,10 +66,13 @@ class ResultStore:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._base.close()
+        if self._base is not None:
+            self._base.close()
 
     def get(self, digest: str) -> object:
         """The value kept under a digest; ``None`` where there is none that can be read."""
+        if self._base is None:
+            return None
         try:
             row = self._base.execute(
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
@@ -82,6 +89,8 @@ class ResultStore:
 
     def put(self, values: Iterable[tuple[str, object]]) -> None:
         """Keep values under their digests in place of what lay there: all of them, or none."""
+        if self._base is None:
+            return
         with contextlib.suppress(*_DAMAGE), self._base:
             self._base.executemany(
                 "INSERT OR REPLACE INTO result VALUES (?, ?, ?)",

@@ -7,9 +7,9 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
-from selenium.webdriver.remote.webelement import WebElement
 
 from reports.growth_page import write_growth_page
+from tests.reports.browsing import find, find_all, load, row_titles
 
 pytestmark = pytest.mark.browser
 
@@ -25,32 +25,13 @@ def pages(
     return lambda name: written[name].as_uri()
 
 
-def _open(browser: webdriver.Chrome, address: str) -> None:
-    # A mere change of the fragment would not load the page anew.
-    browser.get("about:blank")
-    browser.get(address)
-
-
-def _all(browser: webdriver.Chrome, selector: str) -> list[WebElement]:
-    return browser.find_elements(By.CSS_SELECTOR, selector)
-
-
-def _one(browser: webdriver.Chrome, selector: str) -> WebElement:
-    return browser.find_element(By.CSS_SELECTOR, selector)
-
-
-def _titles(browser: webdriver.Chrome) -> list[str]:
-    titles = "[...document.querySelectorAll('.row:not([hidden]) .open')].map(e => e.textContent)"
-    return list(browser.execute_script(f"return {titles}"))
-
-
 def test_a_link_to_a_construct_opens_it(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Its edit, its evidence, its examples and what it restored are there, and it is in view."""
-    _open(browser, f"{pages('believable')}#c-0012")
-    card = _one(browser, ".card")
-    assert "DEFFCT with a return type (12)" == _one(browser, ".row.opened .open").text
+    load(browser, f"{pages('believable')}#c-0012")
+    card = find(browser, ".card")
+    assert "DEFFCT with a return type (12)" == find(browser, ".row.opened .open").text
     top = browser.execute_script("return arguments[0].getBoundingClientRect().top", card)
     assert 0 <= top < 250
     assert ["+    : WORD12? DEF NAME"] == [e.text for e in card.find_elements(By.CLASS_NAME, "add")]
@@ -72,13 +53,13 @@ def test_a_click_on_a_row_opens_and_closes_it(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The address names the step while it is open."""
-    _open(browser, pages("believable"))
-    assert [] == _all(browser, ".card")
+    load(browser, pages("believable"))
+    assert [] == find_all(browser, ".card")
     browser.execute_script("document.querySelectorAll('.row .open')[3].click()")
-    assert _one(browser, ".card").is_displayed()
+    assert find(browser, ".card").is_displayed()
     assert browser.current_url.endswith("#c-0003")
     browser.execute_script("document.querySelectorAll('.row .open')[3].click()")
-    assert not _one(browser, ".card").is_displayed()
+    assert not find(browser, ".card").is_displayed()
     assert "#" not in browser.current_url
 
 
@@ -86,46 +67,46 @@ def test_search_looks_at_what_a_construct_is(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Title, edit, examples, rules; the address carries it."""
-    _open(browser, f"{pages('believable')}#q=word31+sco-04")
-    assert [] == _titles(browser)
-    assert _one(browser, "#none").is_displayed()
-    field = _one(browser, "#search")
+    load(browser, f"{pages('believable')}#q=word31+sco-04")
+    assert [] == row_titles(browser)
+    assert find(browser, "#none").is_displayed()
+    field = find(browser, "#search")
     for words, title in (("word31", "GLOBAL before DEF and DEFFCT (31)"), ("switch", "SWITCH")):
         field.clear()
         field.send_keys(words)
-        assert _titles(browser)[0].startswith(title)
+        assert row_titles(browser)[0].startswith(title)
     assert "#q=switch" in browser.current_url
-    assert "4 of 41 steps" == _one(browser, "#status").text
+    assert "4 of 41 steps" == find(browser, "#status").text
 
 
 def test_the_chart_names_the_step_under_the_pointer_and_opens_it(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """All charts show the same step meanwhile."""
-    _open(browser, pages("believable"))
-    hit = _one(browser, "#rate .hit")
+    load(browser, pages("believable"))
+    hit = find(browser, "#rate .hit")
     offset = browser.execute_script(
         "const box = arguments[0].getBoundingClientRect();"
         "return 46 + (box.width - 8) * 10 / 40 - box.width / 2 - 46",
         hit,
     )
     ActionChains(browser).move_to_element_with_offset(hit, round(offset), 0).perform()
-    assert _one(browser, "#rate .tip").text.startswith("10. TRIGGER WHEN PATH … ONSTART\n+")
-    assert all("after 10: " in e.text for e in _all(browser, ".metric .now"))
+    assert find(browser, "#rate .tip").text.startswith("10. TRIGGER WHEN PATH … ONSTART\n+")
+    assert all("after 10: " in e.text for e in find_all(browser, ".metric .now"))
     ActionChains(browser).click().perform()
-    assert "TRIGGER WHEN PATH … ONSTART" == _one(browser, ".row.opened .open").text
+    assert "TRIGGER WHEN PATH … ONSTART" == find(browser, ".row.opened .open").text
 
 
 def test_each_metric_has_its_chart(browser: webdriver.Chrome, pages: Callable[[str], str]) -> None:
     """With where it began and where it ended."""
-    _open(browser, pages("believable"))
+    load(browser, pages("believable"))
     shown = {
         figure.find_element(By.TAG_NAME, "b").text: figure.find_element(By.CLASS_NAME, "now").text
-        for figure in _all(browser, ".metric")
+        for figure in find_all(browser, ".metric")
     }
     assert ["failing lines", "TERM", "VAR", "MCC", "AVS", "HAL", "LL1"] == list(shown)
     assert "76 → 96" == shown["TERM"]
-    assert 7 == len(_all(browser, ".metric svg path.curve"))
+    assert 7 == len(find_all(browser, ".metric svg path.curve"))
 
 
 def test_hostile_text_is_shown_and_does_not_run(
@@ -133,7 +114,7 @@ def test_hostile_text_is_shown_and_does_not_run(
 ) -> None:
     """Every card and fold is opened; nothing ran, nothing loaded, nothing was reported."""
     browser.get_log("browser")
-    _open(browser, pages("hostile"))
+    load(browser, pages("hostile"))
     browser.execute_async_script(
         """
         const done = arguments[0];
@@ -143,9 +124,9 @@ def test_hostile_text_is_shown_and_does_not_run(
         """
     )
     assert browser.execute_script("return window.hacked === undefined")
-    assert [] == _all(browser, "img")
-    assert 2 == len(_all(browser, "script"))
-    assert 13 == len(_all(browser, ".card"))
+    assert [] == find_all(browser, "img")
+    assert 2 == len(find_all(browser, "script"))
+    assert 13 == len(find_all(browser, ".card"))
     assert 0 == browser.execute_script("return performance.getEntriesByType('resource').length")
     assert [] == browser.get_log("browser")
 
@@ -155,8 +136,8 @@ def test_a_ledger_without_steps_has_no_chart(
 ) -> None:
     """And reports no error."""
     browser.get_log("browser")
-    _open(browser, pages("start"))
-    assert "The ledger is empty" == _one(browser, "#empty h2").text
+    load(browser, pages("start"))
+    assert "The ledger is empty" == find(browser, "#empty h2").text
     assert [] == browser.get_log("browser")
 
 
@@ -166,6 +147,6 @@ def test_the_page_does_not_scroll_sideways(
 ) -> None:
     """With a card open, a window 1000 pixels wide holds the page."""
     browser.set_window_size(width, 900)
-    _open(browser, f"{pages('believable')}#c-0004")
+    load(browser, f"{pages('believable')}#c-0004")
     root = "document.documentElement"
     assert browser.execute_script(f"return {root}.scrollWidth <= {root}.clientWidth")

@@ -3,29 +3,15 @@
 import json
 import re
 from collections.abc import Callable
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from reports.growth_page import write_growth_page
+from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
 RecordBuilder = Callable[[str], dict[str, Any]]
-LOADING_ATTRIBUTES = {"src", "srcset", "href", "data", "action", "formaction", "poster"}
-
-
-class _Elements(HTMLParser):
-    """Every start tag of a page."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
 
 
 def _page(record: dict[str, Any], folder: Path) -> str:
@@ -75,7 +61,7 @@ def test_health_is_told(grown: RecordBuilder, tmp_path: Path) -> None:
 def test_the_page_loads_nothing(grown: RecordBuilder, tmp_path: Path) -> None:
     """No element names a resource, no style sheet imports one; links stay inside the page."""
     page = _page(grown("believable"), tmp_path)
-    elements = _Elements(page)
+    elements = Elements(page)
     loaded = [
         value
         for _, attributes in elements.tags
@@ -91,7 +77,7 @@ def test_the_page_loads_nothing(grown: RecordBuilder, tmp_path: Path) -> None:
 def test_hostile_text_adds_no_element(grown: RecordBuilder, tmp_path: Path) -> None:
     """A record full of markup gives the elements that its rows need and no other."""
     page = _page(grown("hostile"), tmp_path)
-    tags = [tag for tag, _ in _Elements(page).tags]
+    tags = [tag for tag, _ in Elements(page).tags]
     assert 2 == tags.count("script")
     assert 0 == tags.count("img")
     assert [] == re.findall("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e\u2028]", page)

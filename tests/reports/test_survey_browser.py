@@ -12,6 +12,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
 from reports.survey_page import write_survey_page
+from tests.reports.browsing import find, find_all, load, row_titles
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 pytestmark = pytest.mark.browser
@@ -28,28 +29,9 @@ def pages(
     return lambda name: written[name].as_uri()
 
 
-def _open(browser: webdriver.Chrome, address: str) -> None:
-    # A mere change of the fragment would not load the page anew.
-    browser.get("about:blank")
-    browser.get(address)
-
-
-def _all(browser: webdriver.Chrome, selector: str) -> list[WebElement]:
-    return browser.find_elements(By.CSS_SELECTOR, selector)
-
-
-def _one(browser: webdriver.Chrome, selector: str) -> WebElement:
-    return browser.find_element(By.CSS_SELECTOR, selector)
-
-
 def _click(browser: webdriver.Chrome, element: WebElement) -> None:
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
     element.click()
-
-
-def _titles(browser: webdriver.Chrome) -> list[str]:
-    titles = "[...document.querySelectorAll('.row:not([hidden]) .open')].map(e => e.textContent)"
-    return list(browser.execute_script(f"return {titles}"))
 
 
 def _column(browser: webdriver.Chrome, key: str) -> list[int]:
@@ -69,10 +51,10 @@ def test_clusters_are_listed_in_the_order_of_the_survey(
     browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
 ) -> None:
     """Every cluster has its row, and no card is built before it is asked for."""
-    _open(browser, pages("believable"))
+    load(browser, pages("believable"))
     expected = [cluster["title"] for cluster in survey_record("believable")["clusters"]]
-    assert expected == _titles(browser)
-    assert _all(browser, ".card") == []
+    assert expected == row_titles(browser)
+    assert find_all(browser, ".card") == []
 
 
 def test_the_page_loads_no_resource_and_reports_no_error(
@@ -80,7 +62,7 @@ def test_the_page_loads_no_resource_and_reports_no_error(
 ) -> None:
     """The browser asked for nothing beyond the page, and its policy was not offended."""
     browser.get_log("browser")
-    _open(browser, pages("believable"))
+    load(browser, pages("believable"))
     assert browser.execute_script("return performance.getEntriesByType('resource').length") == 0
     assert browser.get_log("browser") == []
 
@@ -89,9 +71,9 @@ def test_a_click_on_a_heading_sorts_and_a_third_one_restores(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Figures sort from the largest, then from the smallest; the state is told to readers."""
-    _open(browser, pages("believable"))
+    load(browser, pages("believable"))
     original = _column(browser, "files")
-    head = _one(browser, "#table > thead th[data-key=files]")
+    head = find(browser, "#table > thead th[data-key=files]")
     heading = head.find_element(By.TAG_NAME, "button")
     _click(browser, heading)
     assert sorted(original, reverse=True) == _column(browser, "files")
@@ -108,13 +90,13 @@ def test_headings_and_rows_work_from_the_keyboard(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Return sorts by a heading, arrows walk the rows, Return opens one."""
-    _open(browser, pages("believable"))
-    _one(browser, "th[data-key=title] button").send_keys(Keys.ENTER)
-    assert sorted(_titles(browser), key=str.lower) == _titles(browser)
-    _one(browser, ".row .open").send_keys(Keys.ARROW_DOWN)
+    load(browser, pages("believable"))
+    find(browser, "th[data-key=title] button").send_keys(Keys.ENTER)
+    assert sorted(row_titles(browser), key=str.lower) == row_titles(browser)
+    find(browser, ".row .open").send_keys(Keys.ARROW_DOWN)
     browser.switch_to.active_element.send_keys(Keys.ENTER)
-    opened = _one(browser, ".row.opened .open")
-    assert _titles(browser)[1] == opened.text
+    opened = find(browser, ".row.opened .open")
+    assert row_titles(browser)[1] == opened.text
     assert opened.get_attribute("aria-expanded") == "true"
 
 
@@ -123,17 +105,17 @@ def test_a_click_on_a_row_opens_and_closes_its_card(
 ) -> None:
     """The card shows the example in its context, and what was expected instead."""
     cluster = survey_record("believable")["clusters"][0]
-    _open(browser, pages("believable"))
-    _click(browser, _one(browser, ".row .rule"))
-    card = _one(browser, ".card")
+    load(browser, pages("believable"))
+    _click(browser, find(browser, ".row .rule"))
+    card = find(browser, ".card")
     assert card.is_displayed()
     lines = card.find_elements(By.CSS_SELECTOR, ".example .l:not(.caret) .tx")
     assert [c["text"] for c in cluster["example"]["context"]] == [
         line.get_attribute("textContent") for line in lines
     ]
     assert card.find_element(By.CSS_SELECTOR, ".example .token").text == cluster["token"]
-    assert cluster["expected"] == [chip.text for chip in _all(browser, ".chips code")]
-    _click(browser, _one(browser, ".row .rule"))
+    assert cluster["expected"] == [chip.text for chip in find_all(browser, ".chips code")]
+    _click(browser, find(browser, ".row .rule"))
     assert not card.is_displayed()
 
 
@@ -160,10 +142,10 @@ def test_the_carets_stand_exactly_under_the_token(
     column = line.index(token) + 1
     cluster["token"] = token
     cluster["example"] = {"path": "a.src", "line": 7, "column": column, "text": line}
-    _open(browser, write_survey_page(record, tmp_path).as_uri() + f"#cluster={cluster['id']}")
-    block = _box(browser, _one(browser, ".example .source"))
-    found = _box(browser, _one(browser, ".example .token"))
-    carets = _box(browser, _one(browser, ".example .marks"))
+    load(browser, write_survey_page(record, tmp_path).as_uri() + f"#cluster={cluster['id']}")
+    block = _box(browser, find(browser, ".example .source"))
+    found = _box(browser, find(browser, ".example .token"))
+    carets = _box(browser, find(browser, ".example .marks"))
     assert carets["left"] == pytest.approx(found["left"], abs=0.6)
     assert carets["right"] == pytest.approx(found["right"], abs=0.6)
     assert found["bottom"] - 4 <= carets["top"] <= found["bottom"] + 4
@@ -176,27 +158,27 @@ def test_a_link_to_a_cluster_opens_it_and_brings_it_into_view(
 ) -> None:
     """A link in a mail or an issue leads to the card itself."""
     cluster = survey_record("large")["clusters"][431]
-    _open(browser, f"{pages('large')}#cluster={cluster['id']}")
-    opened = _one(browser, ".row.opened")
+    load(browser, f"{pages('large')}#cluster={cluster['id']}")
+    opened = find(browser, ".row.opened")
     assert cluster["title"] == opened.find_element(By.CLASS_NAME, "open").text
     assert 0 <= _box(browser, opened)["top"] < 200
-    assert len(_all(browser, ".card")) == 1
+    assert len(find_all(browser, ".card")) == 1
 
 
 def test_a_link_to_an_unknown_cluster_is_told(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The page of another survey may not have it."""
-    _open(browser, f"{pages('believable')}#cluster=c-unknown")
-    assert _one(browser, "#status").text == "No such cluster in this survey"
+    load(browser, f"{pages('believable')}#cluster=c-unknown")
+    assert find(browser, "#status").text == "No such cluster in this survey"
 
 
 def test_search_looks_at_title_rule_source_path_and_expected_tokens(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """All words must be found, in whatever case; what was searched stands in the address."""
-    _open(browser, pages("believable"))
-    field = _one(browser, "#search")
+    load(browser, pages("believable"))
+    field = find(browser, "#search")
     for words, title in (
         ("onstart trigger", "TRIGGER … ONSTART"),
         ("ifstatement", "ELSEIF"),
@@ -206,21 +188,21 @@ def test_search_looks_at_title_rule_source_path_and_expected_tokens(
     ):
         field.clear()
         field.send_keys(words)
-        assert title in _titles(browser)
-        assert len(_titles(browser)) < 11
+        assert title in row_titles(browser)
+        assert len(row_titles(browser)) < 11
     assert "q=ENDSWITCH" in browser.current_url
-    assert "of 11 clusters" in _one(browser, "#status").text
+    assert "of 11 clusters" in find(browser, "#status").text
 
 
 def test_a_search_without_a_match_says_so_and_can_be_cleared(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The address carries the search, and one button leads back."""
-    _open(browser, f"{pages('believable')}#q=nowhere+at+all")
-    assert _titles(browser) == []
-    assert _one(browser, "#none").is_displayed()
-    _click(browser, _one(browser, "#clear"))
-    assert len(_titles(browser)) == 11
+    load(browser, f"{pages('believable')}#q=nowhere+at+all")
+    assert row_titles(browser) == []
+    assert find(browser, "#none").is_displayed()
+    _click(browser, find(browser, "#clear"))
+    assert len(row_titles(browser)) == 11
 
 
 def test_filters_keep_what_unlocks_what_is_direct_and_one_origin(
@@ -228,18 +210,18 @@ def test_filters_keep_what_unlocks_what_is_direct_and_one_origin(
 ) -> None:
     """Each filter hides exactly the clusters it names."""
     clusters = survey_record("believable")["clusters"]
-    _open(browser, pages("believable"))
-    _click(browser, _one(browser, "#unlocking"))
-    assert [c["title"] for c in clusters if c["unlocks"]] == _titles(browser)
-    _click(browser, _one(browser, "#unlocking"))
-    _click(browser, _one(browser, "#direct"))
-    assert [c["title"] for c in clusters if c["follows"] < c["failures"]] == _titles(browser)
-    _click(browser, _one(browser, "#direct"))
-    _one(browser, "#origin").send_keys("training")
+    load(browser, pages("believable"))
+    _click(browser, find(browser, "#unlocking"))
+    assert [c["title"] for c in clusters if c["unlocks"]] == row_titles(browser)
+    _click(browser, find(browser, "#unlocking"))
+    _click(browser, find(browser, "#direct"))
+    assert [c["title"] for c in clusters if c["follows"] < c["failures"]] == row_titles(browser)
+    _click(browser, find(browser, "#direct"))
+    find(browser, "#origin").send_keys("training")
     with_origin = [
         c["title"] for c in clusters if any(o["origin"] == "training" for o in c["files_by_origin"])
     ]
-    assert with_origin == _titles(browser)
+    assert with_origin == row_titles(browser)
 
 
 def test_a_long_expected_set_is_folded_and_unfolds(
@@ -247,12 +229,12 @@ def test_a_long_expected_set_is_folded_and_unfolds(
 ) -> None:
     """The rest is counted on the button that shows it."""
     cluster = max(survey_record("believable")["clusters"], key=lambda c: len(c["expected"]))
-    _open(browser, f"{pages('believable')}#cluster={cluster['id']}")
-    assert len(_all(browser, ".chips code")) == 14
-    more = _one(browser, ".chips button")
+    load(browser, f"{pages('believable')}#cluster={cluster['id']}")
+    assert len(find_all(browser, ".chips code")) == 14
+    more = find(browser, ".chips button")
     assert f"… {len(cluster['expected']) - 14} more" == more.text
     _click(browser, more)
-    assert cluster["expected"] == [chip.text for chip in _all(browser, ".chips code")]
+    assert cluster["expected"] == [chip.text for chip in find_all(browser, ".chips code")]
 
 
 def test_files_of_many_origins_are_folded_by_origin(
@@ -265,8 +247,8 @@ def test_files_of_many_origins_are_folded_by_origin(
         {"origin": f"cell-{n}", "files": [{"path": f"cell-{n}/a.src", "line": n}], "more": 2}
         for n in range(1, 21)
     ]
-    _open(browser, write_survey_page(record, tmp_path).as_uri() + f"#cluster={cluster['id']}")
-    section = _all(browser, ".halves section")[-1]
+    load(browser, write_survey_page(record, tmp_path).as_uri() + f"#cluster={cluster['id']}")
+    section = find_all(browser, ".halves section")[-1]
     assert [line.text for line in section.find_elements(By.TAG_NAME, "summary")] == [
         *(f"3 cell-{n}" for n in range(1, 7)),
         "14 more origins",
@@ -283,11 +265,11 @@ def test_the_copy_button_copies_the_reproducer_unchanged(
 ) -> None:
     """What is copied is the program, without line numbers or carets."""
     cluster = survey_record("believable")["clusters"][4]
-    _open(browser, f"{pages('believable')}#cluster={cluster['id']}")
+    load(browser, f"{pages('believable')}#cluster={cluster['id']}")
     browser.execute_script(
         "navigator.clipboard.writeText = async (text) => { window.copied = text; }"
     )
-    copy = _one(browser, ".heading button")
+    copy = find(browser, ".heading button")
     _click(browser, copy)
     assert cluster["reproducer"]["text"] == browser.execute_script("return window.copied")
     assert copy.text == "Copied"
@@ -297,15 +279,15 @@ def test_proposals_stand_in_a_table_with_their_figures(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """Figures that speak against a proposal stand out; the change unfolds."""
-    _open(browser, f"{pages('believable')}#cluster=c-001003")
-    heads = [cell.text for cell in _all(browser, ".proposals th")]
+    load(browser, f"{pages('believable')}#cluster=c-001003")
+    heads = [cell.text for cell in find_all(browser, ".proposals th")]
     assert heads == ["Edit", "Restores", "Breaks", "Negatives accepted", "Ambiguities"]
-    figures = [cell.text for cell in _all(browser, ".proposals td.num")]
+    figures = [cell.text for cell in find_all(browser, ".proposals td.num")]
     assert figures == ["41", "0", "0", "0", "42", "0", "12", "1"]
-    assert [cell.text for cell in _all(browser, ".proposals .bad")] == ["12", "1"]
-    _click(browser, _one(browser, ".proposals summary"))
+    assert [cell.text for cell in find_all(browser, ".proposals .bad")] == ["12", "1"]
+    _click(browser, find(browser, ".proposals summary"))
     browser.implicitly_wait(2)
-    assert _one(browser, ".proposals .add").text == "+    : 'A' 'X'? 'B'"
+    assert find(browser, ".proposals .add").text == "+    : 'A' 'X'? 'B'"
     browser.implicitly_wait(0)
 
 
@@ -313,14 +295,14 @@ def test_the_chart_names_the_step_under_the_pointer_and_opens_it(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The list beside the chart shows the same step; a click leads to its card."""
-    _open(browser, pages("believable"))
-    dot = _all(browser, "#chart .dot")[2]
+    load(browser, pages("believable"))
+    dot = find_all(browser, "#chart .dot")[2]
     ActionChains(browser).move_to_element(dot).perform()
-    tip = _one(browser, ".tip").text
+    tip = find(browser, ".tip").text
     assert tip == "2. GLOBAL before DEF\n+46 files, then 415 of 583 parse (71.1 %)"
-    assert "GLOBAL before DEF" in _one(browser, "#steps a.on").text
+    assert "GLOBAL before DEF" in find(browser, "#steps a.on").text
     ActionChains(browser).click().perform()
-    assert _one(browser, ".row.opened .open").text == "GLOBAL before DEF"
+    assert find(browser, ".row.opened .open").text == "GLOBAL before DEF"
     assert "cluster=c-002ef2" in browser.current_url
 
 
@@ -328,10 +310,10 @@ def test_a_step_of_the_mending_order_opens_its_cluster(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """A filter that hides the cluster is lifted."""
-    _open(browser, f"{pages('believable')}#q=elseif")
-    _click(browser, _all(browser, "#steps a")[3])
-    assert _one(browser, ".row.opened .open").text == "CONTINUE before $OUT"
-    assert _one(browser, ".row.opened").is_displayed()
+    load(browser, f"{pages('believable')}#q=elseif")
+    _click(browser, find_all(browser, "#steps a")[3])
+    assert find(browser, ".row.opened .open").text == "CONTINUE before $OUT"
+    assert find(browser, ".row.opened").is_displayed()
 
 
 def test_hostile_text_is_shown_and_does_not_run(
@@ -339,7 +321,7 @@ def test_hostile_text_is_shown_and_does_not_run(
 ) -> None:
     """Every card and fold is opened; nothing ran, nothing loaded, and the text is there."""
     browser.get_log("browser")
-    _open(browser, pages("hostile"))
+    load(browser, pages("hostile"))
     browser.execute_async_script(
         """
         const done = arguments[0];
@@ -350,11 +332,11 @@ def test_hostile_text_is_shown_and_does_not_run(
         """
     )
     assert browser.execute_script("return window.hacked === undefined")
-    assert _all(browser, "img") == []
-    assert len(_all(browser, "script")) == 2
-    assert len(_all(browser, ".card")) == 22
-    assert len(_all(browser, ".answered")) == 8
-    line = _one(browser, ".example .failing .tx").get_attribute("textContent") or ""
+    assert find_all(browser, "img") == []
+    assert len(find_all(browser, "script")) == 2
+    assert len(find_all(browser, ".card")) == 22
+    assert len(find_all(browser, ".answered")) == 8
+    line = find(browser, ".example .failing .tx").get_attribute("textContent") or ""
     assert "</script><script>window.hacked=1</script>" in line
     assert "␛[31m␀" in line
     assert browser.get_log("browser") == []
@@ -365,15 +347,17 @@ def test_a_cluster_of_the_start_shows_what_answered_it(
 ) -> None:
     """The construct with its edit, evidence and examples, before the example that failed."""
     cluster = survey_record("story")["start"]["clusters"][1]
-    _open(browser, f"{pages('story')}#start-cluster={cluster['id']}")
-    card = _one(browser, ".card")
+    load(browser, f"{pages('story')}#start-cluster={cluster['id']}")
+    card = find(browser, ".card")
     assert card.text.index("Answered by 0002-deffct-with-a: DEFFCT") < card.text.index("Example")
     answer = card.find_element(By.CLASS_NAME, "answered")
     assert answer.find_element(By.CLASS_NAME, "add").text == "+    : WORD2? DEF NAME"
     assert "documented" in answer.find_element(By.CLASS_NAME, "evidence").text
     browser.execute_script("document.querySelectorAll('.answered details')[2].open = true")
     assert "WORD2 DEF A()" in answer.text
-    titles = [button.get_attribute("title") or "" for button in _all(browser, ".heading button")]
+    titles = [
+        button.get_attribute("title") or "" for button in find_all(browser, ".heading button")
+    ]
     assert not any("krl construct propose" in title for title in titles)
 
 
@@ -382,14 +366,14 @@ def test_both_sections_keep_their_own_state(
 ) -> None:
     """Clusters of the same name are opened, searched and sorted each in its own table."""
     cluster = survey_record("both")["clusters"][2]
-    _open(browser, f"{pages('both')}#cluster={cluster['id']}&start-q=elseif")
-    assert [e.get_attribute("id") for e in _all(browser, ".card")] == ["card-2"]
+    load(browser, f"{pages('both')}#cluster={cluster['id']}&start-q=elseif")
+    assert [e.get_attribute("id") for e in find_all(browser, ".card")] == ["card-2"]
     shown = "return [...document.querySelectorAll(arguments[0])].filter(e => !e.hidden).length"
     assert browser.execute_script(shown, "#rows > .row") == 11
     assert browser.execute_script(shown, "#start-rows > .row") == 1
-    _click(browser, _one(browser, "#start-clear"))
-    _click(browser, _one(browser, "#start-table th[data-key=answer] button"))
-    answers = [e.text for e in _all(browser, "#start-rows .answer")]
+    _click(browser, find(browser, "#start-clear"))
+    _click(browser, find(browser, "#start-table th[data-key=answer] button"))
+    answers = [e.text for e in find_all(browser, "#start-rows .answer")]
     assert answers[-3:] == ["nothing yet"] * 3
     assert f"cluster={cluster['id']}" in browser.current_url
     assert "start-sort=answer" in browser.current_url
@@ -397,9 +381,9 @@ def test_both_sections_keep_their_own_state(
 
 def test_500_clusters_stay_usable(browser: webdriver.Chrome, pages: Callable[[str], str]) -> None:
     """All rows are there at once, no card is built before it is asked for, and search finds few."""
-    _open(browser, pages("large"))
-    assert len(_all(browser, "#rows > .row")) == 500
-    assert _all(browser, ".card") == []
+    load(browser, pages("large"))
+    assert len(find_all(browser, "#rows > .row")) == 500
+    assert find_all(browser, ".card") == []
     browser.execute_script(
         """
         document.querySelector('th[data-key=rule] button').click();
@@ -408,8 +392,8 @@ def test_500_clusters_stay_usable(browser: webdriver.Chrome, pages: Callable[[st
         search.dispatchEvent(new Event('input'));
         """
     )
-    assert 0 < len(_titles(browser)) < 500
-    assert _all(browser, ".card") == []
+    assert 0 < len(row_titles(browser)) < 500
+    assert find_all(browser, ".card") == []
 
 
 @pytest.mark.parametrize(
@@ -423,10 +407,10 @@ def test_a_survey_without_clusters_says_why(
     browser: webdriver.Chrome, pages: Callable[[str], str], name: str, words: str
 ) -> None:
     """There is no empty table; the reasons of skipped files remain."""
-    _open(browser, pages(name))
-    assert _one(browser, "#empty h2").text == words
-    assert _all(browser, "#table") == []
-    assert len(_all(browser, "#skipped summary")) == 3
+    load(browser, pages(name))
+    assert find(browser, "#empty h2").text == words
+    assert find_all(browser, "#table") == []
+    assert len(find_all(browser, "#skipped summary")) == 3
 
 
 def test_the_page_follows_the_colour_scheme(
@@ -437,8 +421,8 @@ def test_the_page_follows_the_colour_scheme(
     for scheme in ("light", "dark"):
         feature = {"name": "prefers-color-scheme", "value": scheme}
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
-        _open(browser, pages("complete"))
-        colours.append(_one(browser, "body").value_of_css_property("background-color"))
+        load(browser, pages("complete"))
+        colours.append(find(browser, "body").value_of_css_property("background-color"))
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
     assert colours == ["rgba(255, 255, 255, 1)", "rgba(21, 24, 28, 1)"]
 
@@ -449,6 +433,6 @@ def test_the_page_does_not_scroll_sideways(
 ) -> None:
     """With a card open, a window 1000 pixels wide holds the page."""
     browser.set_window_size(width, 900)
-    _open(browser, f"{pages('believable')}#cluster=c-004de1")
+    load(browser, f"{pages('believable')}#cluster=c-004de1")
     root = "document.documentElement"
     assert browser.execute_script(f"return {root}.scrollWidth <= {root}.clientWidth")

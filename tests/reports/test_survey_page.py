@@ -3,34 +3,15 @@
 import json
 import re
 from collections.abc import Callable
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from reports.survey_page import write_survey_page
+from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
 RecordBuilder = Callable[[str], dict[str, Any]]
-LOADING_ATTRIBUTES = {"src", "srcset", "href", "data", "action", "formaction", "poster"}
-
-
-class _Elements(HTMLParser):
-    """Every start tag of a page, and the text of its scripts and style sheets."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.raw: list[str] = []
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-
-    def handle_data(self, data: str) -> None:
-        if self.tags and self.tags[-1][0] in {"script", "style"}:
-            self.raw.append(data)
 
 
 def _page(record: dict[str, Any], folder: Path) -> str:
@@ -47,7 +28,7 @@ def test_the_page_is_index_html_in_a_folder_made_for_it(tmp_path: Path) -> None:
 def test_the_page_loads_nothing(survey_record: RecordBuilder, tmp_path: Path) -> None:
     """No element names a resource, no style sheet imports one; links stay inside the page."""
     page = _page(survey_record("believable"), tmp_path)
-    elements = _Elements(page)
+    elements = Elements(page)
     loaded = [
         value
         for _, attributes in elements.tags
@@ -62,7 +43,7 @@ def test_the_page_loads_nothing(survey_record: RecordBuilder, tmp_path: Path) ->
 
 def test_only_our_script_may_run(survey_record: RecordBuilder, tmp_path: Path) -> None:
     """The policy of the page forbids every source and allows scripts by hash alone."""
-    tags = _Elements(_page(survey_record("believable"), tmp_path)).tags
+    tags = Elements(_page(survey_record("believable"), tmp_path)).tags
     (policy,) = [a["content"] for t, a in tags if t == "meta" and "http-equiv" in a]
     assert policy is not None
     assert policy.startswith("default-src 'none'; ")
@@ -77,8 +58,8 @@ def test_the_same_record_gives_the_same_bytes(survey_record: RecordBuilder, tmp_
 
 def test_hostile_text_adds_no_element(survey_record: RecordBuilder, tmp_path: Path) -> None:
     """A record full of markup gives the same elements as one without."""
-    plain = _Elements(_page(survey_record("both"), tmp_path / "plain"))
-    hostile = _Elements(_page(survey_record("hostile"), tmp_path / "hostile"))
+    plain = Elements(_page(survey_record("both"), tmp_path / "plain"))
+    hostile = Elements(_page(survey_record("hostile"), tmp_path / "hostile"))
     assert [tag for tag, _ in plain.tags] == [tag for tag, _ in hostile.tags]
 
 

@@ -1,6 +1,5 @@
 """`krl bench conform`: how many planted faults the cases find, and how fast they run."""
 
-import os
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -9,7 +8,7 @@ from rich.console import Console
 
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
-from krl.options import JobsOption, JsonOption
+from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -47,7 +46,7 @@ def conform(
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
-        found = measure(faults, cases, jobs or os.cpu_count() or 1, bar)
+        found = measure(faults, cases, all_cores(jobs), bar)
     record = {"bench": "conform", **found, **speed}
     write_json(record, json_file)
     _print(record)

@@ -1,13 +1,12 @@
 """`krl bench fuzz`: how many planted faults `krl fuzz` finds."""
 
-import os
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
 from krl.errors import FINE
-from krl.options import JobsOption, JsonOption
+from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 
@@ -32,7 +31,7 @@ def fuzz(
 
     check_files(json_file)
     with progress_bar("hunting mutants", len(mutants())) as bar:
-        verdicts = hunt(programs, seed, jobs or os.cpu_count() or 1, bar)
+        verdicts = hunt(programs, seed, all_cores(jobs), bar)
     record = record_of(verdicts, programs, seed)
     write_json(record, json_file, indent=1)
     console = Console(highlight=False)

@@ -1,6 +1,5 @@
 """`krl bench mutation`: how well the search for causes finds its way back."""
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -8,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE, InputError
-from krl.options import JobsOption, JsonOption
+from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -76,7 +75,7 @@ def mutation(
         chosen = choose_mutants(whole, singles, multiple, seed)
         again = chosen[:: max(1, len(chosen) // repeated)][:repeated] if repeated else []
         with progress_bar("assessing", len(chosen)) as bar:
-            record = assess_all(material, chosen, jobs=jobs or os.cpu_count() or 1, on_done=bar)
+            record = assess_all(material, chosen, jobs=all_cores(jobs), on_done=bar)
         with progress_bar("repeating", runs) as bar:
             same = same_ranking(rankings(material, again, runs, bar)) if again else None
     except (GrammarError, IngestError, NegativeError) as error:

@@ -1,6 +1,5 @@
 """`krl conform --metamorphic N`: programs changed in ways that must not change what they do."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.errors import FINDINGS, FINE, one_line
+from krl.options import all_cores
 from krl.output_files import write_json
 from krl.progress import progress_bar
 
@@ -31,7 +31,7 @@ def check_laws(
 
     seed = 1
     with progress_bar("trying laws", len(laws())) as bar:
-        found = try_laws(cases, programs, seed, jobs or os.cpu_count() or 1, bar, scheduler)
+        found = try_laws(cases, programs, seed, all_cores(jobs), bar, scheduler)
     write_json({"metamorphic": record_of(found, programs, seed)}, json_file)
     for one in found:
         broken = f", {len(one.broken)} broken" if one.broken else ""
