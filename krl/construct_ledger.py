@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import InputError, one_line
+from krl.errors import as_input_errors, one_line
 
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
@@ -56,10 +56,8 @@ def expected_errors() -> Iterator[None]:
         NegativeError,
         WorkersError,
     )
-    try:
+    with as_input_errors(*expected):
         yield
-    except expected as error:
-        raise InputError(str(error)) from error
 
 
 def print_evaluation(found: "Evaluation") -> None:

@@ -9,7 +9,8 @@ import errno
 import glob
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Final
 
 import typer
@@ -21,6 +22,7 @@ __all__ = [
     "INTERRUPTED",
     "READER_GONE",
     "InputError",
+    "as_input_errors",
     "one_line",
     "run",
     "shown",
@@ -39,6 +41,15 @@ _LONGEST_LINE = 2_000  # words of input may be of any length; two long paths fit
 
 class InputError(Exception):
     """Wrong usage or unreadable input; its text is the line that the person reads."""
+
+
+@contextmanager
+def as_input_errors(*kinds: type[Exception]) -> Iterator[None]:
+    """Raise exceptions of these kinds, whose texts a person can act on, as `InputError`."""
+    try:
+        yield
+    except kinds as error:
+        raise InputError(str(error)) from error
 
 
 def one_line(text: str) -> str:

@@ -14,7 +14,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.options import JobsOption
 from krl.output_files import check_files
 from krl.progress import progress_bar
@@ -86,19 +86,14 @@ def check(
     from support.files.discovery import IngestError
 
     check_files(out)
-    try:
+    with as_input_errors(ValueError):
         selection = Selection.of(select or (), ignore or ())
-    except ValueError as error:
-        raise InputError(str(error)) from error
     options = CheckOptions(syntax_only, stops or _asks_for_stops(selection))
     folder = None if no_cache else _usable(cache, _users_cache())
-    try:
-        with progress_bar("checking") as bar:
-            found = check_paths(
-                paths, options, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
-            )
-    except IngestError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(IngestError), progress_bar("checking") as bar:
+        found = check_paths(
+            paths, options, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
+        )
     if not found.files:
         first = found.skipped[0]
         raise InputError(f"{first.path}: {first.reason}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
 
 if TYPE_CHECKING:
     from recovery.corpus.public import PublicSource
@@ -142,10 +142,8 @@ def _sources() -> "tuple[PublicSource, ...]":
 
     if not CORPUS.is_dir():
         raise InputError(f"no {CORPUS} folder here: run this in a checkout of the workbench")
-    try:
+    with as_input_errors(SourceListError):
         return read_sources(CORPUS)
-    except SourceListError as error:
-        raise InputError(str(error)) from error
 
 
 def _own_cells(programs: Path) -> Iterator[tuple[str, int, int]]:

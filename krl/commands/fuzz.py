@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from krl.errors import FINDINGS, FINE, InputError
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -51,11 +51,8 @@ def fuzz(
     check_files(json_file)
     names = _chosen(executor or [])
     begun = time.perf_counter()
-    try:
-        with progress_bar("running programs", programs) as bar:
-            found = run(programs, seed, names, all_cores(jobs), bar, scheduler)
-    except WorkersError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:
+        found = run(programs, seed, names, all_cores(jobs), bar, scheduler)
     record = record_of(found, time.perf_counter() - begun)
     write_json(record, json_file, indent=1)
     _tell(found, record["seconds"])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.errors import FINE, InputError
+from krl.errors import FINE, InputError, as_input_errors
 from krl.extras import expected_extras
 
 if TYPE_CHECKING:
@@ -89,10 +89,8 @@ def _arm(path: Path) -> "Kinematics":
     source = decode(read_bytes(path))
     if isinstance(source, str):
         raise InputError(f"{path}: not machine data: {source}")
-    try:
+    with as_input_errors(DataListError, MachineDataError):
         machine = read_machine(source.text, str(path))
-    except (DataListError, MachineDataError) as error:
-        raise InputError(str(error)) from error
     with expected_extras():
         from interp.robot.kinematics.solver import Kinematics
     try:

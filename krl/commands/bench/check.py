@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
-from krl.errors import FINE, InputError
+from krl.errors import FINE, as_input_errors
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -38,14 +38,12 @@ def check(
     check_files(json_file)
     wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
-    try:
+    with as_input_errors(IngestError):
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure_check(roots, sizes=wanted, on_step=advance)
         if planted:
             with progress_bar("planting mistakes", planted) as advance:
                 record["planted"] = measure_planted(roots, planted, seed, on_step=advance)
-    except IngestError as error:
-        raise InputError(str(error)) from error
     record = {"bench": "check", **record}
     write_json(record, json_file, indent=1)
     _print(record)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.errors import FINE, InputError
+from krl.errors import FINE, InputError, as_input_errors
 from krl.extras import expected_extras
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
@@ -39,10 +39,8 @@ def conform(
         if name not in groups:
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}")
     faults = [one for one in all_faults() if not group or one.group in group]
-    try:
+    with as_input_errors(CaseError):
         cases = find_cases()
-    except CaseError as error:
-        raise InputError(str(error)) from error
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from krl.errors import FINE, InputError
+from krl.errors import FINE, as_input_errors
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -69,7 +69,7 @@ def mutation(
     from support.files.discovery import IngestError
 
     check_files(json_file)
-    try:
+    with as_input_errors(GrammarError, IngestError, NegativeError):
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], load(negatives), seed)
         chosen = choose_mutants(whole, singles, multiple, seed)
@@ -78,8 +78,6 @@ def mutation(
             record = assess_all(material, chosen, jobs=all_cores(jobs), on_done=bar)
         with progress_bar("repeating", runs) as bar:
             same = same_ranking(rankings(material, again, runs, bar)) if again else None
-    except (GrammarError, IngestError, NegativeError) as error:
-        raise InputError(str(error)) from error
     record = {
         "bench": "mutation",
         "grammar": (grammar or GRAMMAR).name,

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
-from krl.errors import FINE, InputError
+from krl.errors import FINE, as_input_errors
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -34,12 +34,10 @@ def recover(
     check_files(json_file)
     wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
-    try:
+    with as_input_errors(GrammarError, IngestError):
         grammar = read_file(GRAMMAR)
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure(roots, grammar, sizes=wanted, on_step=advance)
-    except (GrammarError, IngestError) as error:
-        raise InputError(str(error)) from error
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
     write_json(record, json_file, indent=1)
     _print(record)

@@ -8,7 +8,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.errors import FINE, InputError
+from krl.errors import FINE, InputError, as_input_errors
 from krl.options import JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -49,11 +49,8 @@ def vm(
         raise InputError(
             f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(KERNELS)}"
         )
-    try:
-        with progress_bar("measuring", steps(names)) as advance:
-            record = measure_executors(names, rounds, on_step=advance)
-    except MeasurementError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(MeasurementError), progress_bar("measuring", steps(names)) as advance:
+        record = measure_executors(names, rounds, on_step=advance)
     record = {"bench": "vm", **record}
     write_json(record, json_file, indent=1)
     _print(record)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
 from krl.extras import expected_extras, need
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
@@ -111,11 +111,8 @@ def _expected_errors() -> Iterator[None]:
     """What is not installed, here or on workers, and workers that cannot do the work."""
     from support.parallel.workers import WorkersError
 
-    try:
-        with expected_extras():
-            yield
-    except WorkersError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(WorkersError), expected_extras():
+        yield
 
 
 def _conform(
@@ -172,14 +169,12 @@ def _cases(words: Sequence[str]) -> "list[Case]":
     from conformance.suite.case import CASES, CaseError, find_cases, selected
 
     outside = [Path(word) for word in words if Path(word).exists()]
-    try:
+    with as_input_errors(CaseError):
         cases = find_cases()
         for path in outside:
             if CASES.resolve() not in (path.resolve(), *path.resolve().parents):
                 cases += find_cases(path) if path.is_dir() else _one_case(path)
         return selected(cases, words)
-    except CaseError as error:
-        raise InputError(str(error)) from error
 
 
 def _one_case(path: Path) -> "list[Case]":
@@ -309,11 +304,9 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     if len(words) != 1:
         raise InputError("krl conform import takes one file")
     begun = time.perf_counter()
-    try:
+    with as_input_errors(RecordingError, CaseError):
         recording = Recording.read(Path(words[0]))
         results, wrong = evaluate_recording(recording, find_cases())
-    except (RecordingError, CaseError) as error:
-        raise InputError(str(error)) from error
     for text in wrong:
         typer.echo(one_line(text), err=True)
     if not results:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.construct_ledger import LEDGER, expected_errors, print_table, there
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.progress import progress_bar
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def oracle(
         ledger = Ledger.read(there(LEDGER))
         waiting = [c for c in ledger.constructs if reason_to_ask(c)]
         chosen = [ledger.find(one) for one in wanted] if wanted else waiting
-        try:
+        with as_input_errors(OracleError):
             if record is not None:
                 recorded = RecordedOracle(record)
                 return _ask(ledger.constructs if not wanted else chosen, recorded)
@@ -79,8 +79,6 @@ def oracle(
                     one_line(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
                 )
                 return FINE
-        except OracleError as error:
-            raise InputError(str(error)) from error
     if not chosen:
         typer.echo("nothing waits for a verdict")
     print_table(
