@@ -17,11 +17,11 @@ __all__ = [
     "GRAMMAR",
     "LEDGER",
     "PRELIMINARY",
+    "checkout_or_packaged",
     "expected_errors",
     "print_evaluation",
     "print_refusals",
     "print_table",
-    "there",
 ]
 
 # In the working folder: only a checkout's grammar grows.
@@ -31,8 +31,8 @@ GENERATED = Path("grammar", "_generated")
 LEDGER = Path("grammar", "constructs")
 
 
-def there(path: Path) -> Path:
-    """One of these to be read: of the checkout we are in, else what came with the package."""
+def checkout_or_packaged(path: Path) -> Path:
+    """Where to read one of these: in the working folder of a checkout, or in the package."""
     from grammar.notation.generate import GRAMMAR as OURS
 
     return path if path.parent.is_dir() else OURS.parent / path.relative_to("grammar")

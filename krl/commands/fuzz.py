@@ -55,7 +55,7 @@ def fuzz(
         found = run(programs, seed, names, all_cores(jobs), bar, scheduler)
     record = record_of(found, time.perf_counter() - begun)
     write_json(record, json_file, indent=1)
-    _tell(found, record["seconds"])
+    _print_summary(found, record["seconds"])
     return FINDINGS if found.findings else FINE
 
 
@@ -75,7 +75,7 @@ def _chosen(wanted: list[str]) -> list[str]:
     return names
 
 
-def _tell(found: "Findings", seconds: float) -> None:
+def _print_summary(found: "Findings", seconds: float) -> None:
     from conformance.differential.construct_coverage import missing
 
     console = Console(highlight=False)

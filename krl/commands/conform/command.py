@@ -139,7 +139,7 @@ def _conform(
     results = _run(cases, executors, robots, jobs, scheduler)
     seconds = time.perf_counter() - begun
     _write(results, executors, robots, seconds, json_file, junit, html, fault)
-    _tell(results, seconds)
+    _print_summary(results, seconds)
     failed = any(one.verdict == "fail" for one in results)
     return FINDINGS if failed else FINE
 
@@ -243,14 +243,14 @@ def _write(
         write_junit(results, junit)
 
 
-def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
+def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
     """What failed, case by case, then the figures."""
     from conformance.evaluation.verdicts import VERDICTS
     from conformance.lint import coverage
 
     failed = [one for one in results if one.verdict == "fail"]
     for one in failed[:_SHOWN]:
-        _tell_failure(one)
+        _print_failure(one)
     if len(failed) > _SHOWN:
         typer.echo(f"… and {len(failed) - _SHOWN} more cases failed")
     runs = [result for one in results for result in one.results]
@@ -263,8 +263,8 @@ def _tell(results: "Sequence[CaseResult]", seconds: float) -> None:
     typer.echo(f"rules that may fail: {covered} of {hard} have a case; {rate:.1f} runs a second")
 
 
-def _tell_failure(one: "CaseResult") -> None:
-    """Who failed and why; those who failed alike are told once."""
+def _print_failure(one: "CaseResult") -> None:
+    """Print on what a case failed and why; setups that failed alike share a line."""
     typer.echo(shown(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]"))
     failed = [result for result in one.results if result.verdict == "fail"]
     for reason in dict.fromkeys(result.reason for result in failed):
@@ -321,5 +321,5 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     for answer in answers(results):
         told = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
         typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {told}")
-    _tell(results, seconds)
+    _print_summary(results, seconds)
     return FINDINGS if wrong or any(one.verdict == "fail" for one in results) else FINE

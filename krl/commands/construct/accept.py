@@ -11,10 +11,10 @@ from krl.construct_ledger import (
     GRAMMAR,
     LEDGER,
     PRELIMINARY,
+    checkout_or_packaged,
     expected_errors,
     print_evaluation,
     print_refusals,
-    there,
 )
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JobsOrOneOption
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from recovery.ledger.baseline import Corpora
     from recovery.ledger.ledger import Ledger
 
-__all__ = ["accept", "replay", "weigh"]
+__all__ = ["accept", "evaluate", "replay"]
 
 _OPEN = Path("corpus", "open")
 _OWN = Path("corpus", "programs")
@@ -45,7 +45,7 @@ _Paths = Annotated[
 ]
 
 
-def weigh(
+def evaluate(
     files: Annotated[
         list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
     ],
@@ -64,7 +64,7 @@ def weigh(
     from support.files.atomic_write import write_together
 
     with expected_errors():
-        found = _weighed(Ledger.read(there(LEDGER)), files, corpus, jobs)
+        found = _evaluated(Ledger.read(checkout_or_packaged(LEDGER)), files, corpus, jobs)
         for evaluation in found.evaluations:
             print_evaluation(evaluation)
         print_refusals(found.other_refusals)
@@ -98,7 +98,7 @@ def accept(
         )
     with expected_errors():
         current = read_file(home.grammar)
-        found = _weighed(Ledger.read(home.ledger), files, corpus, jobs, current)
+        found = _evaluated(Ledger.read(home.ledger), files, corpus, jobs, current)
         try:
             written = write(found, home)
         except AcceptanceRefused as refused:
@@ -158,7 +158,7 @@ def _home() -> "GrammarPaths":
     return GrammarPaths(PRELIMINARY, GRAMMAR, GENERATED, LEDGER)
 
 
-def _weighed(
+def _evaluated(
     ledger: "Ledger",
     files: list[Path],
     corpus: list[Path] | None,
@@ -169,7 +169,7 @@ def _weighed(
     from recovery.ledger.ledger import preliminary_of
 
     given = list({c.file: c for c in map(ledger.take, files)}.values())
-    preliminary, corpora = preliminary_of(there(PRELIMINARY)), _corpora(corpus, jobs)
+    preliminary, corpora = preliminary_of(checkout_or_packaged(PRELIMINARY)), _corpora(corpus, jobs)
     with progress_bar("weighing", len(given)) as bar:
         return prepare(given, preliminary, ledger, corpora, current, bar)
 

@@ -5,9 +5,15 @@ from typing import Annotated
 
 import typer
 
-from krl.commands.construct.accept import accept, replay, weigh
+from krl.commands.construct.accept import accept, evaluate, replay
 from krl.commands.construct.oracle import oracle
-from krl.construct_ledger import LEDGER, PRELIMINARY, expected_errors, print_table, there
+from krl.construct_ledger import (
+    LEDGER,
+    PRELIMINARY,
+    checkout_or_packaged,
+    expected_errors,
+    print_table,
+)
 from krl.errors import FINE, InputError, one_line
 from krl.output_files import check_files, write_json
 
@@ -36,7 +42,7 @@ def show_all(
 
     check_files(json_file)
     with expected_errors():
-        ledger = Ledger.read(there(LEDGER))
+        ledger = Ledger.read(checkout_or_packaged(LEDGER))
     rows = [
         (
             f"{c.number:04}",
@@ -67,9 +73,10 @@ def show(
     from support.files.discovery import printable
 
     with expected_errors():
-        ledger = Ledger.read(there(LEDGER))
+        ledger = Ledger.read(checkout_or_packaged(LEDGER))
         construct = ledger.find(wanted)
-        change = list(difference(construct, preliminary_of(there(PRELIMINARY)), ledger))
+        start = preliminary_of(checkout_or_packaged(PRELIMINARY))
+        change = list(difference(construct, start, ledger))
     for line in (*page_of(construct), *change):
         typer.echo(printable(line.expandtabs(4)))
     return FINE
@@ -106,7 +113,7 @@ def propose(
     return FINE
 
 
-app.command("try")(weigh)
+app.command("try")(evaluate)
 app.command("accept")(accept)
 app.command("replay")(replay)
 app.command("oracle")(oracle)

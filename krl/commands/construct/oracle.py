@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.construct_ledger import LEDGER, expected_errors, print_table, there
+from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors, print_table
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.progress import progress_bar
 
@@ -58,7 +58,7 @@ def oracle(
     if sum(option is not None for option in (bundle, record, command)) > 1:
         raise InputError("only one of --bundle, --record and --command")
     with expected_errors():
-        ledger = Ledger.read(there(LEDGER))
+        ledger = Ledger.read(checkout_or_packaged(LEDGER))
         waiting = [c for c in ledger.constructs if reason_to_ask(c)]
         chosen = [ledger.find(one) for one in wanted] if wanted else waiting
         with as_input_errors(OracleError):
