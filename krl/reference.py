@@ -22,7 +22,7 @@ _HEAD = """# Commands
 
 <!-- made by python -m krl.reference --write -->
 
-Exit status everywhere: 0 fine, 1 findings, 2 wrong usage or unreadable input, which is told in one
+Exit status everywhere: 0 fine, 1 findings, 2 wrong usage or unreadable input, reported in one
 line on stderr.
 """
 
@@ -76,14 +76,14 @@ def _choices(option: Any) -> list[str]:
 
 
 def _told(parameter: Any) -> str:
-    told = " ".join((getattr(parameter, "help", "") or "").split())
+    help_text = " ".join((getattr(parameter, "help", "") or "").split())
     default = parameter.default
     if isinstance(default, str | int | float | Path) and not isinstance(default, bool):
         shown = getattr(default, "value", default)
         shown = shown.as_posix() if isinstance(shown, Path) else shown
-        if str(shown) and "default" not in told.lower():
-            told += f" Default: {shown}."
-    return told.replace("|", "\\|").replace("<", "&lt;")
+        if str(shown) and "default" not in help_text.lower():
+            help_text += f" Default: {shown}."
+    return help_text.replace("|", "\\|").replace("<", "&lt;")
 
 
 def _prose(text: str | None) -> str:

@@ -100,7 +100,7 @@ def nightly_record(date: str, made: Mapping[str, Record], steps: Mapping[str, Js
     for name, section in (
         ("recover", _surveyed),
         ("growth", _grown),
-        ("conform", _judged),
+        ("conform", _conformed),
         ("fuzz", _fuzzed),
     ):
         if name in made:
@@ -131,7 +131,7 @@ def _grown(record: Record) -> Json:
     }
 
 
-def _judged(record: Record) -> Json:
+def _conformed(record: Record) -> Json:
     coverage = nested(record, "coverage")
     return {
         "verdicts": dict(nested(record, "verdicts")),

@@ -47,7 +47,7 @@ _IN_WORDS = {
     "mutation.repair_top1": "right repair first, share",
     "mutation.repair_top5": "right repair among five, share",
     "mutation.clusters_per_cause": "clusters a cause",
-    "mutation.false_accept": "negatives let in by the first proposal, share",
+    "mutation.false_accept": "negatives accepted by the first proposal, share",
 }
 
 Json = dict[str, Any]

@@ -37,8 +37,8 @@ def compile_file(
     """Compile a program with its whole project to bytecode, verify it, and write its image.
 
     It can begin with any routine of the file that has no parameters, and has those of the submit
-    programs too. What ends the program when it is reached is told on stderr, with exit status 1: a
-    routine that no file has, a variable of no known type. The image is written all the same.
+    programs too. What ends the program when it is reached is reported on stderr, with exit status
+    1: a routine that no file has, a variable of no known type. The image is written all the same.
     """
     from interp.bytecode.compiler import compile_program
     from interp.values.faults import LinkError

@@ -62,7 +62,9 @@ def check(
     ] = None,
     stops: Annotated[
         bool,
-        typer.Option("--stops", help="Also tell what stops the advance run and which blends go."),
+        typer.Option(
+            "--stops", help="Also report what stops the advance run and which blends are lost."
+        ),
     ] = False,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the findings here.")

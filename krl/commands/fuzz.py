@@ -71,7 +71,7 @@ def _chosen(wanted: list[str]) -> list[str]:
             raise InputError(f"{name}: this executor is not available here")
     names = list(dict.fromkeys(wanted or there))
     if len(names) < 2:
-        raise InputError("name two executors at least: one alone has nobody to be compared with")
+        raise InputError("name two executors at least: one alone has none to be compared with")
     return names
 
 

@@ -54,7 +54,7 @@ def recover(
         bool,
         typer.Option(
             "--start/--no-start",
-            help="Survey under the restrictive start too, and tell what answered its clusters.",
+            help="Survey under the restrictive start too, and report what answered its clusters.",
         ),
     ] = True,
     strict: Annotated[
@@ -94,7 +94,7 @@ def recover(
 
 
 class _Surveyor:
-    """Surveys the same files under one grammar and another, telling how far it is."""
+    """Surveys the same files under one grammar and another, with progress bars."""
 
     def __init__(
         self,

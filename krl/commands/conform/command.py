@@ -56,7 +56,7 @@ def conform(
         typer.Option(
             min=1,
             metavar="N",
-            help="Change so many cases and generated programs in ways that nobody may notice.",
+            help="Change so many cases and generated programs in ways that must not matter.",
         ),
     ] = None,
     fault: Annotated[
@@ -76,7 +76,7 @@ def conform(
     """Run conformance cases, compare each with what it expects and executors with one another.
 
     Exit status 1 where a case failed. 'krl conform import FILE' evaluates a recording that was made
-    on a controller; conformance/CASES.md tells how to make one.
+    on a controller; conformance/CASES.md says how to make one.
     """
     words = select or []
     check_files(json_file, junit)
