@@ -11,18 +11,18 @@ from __future__ import annotations
 
 import random
 import statistics
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from grammar.check.framework import Findings, check_module, check_project
+from grammar.check.project_check import Reading, read_source
 from grammar.diagnostics.diagnostic import Diagnostic
-from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.parser.lexer import Lexer
-from grammar.semantics.link import File, Project, link, words_of
+from grammar.semantics.link import File, Project, link
+from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
-from grammar.syntax import ast
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode
@@ -126,70 +126,55 @@ def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> tuple[int
 
 
 @dataclass(frozen=True, slots=True)
-class _Reading:
-    """A file as the check reads it."""
+class _Program:
+    """A file as it is linked and as it was read."""
 
     file: File
     source: Source
-    diagnostics: tuple[Diagnostic, ...]
+    reading: Reading
 
 
-def _reading(source: Source, origin: str) -> _Reading:
-    tree = builder().read(source.text, source.path)
-    if isinstance(tree, ast.Module):
-        return _Reading(File(source.path, tree, origin, table_of(tree)), source, ())
-    found = tuple(syntax_findings(tree, source))
-    unread = File(source.path, None, origin, words=words_of(source.text))
-    return _Reading(unread, source, found)
+def _program(source: Source, origin: str) -> _Program:
+    reading = read_source(source)
+    table = None if reading.syntax is None else table_of(reading.syntax)
+    return _Program(
+        File(source.path, reading.syntax, origin, table, reading.words), source, reading
+    )
 
 
 class _Checked:
     """A project with the findings of each of its files."""
 
-    def __init__(self, readings: Mapping[str, _Reading]) -> None:
-        self.readings = dict(readings)
+    def __init__(self, programs: Mapping[str, _Program]) -> None:
+        self.programs = dict(programs)
         self.findings: dict[str, Findings] = {}
-        self._check(readings)
+        self._check(programs)
         self.found = frozenset(check_project(self.findings.values()))
 
-    def _check(self, paths: Iterator[str] | Mapping[str, _Reading]) -> None:
+    def _check(self, paths: Iterable[str]) -> None:
         wanted = set(paths)
-        for project in link(reading.file for reading in self.readings.values()).projects:
+        for project in link(program.file for program in self.programs.values()).projects:
             for module in project.modules:
                 if module.path in wanted:
-                    self.findings[module.path] = self._findings(project, module.path)
+                    self.findings[module.path] = self._findings(project, module)
 
-    def _findings(self, project: Project, path: str) -> Findings:
-        reading = self.readings[path]
-        if reading.file.syntax is None:
-            return Findings(reading.diagnostics, ())
-        module = next(module for module in project.modules if module.path == path)
-        return check_module(project, module, reading.source).findings
+    def _findings(self, project: Project, module: Module) -> Findings:
+        program = self.programs[module.path]
+        if module.syntax is None:
+            return Findings(program.reading.diagnostics, ())
+        return program.reading.completed(check_module(project, module, program.source).findings)
 
     def with_text(self, path: str, text: str) -> list[Diagnostic]:
-        """The findings that are new once a file has another text."""
-        before, findings = self.readings[path], dict(self.findings)
-        self.readings[path] = _reading(Source(text, path), before.file.origin)
-        try:
-            self._check(iter(self._concerned(path)))
+        """The errors and warnings that are new once a file has another text."""
+        before, findings = self.programs[path], dict(self.findings)
+        self.programs[path] = _program(Source(text, path), before.file.origin)
+        stem = path.rpartition(".")[0].casefold()
+        try:  # what a data list declares concerns its program first
+            self._check(one for one in self.programs if one.rpartition(".")[0].casefold() == stem)
             found = check_project(self.findings.values())
         finally:
-            self.readings[path], self.findings = before, findings
-        old = {_without_place(one) for one in self.found}
-        return [one for one in found if one not in self.found and _is_told(one, old, path)]
-
-    def _concerned(self, path: str) -> list[str]:
-        """The file and, of a data list, its program."""
-        stem = path.rpartition(".")[0].casefold()
-        return [one for one in self.readings if one.rpartition(".")[0].casefold() == stem]
-
-
-def _without_place(one: Diagnostic) -> tuple[str, str, str]:
-    return one.path, one.code, one.message
-
-
-def _is_told(one: Diagnostic, old: set[tuple[str, str, str]], path: str) -> bool:
-    return one.severity != "note" and (one.path == path or _without_place(one) not in old)
+            self.programs[path], self.findings = before, findings
+        return [one for one in found if one not in self.found and one.severity != "note"]
 
 
 # ------------------------------------------------------------------------------ the measure
@@ -211,12 +196,12 @@ def measure_planted(
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
     chance = random.Random(seed)
-    projects = [_Checked(readings) for readings in _projects(roots)]
+    projects = [_Checked(programs) for programs in _projects(roots)]
     places = [
         (project, path, lines)
         for project in projects
-        for path, reading in project.readings.items()
-        if reading.file.syntax is not None and (lines := list(_lines(reading.source)))
+        for path, program in project.programs.items()
+        if not program.reading.diagnostics and (lines := list(_lines(program.source)))
     ]
     if not places:
         raise IngestError("no line of these files can be damaged")
@@ -246,7 +231,7 @@ def _trial(
         if exchange is None:
             continue
         start, end, new = exchange
-        source = project.readings[path].source
+        source = project.programs[path].source
         text = source.text[:start] + new + source.text[end:]
         found = project.with_text(path, text)
         line = source.text.count("\n", 0, start) + 1
@@ -274,16 +259,16 @@ def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Reading]]:
-    readings: dict[str, _Reading] = {}
+def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Program]]:
+    programs: dict[str, _Program] = {}
     for found in discover(roots):
         data = read(found) if isinstance(found, Found) else b""
         decoded = decode(data) if isinstance(data, bytes) else ""
         if not isinstance(decoded, str) and isinstance(found, Found):
-            readings[found.path] = _reading(Source(decoded.text, found.path), found.origin)
-    bare = [replace(reading.file, syntax=None) for reading in readings.values()]
+            programs[found.path] = _program(Source(decoded.text, found.path), found.origin)
+    bare = [replace(program.file, syntax=None) for program in programs.values()]
     for project in link(bare).projects:
-        yield {module.path: readings[module.path] for module in project.modules}
+        yield {module.path: programs[module.path] for module in project.modules}
 
 
 def _lines(source: Source) -> Iterator[list[Token]]:
@@ -295,7 +280,7 @@ def _lines(source: Source) -> Iterator[list[Token]]:
         if kind < 0:
             continue
         if "\n" in lexeme or "\r" in lexeme:
-            if line:
+            if line and line[0].text[0] != "&":  # header lines are for KUKA's tools
                 yield line
             line = []
         else:

@@ -137,7 +137,8 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
     """Parameters are declared in the body; whole arrays are passed :OUT [SCO-06, SCO-07]."""
     symbols = routine.table.routine.parameters
     for node, parameter in zip(routine.node.parameters, symbols, strict=True):
-        if parameter.type is None:
+        is_unread = parameter.key in (checker.context.module.words or ())
+        if parameter.type is None and not is_unread:
             message = f"the parameter {parameter.name} is not declared"
             checker.report("parameter-undeclared", node, message)
         type_ = checker.type_of_symbol(parameter, routine.scope)

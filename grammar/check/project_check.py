@@ -14,7 +14,8 @@ from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.framework import Findings, check_module
 from grammar.check.suppression_comments import SuppressionComment, suppression_comments
-from grammar.diagnostics.diagnostic import Region, diagnose, in_order
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.predefined import System
@@ -22,19 +23,21 @@ from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax import ast
-from grammar.syntax.build import SyntaxFailure, builder
+from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.parallel.gc_pause import gc_paused
 
 __all__ = [
     "LARGEST",
-    "CheckOptions",
     "Content",
     "FileResult",
+    "Reading",
+    "CheckOptions",
     "check_part",
     "check_whole",
     "read_part",
+    "read_source",
 ]
 
 #: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
@@ -88,13 +91,45 @@ class FileResult:
 
 
 @dataclass(frozen=True, slots=True)
+class Reading:
+    """A file as the check reads it.
+
+    ``syntax`` is its tree, without the lines that cannot be read, whose findings are
+    ``diagnostics``; `None` where nothing of it can be read. ``words`` are the names in what cannot,
+    ``exchanged`` the lines that were read as something else.
+    """
+
+    syntax: ast.Module | None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    words: frozenset[str] | None = None
+    exchanged: frozenset[int] = frozenset()
+
+    def completed(self, found: Findings) -> Findings:
+        """What was found in the tree, with what was found in reading; nothing in place of it."""
+        kept = (one for one in found.diagnostics if one.region.line not in self.exchanged)
+        return replace(found, diagnostics=(*self.diagnostics, *kept))
+
+
+def read_source(source: Source) -> Reading:
+    """Read a file, as far as it can be read."""
+    tree = builder().read(source.text, source.path)
+    if isinstance(tree, ast.Module):
+        return Reading(tree)
+    if any(failure.reason for failure in tree):
+        return Reading(None, tuple(syntax_findings(tree, source)), words_of(source.text))
+    recovered = recover(source.text, source.path)
+    found = tuple(syntax_findings(recovered.failures, source))
+    return Reading(recovered.syntax, found, words_of(recovered.dropped), recovered.exchanged)
+
+
+@dataclass(frozen=True, slots=True)
 class _Tree:
     """What a process keeps of a file between reading and checking; not all have their trees."""
 
-    syntax: ast.Module | None
     table: ModuleTable
     source: Source
     comments: tuple[SuppressionComment, ...]
+    reading: Reading
 
 
 #: By project, then by the index of the file in it.
@@ -109,9 +144,7 @@ def check_whole(contents: Sequence[Content], options: CheckOptions) -> list[File
     return [checked.get(index) or looked[index] for index in range(len(contents))]
 
 
-def read_part(
-    project: int, part: Mapping[int, Content], options: CheckOptions
-) -> dict[int, FileResult]:
+def read_part(project: int, part: Mapping[int, Content], options: CheckOptions) -> dict[int, FileResult]:
     """Read a share of the files of a project, and keep their trees for `check_part`."""
     kept = _KEPT[project] = {}
     looked = {}
@@ -121,7 +154,9 @@ def read_part(
             looked[index], tree = _read(content, options)
         if tree is not None:
             size += len(content.data)
-            kept[index] = tree if size <= _MOST_KEPT else replace(tree, syntax=None)
+            if size > _MOST_KEPT:
+                tree = replace(tree, reading=replace(tree.reading, syntax=None))
+            kept[index] = tree
     return looked
 
 
@@ -137,25 +172,16 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     source = Source(decoded.text, path)
     if options.syntax_only and not builder().failures.find(source.text):
         return FileResult(comments=suppression_comments(source)), None
-    tree = builder().read(source.text, path)
-    if not isinstance(tree, ast.Module):
-        return _failed(tree, source), None
+    reading = read_source(source)
+    found, tree = reading.diagnostics, reading.syntax
     comments = suppression_comments(source)
-    if options.syntax_only:
-        return FileResult(comments=comments), None
+    if options.syntax_only or tree is None:
+        lines = _lines(source, (one.region.line for one in found))
+        looked = FileResult(Findings(found, ()), lines=lines, comments=comments, words=reading.words)
+        return looked, None
     table = table_of(tree)
-    return FileResult(table=table, comments=comments), _Tree(tree, table, source, comments)
-
-
-def _failed(failures: list[SyntaxFailure], source: Source) -> FileResult:
-    found = tuple(syntax_findings(failures, source))
-    lines = _lines(source, (one.region.line for one in found))
-    return FileResult(
-        Findings(found, ()),
-        lines=lines,
-        comments=suppression_comments(source),
-        words=words_of(source.text),
-    )
+    looked = FileResult(Findings(found, ()), table=table, comments=comments, words=reading.words)
+    return looked, _Tree(table, source, comments, reading)
 
 
 def check_part(
@@ -185,7 +211,7 @@ def check_part(
         for module in linked.modules:
             if id(module.table) in own:
                 index, tree = own[id(module.table)]
-                syntax = tree.syntax or _again(tree.source)
+                syntax = tree.reading.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
                 with gc_paused(len(tree.source.text)):
                     checked[index] = _looked(_checked(linked, whole, tree.source, options), tree)
@@ -194,8 +220,8 @@ def check_part(
 
 def _again(source: Source) -> ast.Module:
     with gc_paused(len(source.text)):
-        syntax = builder().read(source.text, source.path)
-    assert isinstance(syntax, ast.Module), "it could be read before"
+        syntax = read_source(source).syntax
+    assert syntax is not None, "it could be read before"
     return syntax
 
 
@@ -218,6 +244,7 @@ def _checked(project: Project, module: Module, source: Source, options: CheckOpt
 
 
 def _looked(findings: Findings, tree: _Tree) -> FileResult:
+    findings = tree.reading.completed(findings)
     numbers = {one.region.line for one in findings.diagnostics}
     numbers |= {one.region.line for one in findings.references}
     return FileResult(findings, lines=_lines(tree.source, numbers), comments=tree.comments)

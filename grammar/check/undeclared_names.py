@@ -176,8 +176,10 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
     space = use.space
     if space is None or isinstance(use.answer, Found):
         return ()
-    here = own(space).meant(use.name.text)
-    return here or context.project.typos[space].meant(use.name.text)
+    name = use.name.text
+    if space is Space.VALUE and f"${use.name.key}" in context.system.variables:
+        return (f"${name}",)
+    return own(space).meant(name) or context.project.typos[space].meant(name)
 
 
 def _own_typos(context: Context, space: Space) -> Typos:

@@ -139,9 +139,6 @@ def _blocks(site: ErrorSite) -> _Mistake | None:
     return _Mistake(f"{word} without {openers[0]}", reason=reason)
 
 
-#: The parts of a block that are no ends of it.
-
-
 def _outermost(block: OpenBlock) -> OpenBlock:
     while block.outer is not None:
         block = block.outer

@@ -2,8 +2,8 @@
 
 Stricter than `grammar.diagnostics.did_you_mean`, which only words a hint: here a finding rests on
 it. One slip is a letter too many, too few or wrong, or two that changed places. Names that people
-make in series are no slips of one another: those that differ in a digit, in a letter that stands
-alone (``PickA``, ``PickB``) or in a prefix (``XHOME`` of ``HOME``).
+make in series are no slips of one another: those that differ in a digit, in the last letter of a
+word (``PICKA``, ``PICKB``), in a prefix (``XHOME`` of ``HOME``), or as GET and SET.
 """
 
 from __future__ import annotations
@@ -13,20 +13,26 @@ from collections.abc import Iterable, Iterator
 
 __all__ = ["Typos"]
 
+# Shorter names are near too many others.
 _SHORTEST = 4
 _LONGEST = 64
-# A word of a name: letters of one kind, a run of digits.
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+|[^A-Za-z0-9_]+")
+# A word of a name: letters, or what is no letter.
+_WORD = re.compile(r"[A-Z]+|[^A-Z]+")
+# Both are there in every library.
+_PAIR = {"GET", "SET"}
+# A letter behind a shorter word may number it: POSX, POSY.
+_SHORTEST_TO_END = 6
 
 
 class Typos:
     """Names that can be meant, indexed so that a look-up costs the length of the name.
 
     Each name is entered under itself without each of its letters, as SymSpell does: names that are
-    one slip apart meet in such a key.
+    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out.
     """
 
-    def __init__(self, names: Iterable[str]) -> None:
+    def __init__(self, names: Iterable[str], shortest: int = _SHORTEST) -> None:
+        self._shortest = shortest
         self._names: dict[str, str] = {}
         self._keys: dict[str, list[str]] = {}
         for name in names:
@@ -35,7 +41,7 @@ class Typos:
     def add(self, name: str) -> None:
         """Enter a name; letter case makes no difference, the first spelling counts."""
         key = name.upper()
-        if key in self._names or not _SHORTEST <= len(key) <= _LONGEST:
+        if key in self._names or not self._shortest <= len(key) <= _LONGEST:
             return
         self._names[key] = name
         for shorter in _shortened(key):
@@ -44,13 +50,13 @@ class Typos:
     def meant(self, name: str) -> tuple[str, ...]:
         """The names that ``name`` may be a slip of, in the order of the alphabet."""
         wrong = name.upper()
-        if not _SHORTEST <= len(wrong) <= _LONGEST:
+        if not self._shortest <= len(wrong) <= _LONGEST:
             return ()
         near = {
             right
             for shorter in _shortened(wrong)
             for right in self._keys.get(shorter, ())
-            if right != wrong and _is_slip(name, self._names[right])
+            if right != wrong and _is_slip(wrong, right)
         }
         return tuple(self._names[right] for right in sorted(near))
 
@@ -62,28 +68,27 @@ def _shortened(key: str) -> Iterator[str]:
 
 
 def _is_slip(wrong: str, right: str) -> bool:
-    """Whether two names that share a key are one slip apart, and in no series."""
-    a, b = wrong.upper(), right.upper()
-    start = next(
-        (i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b))
-    )
-    rest_a, rest_b = a[start:], b[start:]
-    if len(a) == len(b):
-        is_swap = rest_a[:2] == rest_b[1::-1] and rest_a[2:] == rest_b[2:] and len(rest_a) > 1
-        if not is_swap and rest_a[1:] != rest_b[1:]:
+    """Whether two names in upper case that share a key are one slip apart, and in no series."""
+    pairs = enumerate(zip(wrong, right, strict=False))
+    start = next((i for i, (a, b) in pairs if a != b), min(len(wrong), len(right)))
+    if len(wrong) != len(right):
+        longer, shorter = (wrong, right) if len(wrong) > len(right) else (right, wrong)
+        if longer[start + 1 :] != shorter[start:]:
             return False
-        if is_swap:
-            return not (rest_a[0].isdigit() or rest_a[1].isdigit())
-        return not (_is_serial(wrong, start) or _is_serial(right, start))
-    longer, shorter = (wrong, right) if len(a) > len(b) else (right, wrong)
-    if longer.upper()[start + 1 :] != shorter.upper()[start:]:
-        return False
-    return start > 0 and not _is_serial(longer, start)
+        return start > 0 and not _numbers(longer, start, _SHORTEST_TO_END)
+    if wrong[start + 1 :] == right[start + 1 :]:
+        if {wrong[start : start + 3], right[start : start + 3]} == _PAIR:
+            return False
+        return not (_numbers(wrong, start) or _numbers(right, start))
+    swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
+    return wrong[start:] == swapped and swapped[:2].isalpha()
 
 
-def _is_serial(name: str, index: int) -> bool:
-    """Whether the letter at an index numbers the name: a digit, or a word of one letter."""
-    for word in _WORD.finditer(name):
-        if word.start() <= index < word.end():
-            return word.group()[0].isdigit() or len(word.group()) == 1
-    return True
+def _numbers(name: str, index: int, shortest: int = _LONGEST) -> bool:
+    """Whether the character at an index numbers the name: no letter, or the last of a word.
+
+    The last letter of a word with so many letters numbers nothing.
+    """
+    word = next(word for word in _WORD.finditer(name) if word.start() <= index < word.end())
+    is_last = index == word.end() - 1
+    return not word.group().isalpha() or (is_last and len(word.group()) < shortest)

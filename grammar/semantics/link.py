@@ -38,7 +38,7 @@ from grammar.semantics.scopes import (
     Reason,
     Scope,
     SystemScope,
-    UnreadableDataList,
+    PartlyRead,
     nearest,
 )
 from grammar.semantics.symbol_table import table_of
@@ -54,7 +54,8 @@ class File:
     """A file to link. ``path`` has ``/``; files of different origins never share a project.
 
     A file that cannot be read has neither ``syntax`` nor ``table``: that it is there matters all
-    the same, and ``words``, the names that occur in it (`words_of`), bound what it may declare.
+    the same. ``words`` are the names that occur in what cannot be read of it (`words_of`), as it
+    may declare no others.
     ``table`` may come from a cache, as it depends on the content alone; without ``syntax`` others
     can refer to the file.
     """
@@ -173,7 +174,9 @@ class Project:
         outer: Outer = self._globals.near(module.folder)
         data = self.data_of(module)
         if data is not None:
-            outer = self.scope(data) if data.table else UnreadableDataList(outer, data.words)
+            outer = self.scope(data) if data.table else PartlyRead(outer, data.words)
+        if module.words:
+            outer = PartlyRead(outer, module.words)
         return Scope(module, None, module.table.table, outer, module.table.externals)
 
     def _misses(self, module: Module) -> bool:
@@ -293,9 +296,8 @@ def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
 def _words_in_unread(modules: Sequence[Module], space: Space) -> frozenset[str]:
     """The words of files that cannot be read and may declare names of a space for everybody."""
     is_data = space is not Space.ROUTINE
-    unread = (module for module in modules if module.table is None)
     return frozenset().union(
-        *(module.words or () for module in unread if not is_data or module.suffix == ".dat")
+        *(module.words or () for module in modules if not is_data or module.suffix == ".dat")
     )
 
 

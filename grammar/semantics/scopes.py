@@ -44,7 +44,7 @@ __all__ = [
     "Reason",
     "Scope",
     "SystemScope",
-    "UnreadableDataList",
+    "PartlyRead",
     "nearest",
 ]
 
@@ -56,7 +56,7 @@ class Module:
     ``path`` as it was handed in, with ``/``. ``name`` is that of the file without its ending, in
     upper case, and ``suffix`` its ending in lower case. ``table`` is ``None`` where the file cannot
     be read; ``syntax`` also where only its tables are at hand, so that it can be referred to.
-    ``words`` are the names in the text of a file that cannot be read, if these are known.
+    ``words`` are the names in what cannot be read of it, if these are known.
     """
 
     path: str
@@ -350,7 +350,7 @@ class _Near:
 
 
 @dataclass(frozen=True, slots=True)
-class UnreadableDataList:
+class PartlyRead:
     """What is seen through a data list that cannot be read: it may declare any of its words."""
 
     outer: Outer

@@ -33,7 +33,7 @@ def test_without_config_only_a_slip_is_told(agrees: Agrees) -> None:
   GRIPPED = 1
   GRIPED = 1 ;> KRL101?
   GRIPPED = WHOLLY_UNKNOWN ;> KRL701-
-  $OV_PROO = 1 ;> KRL113?
+  $OV_RPO = 1 ;> KRL113?
 END"""
     agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
 

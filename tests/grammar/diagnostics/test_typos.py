@@ -33,6 +33,7 @@ def test_slips(wrong: str, right: str) -> None:
         ("XHOME", "HOME"),
         ("count1", "count"),
         ("VEL", "VEX"),
+        ("EKI_GetInt", "EKI_SetInt"),
         ("SAME", "same"),
     ],
 )

@@ -1,0 +1,182 @@
+"""What of a program can be read although some of its lines cannot.
+
+A syntax error costs its statement, not the file. The first line that cannot be read is blanked,
+character by character so that every place stays what it is, and the rest is read again until it can
+be read whole. What only fails because of an earlier error is marked: closers and parts of a block
+whose opener was blanked, and blocks whose closer was.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grammar.blocks import BRANCHES, CLOSERS
+from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
+from grammar.parser.tree import Tree
+from grammar.syntax import ast
+from grammar.syntax.build import SyntaxFailure, builder
+from grammar.syntax.node_plans import TooDeep
+from grammar.syntax.source import Source
+
+__all__ = ["Recovered", "recover"]
+
+# Every line that is blanked out costs a reading of the whole text.
+_MOST_ROUNDS = 60
+_LARGEST = 2_000_000
+_ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
+#: How a routine begins that ends so.
+_HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
+_NAME = re.compile(r"[$A-Za-z_][\w$]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Recovered:
+    """What can be read of a text that is no program.
+
+    ``syntax`` is the tree of all but the lines that cannot be read, `None` where there are too many
+    of these or no routine is left. ``failures`` are in the order of the text, those marked that
+    only follow from others. ``dropped`` is the text of the lines that were left out, ``exchanged``
+    the numbers of all that were read as something else: what is found in these is none of theirs.
+    """
+
+    syntax: ast.Module | None
+    failures: tuple[SyntaxFailure, ...]
+    dropped: str
+    exchanged: frozenset[int] = frozenset()
+
+
+def recover(text: str, path: str = "") -> Recovered:
+    """Read a text that has failures; ``path`` is where it comes from."""
+    if len(text) <= _LARGEST:
+        found = _Recovery(text, path).run()
+        if found is not None:
+            return found
+    failures = builder().read(text, path)
+    assert isinstance(failures, list), "only what cannot be read is to be recovered"
+    return Recovered(None, tuple(failures), text)
+
+
+class _Recovery:
+    """A text on its way to one that can be read."""
+
+    def __init__(self, text: str, path: str) -> None:
+        self._path = path
+        self._written = Source(text, path)
+        self._text = text
+        self._dropped: set[int] = set()
+        self._exchanged: dict[int, str] = {}
+        self._failures: list[SyntaxFailure] = []
+
+    def run(self) -> Recovered | None:
+        """The tree and the failures; ``None`` where this leads to nothing."""
+        ours = builder()
+        for _ in range(_MOST_ROUNDS):
+            tree = ours.parser.parse(self._text)
+            if isinstance(tree, Tree):
+                try:
+                    return self._recovered(ours.module(tree))
+                except TooDeep:
+                    return None
+            context = ours.failures.context(tree.state)
+            source = Source(self._text, self._path)
+            block = open_blocks(source, [tree.line])[tree.line]
+            cause = _unclosed(source.line(tree.line), tree.text, block)
+            is_structural = cause is not None or block is None or self._is_orphan(tree.line)
+            follows = bool(self._failures) and is_structural
+            self._failures.append(
+                SyntaxFailure(
+                    self._path,
+                    tree.line,
+                    tree.column,
+                    tree.offset,
+                    tree.text,
+                    context.expected,
+                    context.rule,
+                    follows,
+                )
+            )
+            is_case = "CASE" in self._failures[-1].expected and cause is None
+            if not (
+                (is_case and self._write(tree.line, "CASE 0"))
+                or self._open(tree.line, block)
+                or self._mend(cause, tree.line)
+            ):
+                return None
+        return None
+
+    def _recovered(self, syntax: ast.Module) -> Recovered:
+        self._failures.sort(key=lambda failure: failure.offset)
+        dropped = "\n".join(self._written.line(number) for number in sorted(self._dropped))
+        return Recovered(syntax, tuple(self._failures), dropped, frozenset(self._exchanged))
+
+    def _is_orphan(self, line: int) -> bool:
+        """Whether a line closes or continues a block."""
+        word = lead(self._written.line(line))
+        return word in CLOSERS or word in BRANCHES
+
+    def _open(self, line: int, block: OpenBlock | None) -> bool:
+        """Read a line outside all routines as the beginning of the one that ends below it."""
+        if block is not None or line in self._dropped:
+            return False
+        words = _NAME.findall(self._written.line(line))
+        later = (lead(text) for text in self._written.lines[line:])
+        closer = next((word for word in later if word in _HEADS or word in _ROUTINES), "")
+        head = _HEADS.get(closer, "")
+        names = [word for word in words[1:] if word.upper() not in _ROUTINES] or words
+        if not head or not names:
+            return False
+        return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
+
+    def _mend(self, cause: OpenBlock | None, line: int) -> bool:
+        """Leave out a line; or close a block before it, or leave out what opens that."""
+        if cause is None:
+            return self._write(line, "")
+        if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
+            return True
+        if cause.word not in _ROUTINES:
+            return self._write(cause.line, "")
+        if self._written.line(line).strip():
+            return False
+        self._text = f"{self._text.rstrip()}\n{cause.closer}\n"
+        return True
+
+    def _free_lines(self, first: int, end: int) -> Iterator[int]:
+        """Lines that a closer can be written on: those left out, then comments, the last first."""
+        lines = range(end - 1, first - 1, -1)
+        yield from (line for line in lines if line in self._dropped)
+        yield from (line for line in lines if self._written.line(line).lstrip()[:1] == ";")
+
+    def _write(self, line: int, text: str) -> bool:
+        """Exchange a line for a text that is no longer; once only."""
+        written = self._written.line(line)
+        if len(text) > len(written) or not written.strip() or self._exchanged.get(line) == text:
+            return False
+        if self._exchanged.get(line):
+            return False
+        self._exchanged[line] = text
+        if not written.lstrip().startswith(";"):
+            self._dropped.add(line)
+        start = self._written.starts[line - 1]
+        self._text = (
+            self._text[:start] + text.ljust(len(written)) + self._text[start + len(written) :]
+        )
+        return True
+
+
+def _unclosed(line: str, token: str, block: OpenBlock | None) -> OpenBlock | None:
+    """The block that is to be closed before a line that fails can be read, if it is that."""
+    if block is None:
+        return None
+    word = lead(line)
+    if not token.strip() and not line.strip():
+        return block  # the end of the file
+    if word != token.upper():
+        return None
+    if word in _ROUTINES:
+        return block
+    openers = CLOSERS.get(word, (BRANCHES[word],) if word in BRANCHES else ())
+    if not openers or block.word in openers or innermost(block, openers) is None:
+        return None
+    return block

@@ -1,0 +1,94 @@
+"""A syntax error costs its statement, not the file."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grammar.diagnostics.error_recovery import recover
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+
+CELL = """&ACCESS RVP
+DEF CELL()
+  DECL INT COUNT
+  ; counting
+  FOR COUNT = 1 TO 3
+    IF COUNT == 2 THEN
+      WORK(COUNT)
+    ELSE
+      HALT
+    ENDIF
+  ENDFOR
+  SWITCH COUNT
+    CASE 1
+      WORK(1)
+    DEFAULT
+      WORK(2)
+  ENDSWITCH
+END
+
+DEF WORK(A:IN)
+  DECL INT A
+  $OUT[A] = TRUE
+END
+"""
+
+
+def routines(module: ast.Module | None) -> list[str]:
+    assert module is not None
+    assert isinstance(module.content, ast.Program)
+    return [routine.name.text for routine in module.content.routines]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "line"),
+    [
+        ("WORK(COUNT)", "WORK(COUNT", 7),
+        ("ENDIF", "ENDIFF", 10),
+        ("ENDIF", "", 11),
+        ("ELSE", "ELS", 8),
+        ("FOR COUNT", "FRO COUNT", 5),
+        ("ENDFOR", "ENDFO", 11),
+        ("CASE 1", "CSE 1", 13),
+        ("ENDSWITCH", "ENDSWICH", 17),
+        ("END\n\nDEF", "EEND\n\nDEF", 18),
+        ("DEF CELL()", "DFE CELL()", 2),
+        ("DEF WORK(A:IN)", "DEF WORK(A:IN", 20),
+    ],
+)
+def test_one_mistake_is_one_failure_and_keeps_all_routines(
+    right: str, wrong: str, line: int
+) -> None:
+    """A damaged line gives one failure, on it or where its loss shows, and callers see all."""
+    found = recover(CELL.replace(right, wrong, 1))
+    assert [line] == [failure.line for failure in found.failures if not failure.follows]
+    assert ["CELL", "WORK"] == routines(found.syntax)
+
+
+def test_what_was_left_out_is_known() -> None:
+    """The text of the lines that cannot be read is kept: they may declare something."""
+    found = recover(CELL.replace("DECL INT A\n", "DECL INT A B\n"))
+    assert "DECL INT A B" == found.dropped.strip()
+
+
+def test_places_stay(path: str = "cell.src") -> None:
+    """What is read has the places that it has in the text."""
+    text = CELL.replace("WORK(COUNT)", "WORK(COUNT")
+    found = recover(text, path)
+    assert found.syntax is not None
+    assert isinstance(found.syntax.content, ast.Program)
+    start, end = found.syntax.content.routines[1].name.span
+    assert "WORK" == text[start:end]
+    assert [path] == [failure.path for failure in found.failures]
+
+
+@given(st.data())
+def test_any_line_may_be_lost(data: st.DataObject) -> None:
+    """Whatever line is damaged, recovery ends, and tells of a failure unless there is none."""
+    lines = CELL.splitlines(keepends=True)
+    at = data.draw(st.integers(1, len(lines) - 1))
+    damage = data.draw(st.sampled_from(["", "?\n", "END\n", "IF\n", "DEF\n", "ENDIF\n", "A B C\n"]))
+    text = "".join([*lines[:at], damage, *lines[at + 1 :]])
+    if isinstance(read_module(text), list):
+        found = recover(text)
+        assert any(not failure.follows for failure in found.failures)
