@@ -13,8 +13,9 @@ from hypothesis import settings
 if TYPE_CHECKING:
     from selenium import webdriver
 
-# Where a test does not say how many examples it needs. More have found nothing more here.
-settings.register_profile("suite", max_examples=50)
+# Where a test does not say how many examples it needs; more have found nothing more here. No test
+# depends on the clock.
+settings.register_profile("suite", max_examples=50, deadline=None)
 settings.load_profile("suite")
 
 _FLAGS = (

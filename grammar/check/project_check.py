@@ -30,10 +30,10 @@ from support.parallel.gc_pause import gc_paused
 
 __all__ = [
     "LARGEST",
+    "CheckOptions",
     "Content",
     "FileResult",
     "Reading",
-    "CheckOptions",
     "check_part",
     "check_whole",
     "read_part",
@@ -144,7 +144,9 @@ def check_whole(contents: Sequence[Content], options: CheckOptions) -> list[File
     return [checked.get(index) or looked[index] for index in range(len(contents))]
 
 
-def read_part(project: int, part: Mapping[int, Content], options: CheckOptions) -> dict[int, FileResult]:
+def read_part(
+    project: int, part: Mapping[int, Content], options: CheckOptions
+) -> dict[int, FileResult]:
     """Read a share of the files of a project, and keep their trees for `check_part`."""
     kept = _KEPT[project] = {}
     looked = {}
@@ -177,7 +179,9 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     comments = suppression_comments(source)
     if options.syntax_only or tree is None:
         lines = _lines(source, (one.region.line for one in found))
-        looked = FileResult(Findings(found, ()), lines=lines, comments=comments, words=reading.words)
+        looked = FileResult(
+            Findings(found, ()), lines=lines, comments=comments, words=reading.words
+        )
         return looked, None
     table = table_of(tree)
     looked = FileResult(Findings(found, ()), table=table, comments=comments, words=reading.words)

@@ -35,10 +35,10 @@ from grammar.semantics.scopes import (
     Module,
     NotFound,
     Outer,
+    PartlyRead,
     Reason,
     Scope,
     SystemScope,
-    PartlyRead,
     nearest,
 )
 from grammar.semantics.symbol_table import table_of

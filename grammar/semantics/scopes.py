@@ -41,10 +41,10 @@ __all__ = [
     "Module",
     "NotFound",
     "Outer",
+    "PartlyRead",
     "Reason",
     "Scope",
     "SystemScope",
-    "PartlyRead",
     "nearest",
 ]
 
@@ -351,7 +351,7 @@ class _Near:
 
 @dataclass(frozen=True, slots=True)
 class PartlyRead:
-    """What is seen through a data list that cannot be read: it may declare any of its words."""
+    """What is seen through a file that cannot be read whole: the rest may declare its words."""
 
     outer: Outer
     words: frozenset[str] | None
