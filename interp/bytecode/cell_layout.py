@@ -226,7 +226,7 @@ def _family(type_: Type) -> bool | None:
 
 @lru_cache(_REMEMBERED)
 def shown(type_: Type) -> Type:
-    """The type as values have it: ``@2`` behind a name tells types apart in programs only."""
+    """The type as values have it: ``@2`` behind a name distinguishes types in programs only."""
     match type_:
         case Array():
             return Array(shown(type_.element), type_.sizes)

@@ -5,7 +5,7 @@ The first types are the four scalars; they are not written anywhere. A cell of t
 its address, counted from 0 through all variables in order; a cell of a frame its offset: first the
 parameters, then the locals.
 
-Nothing here is checked: that is the affair of `interp.bytecode.verifier.verify`.
+Nothing is checked here: see `interp.bytecode.verifier.verify`.
 """
 
 from __future__ import annotations

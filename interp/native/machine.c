@@ -47,7 +47,7 @@ static int64_t frames_need(const struct krl_machine *machine, int64_t frames)
     return (dense < sparse ? dense : sparse) + 1;
 }
 
-/* Makes the memory larger. Zeros that nobody has looked at cost nothing. */
+/* Makes the memory larger. Zeros that were never read cost nothing. */
 static int extend(struct krl_memory *memory, int64_t count)
 {
     krl_cell *cells = NULL;

@@ -72,7 +72,7 @@ enum krl_told {
 
 struct krl_machine {
     struct krl_program program;
-    int told; /* of which events there is a trace to tell */
+    int told; /* which events are traced */
     struct krl_routine *routines;
     struct krl_step *steps;
     int32_t step_count;

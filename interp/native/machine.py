@@ -11,9 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import IntEnum
-from typing import Any, cast
+from typing import cast, overload
 
 from interp.bytecode._generated.opcodes import Op
+from interp.bytecode.cell_layout import Raw
 from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
@@ -68,7 +69,11 @@ class _Stack:
     def __len__(self) -> int:
         return self._core.top - self._core.floor
 
-    def __getitem__(self, where: Any) -> Any:
+    @overload
+    def __getitem__(self, where: int) -> Raw | None: ...
+    @overload
+    def __getitem__(self, where: slice) -> list[Raw | None]: ...
+    def __getitem__(self, where: int | slice) -> Raw | list[Raw | None] | None:
         core = self._core
         if isinstance(where, slice):
             return core[core.top + where.start : core.top]
@@ -78,7 +83,7 @@ class _Stack:
         core = self._core
         core.top = (core.top if where.start < 0 else core.floor) + where.start
 
-    def append(self, raw: Any) -> None:
+    def append(self, raw: Raw | None) -> None:
         """Put something on top."""
         core = self._core
         core[core.top] = raw

@@ -1,7 +1,7 @@
 /* The machine as a Python type, for interp/native/machine.py only.
  *
  * `Core` gives what runs, its frames and its cells. It checks every number it is given that leads
- * into memory, so that no caller can do harm; what the numbers mean is the affair of its caller.
+ * into memory, so that no caller can do harm; the caller knows what the numbers mean.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>

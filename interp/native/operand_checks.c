@@ -113,7 +113,7 @@ void krl_check_positions(struct flow *flow, int32_t left, int32_t right)
 {
     const struct krl_type *types = flow->program->types;
     int32_t count = types[left].size < types[right].size ? types[left].size : types[right].size;
-    /* No position has more cells; the names that tell positions apart are not looked at here. */
+    /* No position has more cells; the names that distinguish positions are not looked at here. */
     if (types[left].form != KRL_STRUCTURE || types[right].form != KRL_STRUCTURE || count > 64) {
         krl_refuse_code(flow, "positions are needed");
         return;

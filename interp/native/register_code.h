@@ -1,5 +1,5 @@
-/* The register code that code objects are translated into: its steps. Operands are registers but for
- * what is told.
+/* The register code that code objects are translated into: its steps. Operands are registers, unless it
+ * says so.
  *
  * A step whose name ends in K has a constant instead of its last operand: a word, for a cell with
  * its tag in `tag`. Places of arrays are a first cell and a size; `array` is one of the table.

@@ -1,7 +1,7 @@
 /* The interpreter: what each step does.
  *
  * It is one long function: only within one can steps go straight to one another and keep what they
- * all use in registers. register_code.h tells what their operands are. What they are written with stands in
+ * all use in registers. register_code.h says what their operands are. What they are written with stands in
  * dispatch.h, what they do with arrays in array_operations.h.
  */
 #include "array_operations.h"

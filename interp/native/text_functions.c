@@ -31,7 +31,7 @@ static int is_array(const struct krl_program *program, const struct krl_part *pa
            type->element == KRL_TYPE_CHAR;
 }
 
-/* The place of the constant that tells letters apart by their case; -1 where there is none. */
+/* The place of the constant that distinguishes letters by their case; -1 where there is none. */
 static int32_t sensitive(const struct krl_program *program, int32_t type)
 {
     static const char name[] = "CASE_SENS";

@@ -1,4 +1,4 @@
-/* What the parts of the translation share; translate.c tells how it goes. */
+/* What the parts of the translation share; translate.c describes it. */
 #ifndef KRL_TRANSLATE_H
 #define KRL_TRANSLATE_H
 

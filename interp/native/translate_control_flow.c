@@ -11,7 +11,7 @@ struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, in
     return step;
 }
 
-/* The program can be told to go on at any statement, where the stack is empty. */
+/* The program can go on at any statement, where the stack is empty. */
 static void start_here(struct translator *at, int32_t place)
 {
     at->result = -1;

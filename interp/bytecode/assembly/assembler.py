@@ -51,7 +51,7 @@ _KINDS = {kind.value: kind for kind in CodeKind}
 def assemble(text: str) -> Program:
     """The program that a text describes; raises `AssemblyError`.
 
-    It is not verified: that is the affair of `interp.bytecode.verifier.verify`.
+    It is not verified: see `interp.bytecode.verifier.verify`.
     """
     return _Assembler(split(text)).program()
 

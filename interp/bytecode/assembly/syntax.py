@@ -41,7 +41,7 @@ __all__ = [
 Label = tuple[str, int]
 
 
-#: A label as it is compared: letter case does not tell labels apart.
+#: A label as it is compared: letter case does not matter.
 Key = tuple[str, int]
 
 
@@ -241,7 +241,7 @@ def path_text(path: Path) -> str:
 
 
 def labels(names: Iterable[str]) -> list[Label]:
-    """A label for each name, by which they can be told apart whatever their letter case."""
+    """A label for each name, which differ in more than letter case."""
     seen: Counter[str] = Counter()
     found = []
     for name in names:

@@ -259,7 +259,7 @@ class Calls:
         return self._memory.as_view(Reference(made)).most
 
     def _copied_to_buffer(self, type_: Array, value: View) -> Bound:
-        """Make of the view on top one of a copy of the array, whose size only running tells."""
+        """Make of the view on top one of a copy of the array, whose size is known when it runs."""
         if not is_view_of(value, self._emitter.closed(type_.element), len(type_.sizes)):
             raise self._emitter.refuse(_other_type(type_))
         buffer = self._writer.copy_buffer(value.element, value.dimensions, value.most)

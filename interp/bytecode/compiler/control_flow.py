@@ -1,6 +1,6 @@
 """Control flow as jumps: blocks with their labels, branches, loops.
 
-A loop begins anew at each pass. What is told of a branch is which way was taken.
+A loop begins anew at each pass. The trace event of a branch is which way was taken.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class ControlFlow:
             self._case(kept, value, label)
 
     def _word_of(self, node: ast.Expression, type_: Type) -> int | None:
-        """The word of a literal of exactly this type, which CASE can tell apart."""
+        """The word of a literal of exactly this type, which CASE can compare."""
         match node, type_:
             case ast.EnumConstant(), Enumeration():
                 meant = self._context.unit.checked.enumerations.get(node, type_)
@@ -237,7 +237,7 @@ class ControlFlow:
         return last
 
     def _store_integer(self, counter: Location, node: ast.Expression) -> None:
-        """Give the counter a number, rounded if need be, and tell it."""
+        """Give the counter a number, rounded if need be, and trace it."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
         self._expressions.integer(node)

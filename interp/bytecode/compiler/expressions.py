@@ -2,7 +2,7 @@
 
 Operands and arguments are evaluated from left to right. What cannot be known before the program
 runs, above all the type of a system variable that no table has, is refused: it ends the program
-when it is reached, and is told to whoever compiles.
+when it is reached, and is reported as a `Refusal`.
 """
 
 from __future__ import annotations
@@ -276,7 +276,7 @@ class Expressions:
         return type_
 
     def assign(self, place: Location, node: ast.Expression) -> Location:
-        """Store the value of an expression; gives the place to tell of."""
+        """Store the value of an expression; gives the location to trace."""
         ready = self._memory.ready(place)
         behind = self._writer.here
         wanted = UNKNOWN if isinstance(ready, ViewParameter | PushedView) else ready.type

@@ -91,7 +91,7 @@ class IndexCell:
 
 @dataclass(frozen=True, slots=True)
 class SystemVariable:
-    """A system variable or a part of one; ``type`` is `UNKNOWN` where nothing tells it."""
+    """A system variable or a part of one; ``type`` is `UNKNOWN` where no table has it."""
 
     path: tuple[str | int | IndexCell, ...]
     type: Type

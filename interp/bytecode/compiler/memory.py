@@ -1,4 +1,4 @@
-"""Moving values: what instructions read a place, refer to it, store in it, and tell of it.
+"""Moving values: what instructions read a location, refer to it, store in it and trace that.
 
 `Memory` knows cells and types and nothing of syntax trees.
 """

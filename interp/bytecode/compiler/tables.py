@@ -101,7 +101,7 @@ class Tables:
         return self._entry(self.builtins, builtin)
 
     def _entry(self, table: list[_T], entry: _T) -> int:
-        # what is written tells 1 from 1.0 and TRUE, which compare as equal
+        # the written form distinguishes 1, 1.0 and TRUE, which compare as equal
         key = (type(entry), repr(entry))
         if key not in self._places:
             self._places[key] = len(table)

@@ -1,7 +1,7 @@
 """From an image to its program; the format is described in `interp.bytecode.image.layout`.
 
 What is read is not trusted: `read_image` raises `ImageError` for whatever is not of this format.
-Whether the program keeps the rules is the affair of `interp.bytecode.verifier.verify`.
+Whether the program keeps the rules is checked by `interp.bytecode.verifier.verify`.
 """
 
 from __future__ import annotations

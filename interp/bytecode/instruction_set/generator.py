@@ -137,7 +137,7 @@ def stack_effects_in_c(shapes: Sequence[Shape]) -> str:
 
 
 def _statements(one: Shape) -> Iterator[str]:
-    if "trace" in one.flags:  # what the trace is told is worked out in Python
+    if "trace" in one.flags:  # trace events are worked out in Python
         return
     steps = [step for step in one.steps if (step.verb, step.name) not in _CHECKED_IN_PYTHON]
     checks = [step for step in steps if step.verb == "check"]

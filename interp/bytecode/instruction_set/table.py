@@ -11,7 +11,7 @@ checks     what must hold of the operands
 effect     what it takes from the stack of operands and what it leaves; for this and the checks see
            `interp.bytecode.instruction_set.effects`
 flags      ``ends`` where the next instruction does not follow, ``changes`` what no condition may
-           have, ``trace`` what only the trace is told
+           have, ``trace`` what only makes a trace event
 sentence   what it does, and the faults it raises
 ========== =========================================================================================
 """

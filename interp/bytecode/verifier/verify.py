@@ -47,7 +47,7 @@ _LONGEST_STACK = 1 << 16
 class Verified:
     """A program that keeps the rules.
 
-    ``depths`` tells for each code object how many cells lie on the stack before each instruction,
+    ``depths`` is for each code object how many cells lie on the stack before each instruction,
     -1 where no way leads to it.
     """
 
@@ -86,7 +86,7 @@ def stacks_needed(program: Program) -> list[int]:
             flow = Flow(program, code)
             needed[number] = flow.largest(flow.stacks())
     except VerificationError:
-        pass  # whoever runs the program is told
+        pass  # running the program reports it
     return needed
 
 

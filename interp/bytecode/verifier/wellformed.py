@@ -2,7 +2,7 @@
 
 That is all that `interp.bytecode.verifier.verify` asks of types, texts, data, entries, the heads of
 code objects and the operands of instructions, each by itself; what instructions do to the stack is
-the affair of `interp.bytecode.verifier.operand_stack`.
+checked by `interp.bytecode.verifier.operand_stack`.
 """
 
 from __future__ import annotations
@@ -287,7 +287,7 @@ class _Tables:
 
 
 def _parts(type_: Type) -> Iterator[Type]:
-    """The types that a type is made of; names are told apart in upper case."""
+    """The types that a type is made of; names are compared in upper case."""
     match type_:
         case Structure():
             _distinct(type_, [member.name for member in type_.members])

@@ -18,7 +18,7 @@ Rule = Callable[..., Operation]
 class Hooks(Protocol):
     """What instructions need of the machine around them."""
 
-    #: Whether there is a trace that is told of calls, and of their ends.
+    #: Whether calls, and their ends, are traced.
     calls_are_told: bool
     returns_are_told: bool
     #: What ends an action, and what ends the routine that the program began with.

@@ -38,7 +38,7 @@ __all__ = ["Machine"]
 class _Open:
     """What the machine does next: run an operation, or wait for the reply to a request.
 
-    ``is_asked`` tells that the request was handed over since the program was interrupted last.
+    ``is_asked`` where the request was handed over since the program was interrupted last.
     """
 
     operation: Operation | None = None
@@ -63,7 +63,7 @@ class _Entered:
 class Machine:
     """Runs a verified program from a routine without parameters on.
 
-    It is told by its name, or by the number of its code object. ``beside`` is a machine of the same
+    It is given by name, or by the number of its code object. ``beside`` is a machine of the same
     program whose data lists it shares: their cells come first in one list, then the frames of each
     machine in a range of their own. Raises `LinkError` where the program cannot begin with it.
     """
@@ -140,7 +140,7 @@ class Machine:
         state.request = state.completion = None
         try:
             self._run(now.operation if now.completion is None else _given(now.completion, reply))
-        except Exception as error:  # a defect of ours, which is told as one
+        except Exception as error:  # a defect of ours, reported as one
             state.completion = None
             state.request = Crash(self._services.at(), f"{type(error).__name__}: {error}")
         request = state.request

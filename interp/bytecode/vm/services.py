@@ -36,7 +36,7 @@ _NOWHERE = At("", 0, 0)
 class Services:
     """Makes the operations that reach beyond the cells, and knows where the program is.
 
-    ``entered`` tells how many of the open calls were none but interruptions. The machine puts in
+    ``entered`` is how many of the open calls were none but interruptions. The machine puts in
     what ends an action and what ends the program.
     """
 

@@ -22,11 +22,11 @@ Call = tuple[Operation, int, int, int, int, int]
 
 
 class State:
-    """What instructions work on. The frame that runs is told by the first five.
+    """What instructions work on. The first five describe the frame that runs.
 
     ``code`` is the number of its code object, ``fp`` its first cell, ``base`` the height of the
     stack of operands when it began, ``statement`` the place of the LINE that began last, -1 before.
-    ``serial`` tells activations apart whose actions and conditions may be handed over, else it is
+    ``serial`` distinguishes activations whose actions and conditions may be handed over, else it is
     0. ``left`` is how many statements may begin before something has to be done, ``most_calls`` how
     many calls may be open, ``most_cells`` where the frames have to end, ``last`` the cell that was
     written last through a reference.

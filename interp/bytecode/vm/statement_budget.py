@@ -9,7 +9,7 @@ the
 - ON_ERROR_PROCEED holds for the statement that begins next, wherever that is, until another one
   begins.
 
-A statement costs a subtraction: ``State.left`` tells when there is more to do.
+A statement costs a subtraction: ``State.left`` says when there is more to do.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ class ThreadedCode:
         rule = self._rules.get(instruction.op)
         if rule is not None:
             return rule(site, *instruction.operands)
-        return self._hooks.tell(instruction, site.after)  # what is left is for the trace
+        return self._hooks.tell(instruction, site.after)  # what is left is a trace event
 
 
 def _fallen_off() -> Operation | None:
