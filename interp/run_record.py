@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, NotRequired, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +14,79 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 
-__all__ = ["record_of"]
+__all__ = ["RunRecord", "record_of"]
 
 Array = npt.NDArray[np.float64]
 
 
-def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> dict[str, Any]:
+class OutcomeRecord(TypedDict):
+    """How the run ended; ``at`` is ``file:line`` or empty."""
+
+    kind: str
+    time: int
+    text: str
+    at: str
+
+
+class FileRecord(TypedDict):
+    """A source file that the trace names."""
+
+    path: str
+    text: str
+
+
+class LimitsRecord(TypedDict):
+    """The greatest speeds of the axes, and of the tool."""
+
+    axis_speeds: list[float]
+    speed: float
+
+
+class PointRecord(TypedDict):
+    """The end point of a motion; ``place`` is empty where it is unknown."""
+
+    motion: int
+    kind: str
+    at: str
+    place: list[float]
+    blended: bool
+
+
+class PathSamples(TypedDict):
+    """Set-points, one column a quantity; ``tool_measured`` where the robot measures."""
+
+    t: list[int]
+    tool: list[list[float]]
+    speed: list[float]
+    axis_speeds: list[list[float]]
+    tool_measured: NotRequired[list[list[float]]]
+
+
+class DeviationRecord(TypedDict):
+    """How far the measured tool is from its set-point, mm."""
+
+    most: float
+    mean: float
+
+
+class RunRecord(TypedDict):
+    """A run; ``path`` and ``deviation`` where set-points were sent to a robot."""
+
+    main: str
+    executor: str
+    robot: str
+    profile: str
+    machine: str
+    outcome: OutcomeRecord
+    events: list[dict[str, Any]]
+    files: list[FileRecord]
+    limits: LimitsRecord
+    points: list[PointRecord]
+    path: NotRequired[PathSamples]
+    deviation: NotRequired[DeviationRecord | None]
+
+
+def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRecord:
     """Outcome, trace, sources, path, limits and programmed points of a run.
 
     Times are µs, lengths mm in front of the robot's foot, speeds of axes deg/s or mm/s, that of the
@@ -28,7 +95,7 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> dict[
     outcome = run.outcome
     events = [json.loads(event.line()) for event in run.events]
     blended = {event["motion"] for event in events if event["kind"] == "blend_apex"}
-    record: dict[str, Any] = {
+    record: RunRecord = {
         "main": program.main.module.path,
         "executor": setup.executor,
         "robot": setup.robot,
@@ -62,8 +129,8 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> dict[
     return record
 
 
-def _files(program: CheckedProgram, named: set[str]) -> list[dict[str, str]]:
-    """The sources that the trace speaks of, the one the program began with first."""
+def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:
+    """The sources that the trace names, the one the program began with first."""
     units = [program.main, *(unit for unit in program.units.values() if unit is not program.main)]
     return [
         {
@@ -76,19 +143,19 @@ def _files(program: CheckedProgram, named: set[str]) -> list[dict[str, str]]:
 
 
 def _tip(point: PlannedPoint) -> list[float]:
-    """Where a motion leads the tool, in front of the robot's foot; empty where nobody knows."""
+    """The end point of the tool, in front of the robot's foot; empty where it is unknown."""
     if point.position is None:
         return []
     return [round(value, 4) for value in (point.position.flange @ point.tool).position]
 
 
-def _limits(machine: MachineData) -> dict[str, Any]:
+def _limits(machine: MachineData) -> LimitsRecord:
     axes = (*machine.axes, *machine.externals)
     speeds = [axis.dynamics.velocity if axis.dynamics is not None else 0.0 for axis in axes]
     return {"axis_speeds": speeds, "speed": machine.velocity.path}
 
 
-def _path(path: PathRecord) -> dict[str, Any]:
+def _path(path: PathRecord) -> PathSamples:
     seconds = path.times / 1e6
     speeds = np.zeros_like(path.axes)
     tip_speed = np.zeros(len(path.times))
@@ -96,7 +163,7 @@ def _path(path: PathRecord) -> dict[str, Any]:
         speeds = np.gradient(path.axes, seconds, axis=0)
         steps: Array = np.gradient(path.tips, seconds, axis=0)
         tip_speed = np.linalg.norm(steps, axis=1) / 1000
-    record: dict[str, Any] = {
+    record: PathSamples = {
         "t": path.times.tolist(),
         "tool": path.tips.round(4).tolist(),
         "speed": tip_speed.round(6).tolist(),
@@ -107,7 +174,7 @@ def _path(path: PathRecord) -> dict[str, Any]:
     return record
 
 
-def _deviation(path: PathRecord) -> dict[str, float] | None:
+def _deviation(path: PathRecord) -> DeviationRecord | None:
     """How far the measured tool is from its set-point, mm."""
     if path.tips_measured is None:
         return None

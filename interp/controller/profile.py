@@ -13,12 +13,15 @@ from datetime import datetime
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from interp.values.faults import RuntimeFailure
 from support.files.untrusted import DocumentError, read_text, toml_of
 
 __all__ = ["Profile", "ProfileError", "profile_names"]
+
+
+_T = TypeVar("_T")
 
 
 class ProfileError(RuntimeFailure):
@@ -130,7 +133,7 @@ class _Reader:
         """An error about an entry."""
         return ProfileError(f"profile {self.name}: {table + '.' if table else ''}{key} {why}")
 
-    def get(self, table: str, key: str, type_: type) -> Any:
+    def get(self, table: str, key: str, type_: type[_T]) -> _T:
         """An entry of a type."""
         holder = self.data.get(table, {}) if table else self.data
         value = holder.get(key) if isinstance(holder, Mapping) else None
@@ -140,21 +143,21 @@ class _Reader:
 
     def machine(self) -> str:
         """The name of an arm that comes along: no path, wherever the profile is from."""
-        name: str = self.get("", "machine", str)
+        name = self.get("", "machine", str)
         if not _ARM.fullmatch(name):
             raise self.wrong("", "machine", "is no name of letters, digits and _")
         return name
 
     def start(self) -> datetime:
         """The date at which the clock begins, with room for a run behind it."""
-        start: datetime = self.get("time", "start", datetime)
+        start = self.get("time", "start", datetime)
         if start.year > _LAST_YEAR:
             raise self.wrong("time", "start", f"is after {_LAST_YEAR}")
         return start
 
     def count(self, table: str, key: str, least: int = 1) -> int:
         """An entry that counts something."""
-        value: int = self.get(table, key, int)
+        value = self.get(table, key, int)
         if value < least:
             raise self.wrong(table, key, f"is below {least}")
         if value > _LARGEST:

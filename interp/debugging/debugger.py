@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from interp.debugging.backward_motions import MotionRecord
 from interp.debugging.client import (
@@ -28,7 +27,7 @@ from interp.debugging.open_routines import OpenRoutines
 from interp.debugging.selection import reason_against
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
-from interp.port.inspection import Inspectable
+from interp.port.inspection import Inspectable, Seen
 from interp.port.requests import At, CodeHandle, End, Fail, Move, MoveSpline, Request, Slice, Value
 from interp.program.load import CheckedProgram, Limits
 from interp.program.statement_paths import routine_at, statement_lines
@@ -154,7 +153,7 @@ class Debugger:
         return self._inner.depth
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the world is needed, or the client wants a motion travelled."""
+        """Compute until the controller is needed, or the client wants a motion travelled."""
         if self._own is not None:
             if not self._is_asked:
                 self._is_asked = True
@@ -203,8 +202,8 @@ class Debugger:
         """A second executor over the same data lists, which is not debugged."""
         return self._inner.companion(routine, sink)
 
-    def look(self, text: str) -> Any:
-        """What the executor inside knows of a variable; see `interp.port.inspection`."""
+    def look(self, text: str) -> Seen | None:
+        """A variable, as the executor inside has it; see `interp.port.inspection`."""
         return self._inner.look(text)
 
     # ----------------------------------------------------------------------- what goes by

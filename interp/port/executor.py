@@ -25,7 +25,7 @@ class Executor(Protocol):
     """Runs one program."""
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the world is needed.
+        """Compute until the controller is needed.
 
         ``reply`` answers the request before; a fault as reply is raised in the program at the
         statement that asked, where ON_ERROR_PROCEED may take it [TYP-13]. After `End` at depth 0

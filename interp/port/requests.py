@@ -1,6 +1,6 @@
-"""What an executor asks of the world, and says about it: the only words between the two.
+"""The requests of an executor to its controller.
 
-An executor computes until it needs the world, returns a request, and is given the reply with the
+An executor computes until it needs the controller, returns a request, and gets the reply with the
 next call of `interp.port.executor.Executor.advance`. Requests are plain data: they hold values,
 never nodes of a tree or places in an image, so that a controller cannot tell executors apart.
 
@@ -85,7 +85,7 @@ class Asking:
     at: At
 
 
-# --------------------------------------------------------------------------- the world's variables
+# ----------------------------------------------------------------------------- system variables
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class Write(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Invoke(Asking):
-    """A predefined routine that acts on the world (PULSE, CWRITE, SET_KRLMSG …), by its name.
+    """A predefined routine of the controller (PULSE, CWRITE, SET_KRLMSG …), by its name.
 
     An argument left out is ``None``. ``paths`` has one entry for each argument: the system variable
     that it is, where it is passed :OUT and is one, so that PULSE knows its output; else ``None``.
