@@ -1,8 +1,8 @@
 """A world that answers at random from a seed, disturbs programs, and holds little in memory.
 
-It differs from `interp.bench.stub_world.StubWorld` in that it answers with a fault now and then, in
-that what was never written has values that are no zeros, and in that arrays of thousands of inputs
-and outputs cost nothing before they are used.
+It differs from `interp.bench.stub_controller.StubController` in that it answers with a fault now
+and then, in that what was never written has values that are no zeros, and in that arrays of
+thousands of inputs and outputs cost nothing before they are used.
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.executor_comparison import Observed, difference, observe
-from interp.bench.stub_world import StubWorld
+from interp.bench.executor_differences import Observed, difference, observe
+from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
@@ -51,7 +51,7 @@ def _makers(main: str, **others: str) -> list[Maker]:
 def _run(main: str, **others: str) -> Observed:
     """What all executors ask and tell."""
     makers = _makers(main, **others)
-    tree, *machines = [observe(make, StubWorld(), most=500) for make in makers]
+    tree, *machines = [observe(make, StubController(), most=500) for make in makers]
     for machine in machines:
         assert None is difference(tree, machine)
     return tree
@@ -155,7 +155,7 @@ def test_conditions_that_outlive_their_routine_find_no_variables(
 ) -> None:
     """A signal is found, as its index did not have to be worked out; unconfirmed [INT-04]."""
     for make in _makers(_OUTLIVED.format(condition)):
-        executor, world = make(None), StubWorld()
+        executor, world = make(None), StubController()
         seen: list[bool | str] = []
         codes: list[CodeHandle] = []
         request = executor.advance()

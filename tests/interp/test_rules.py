@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.stub_world import StubWorld, run
+from interp.bench.stub_controller import StubController, run
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm.executor import Machine
@@ -104,7 +104,7 @@ def test_rules(program: CheckedProgram, verified: Verified, number: int) -> None
 def _outcome(make: Callable[[Sink], Executor]) -> Any:
     """The value that the variable receives, or the slug of the fault."""
     recorder = Recorder()
-    ended = run(make(recorder), StubWorld()).last
+    ended = run(make(recorder), StubController()).last
     if isinstance(ended, Fail):
         assert isinstance(ended.fault, Fault), ended.fault
         return f"!{ended.fault.slug}"

@@ -16,7 +16,7 @@ from krl.progress import progress_bar
 from krl.text_table import figures
 
 if TYPE_CHECKING:
-    from interp.bench.routine_trials import Trial, Unread
+    from interp.bench.corpus_routines import Trial, Unread
 
 __all__ = ["real_code"]
 
@@ -58,7 +58,7 @@ def real_code(
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
     actions entered, and some requests fail. Exit status 1 where executors differ.
     """
-    from interp.bench.routine_trials import Effort, Trial, Unread, trials
+    from interp.bench.corpus_routines import Effort, Trial, Unread, trials
     from interp.executors import available
 
     check_files(json_file)

@@ -10,7 +10,8 @@ import pytest
 from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
-from interp.bench.executor_comparison import (
+from interp.bench.corpus_routines import Trial, trials
+from interp.bench.executor_differences import (
     Difference,
     Entered,
     Evaluated,
@@ -19,8 +20,7 @@ from interp.bench.executor_comparison import (
     difference,
     observe,
 )
-from interp.bench.routine_trials import Trial, trials
-from interp.bench.stub_world import StubWorld
+from interp.bench.stub_controller import StubController
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.compiler import Compiled, compile_program
@@ -51,11 +51,14 @@ def _observed(program: CheckedProgram, seed: int | None = None) -> tuple[Observe
     probers = [None if seed is None else Prober(seed) for _ in range(2)]
     return (
         observe(
-            lambda sink: TreeExecutor(program, None, _LIMITS, sink), StubWorld(1), probers[0], 500
+            lambda sink: TreeExecutor(program, None, _LIMITS, sink),
+            StubController(1),
+            probers[0],
+            500,
         ),
         observe(
             lambda sink: Machine(verified, program.start().name, _LIMITS, sink),
-            StubWorld(1),
+            StubController(1),
             probers[1],
             500,
         ),

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.stub_world import StubWorld
+from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
@@ -140,7 +140,7 @@ def program_of(text: str, data: str = "") -> CheckedProgram:
     return load(sources + ([Source(data, "main.dat")] if data else []), "main.src")
 
 
-def driven(executor: Any, world: StubWorld) -> list[Request]:
+def driven(executor: Any, world: StubController) -> list[Request]:
     """All requests to the end."""
     found: list[Request] = []
     reply: Any = None
@@ -157,7 +157,7 @@ def debug(request: pytest.FixtureRequest) -> Callable[..., tuple[Script, list[Re
 
     def ran(*commands: Any, text: str = MAIN, data: str = DATA) -> tuple[Script, list[Request]]:
         program = program_of(text, data if text is MAIN else "")
-        script, world = Script(list(commands)), StubWorld()
+        script, world = Script(list(commands)), StubController()
         make = make_of(request.param, program)
         debugger = Debugger(make, program, script, read=world.read)
         return script, driven(debugger, world)
@@ -175,9 +175,9 @@ def test_a_program_does_the_same_under_a_debugger(name: str, per_slice: int) -> 
     program, limits = program_of(MAIN, DATA), Limits(per_slice=per_slice)
     make = make_of(name, program)
     alone, debugged = Recorder(), Recorder()
-    expected = driven(make(limits, alone), StubWorld())
+    expected = driven(make(limits, alone), StubController())
     script = Script([StepCommand("into")] * 20)
-    found = driven(Debugger(make, program, script, limits, debugged), StubWorld())
+    found = driven(Debugger(make, program, script, limits, debugged), StubController())
     assert expected == found
     assert alone.events == debugged.events
     assert any(isinstance(one, Slice) for one in expected) == (per_slice < 1000)
@@ -471,7 +471,7 @@ END
 @pytest.mark.parametrize("name", EXECUTORS)
 def test_steps_and_actions(name: str, way: Any, lines: list[int]) -> None:
     """An action that comes up meanwhile is stepped over, or into."""
-    program, world = program_of(INTERRUPTED), StubWorld()
+    program, world = program_of(INTERRUPTED), StubController()
     script = Script([StepCommand(way)] * (len(lines) - 1))
     debugger = Debugger(make_of(name, program), program, script)
     action = None

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.executor_comparison import Prober, difference, observe
+from interp.bench.executor_differences import Prober, difference, observe
 from interp.bench.kernels import KERNELS, Kernel
-from interp.bench.stub_world import StubWorld
+from interp.bench.stub_controller import StubController
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.image.writer import write_image
@@ -168,7 +168,7 @@ def test_own_programs(native: type[vm.Machine], name: str) -> None:
         observed = []
         for kind in (vm.Machine, native):
             start = partial(kind, verified, number, limits)
-            observed.append(observe(start, StubWorld(1), Prober(1), most=300))
+            observed.append(observe(start, StubController(1), Prober(1), most=300))
         assert difference(*observed) is None
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.stub_world import Outcome, StubWorld, run
+from interp.bench.stub_controller import Outcome, StubController, run
 from interp.port.events import Recorder
 from interp.port.requests import Path, Request
 from interp.program.load import Limits, load
@@ -72,6 +72,6 @@ def go(make: Callable[..., TreeExecutor]) -> Runner:
     def ran(text: str, limits: Limits | None = None, most: int = 10_000, **more: str) -> Ran:
         recorder = Recorder()
         executor = make(text, limits, recorder, **more)
-        return Ran(run(executor, StubWorld(), most), recorder)
+        return Ran(run(executor, StubController(), most), recorder)
 
     return ran

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from grammar.syntax.source import Source
-from interp.bench.stub_world import Outcome, StubWorld, run
+from interp.bench.stub_controller import Outcome, StubController, run
 from interp.port.events import Recorder
 from interp.port.requests import Crash, End, Fail
 from interp.program.load import Limits, load
@@ -26,7 +26,7 @@ def executed(main: str, most: int) -> tuple[Outcome, Recorder]:
     program = load(sources, main)
     recorder = Recorder()
     executor = TreeExecutor(program, limits=Limits(statements=50_000), sink=recorder)
-    return run(executor, StubWorld(1, system_values(program)), most), recorder
+    return run(executor, StubController(1, system_values(program)), most), recorder
 
 
 @pytest.mark.parametrize(

@@ -29,13 +29,13 @@ from interp.port.requests import (
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import ArrayValue, StructureValue, copied, has_value, zero
 
-__all__ = ["Outcome", "StubWorld", "run"]
+__all__ = ["Outcome", "StubController", "run"]
 
 #: What is drawn from the seed.
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN"})
 
 
-class StubWorld:
+class StubController:
     """Answers requests.
 
     ``values`` are those of system variables at first, by name in upper case. They are not changed:
@@ -160,7 +160,7 @@ class Outcome:
         return self.requests[-1]
 
 
-def run(executor: Executor, world: StubWorld, most: int = 100_000) -> Outcome:
+def run(executor: Executor, world: StubController, most: int = 100_000) -> Outcome:
     """Run a program in a world until it ends, or has made so many requests.
 
     No interrupt ever comes, and no trigger; RESUME is answered by nothing.

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from grammar.syntax.source import Source
-from interp.bench.executor_comparison import Observed, Prober, difference, observe
+from interp.bench.executor_differences import Observed, Prober, difference, observe
 from interp.bench.routine_callers import with_callers
-from interp.bench.stub_world import StubWorld
+from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import Compiled, compile_program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
 from interp.bytecode.vm.executor import Machine
@@ -193,7 +193,7 @@ class _Project:
     def _observed(
         self, executor: str, program: CheckedProgram, start: Routine, prober: Prober | None
     ) -> Observed:
-        world = StubWorld(self._effort.seed, self._values)
+        world = StubController(self._effort.seed, self._values)
         most = self._effort.requests
         return observe(lambda sink: self._made(executor, program, start, sink), world, prober, most)
 

@@ -18,7 +18,7 @@ from functools import cache
 from random import Random
 from typing import Any, Final
 
-from interp.bench.stub_world import StubWorld
+from interp.bench.stub_controller import StubController
 from interp.port.events import ExecutorEvent, Recorder, Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
@@ -132,7 +132,7 @@ class Prober:
             return None
         return fault("inadmissible") if self._random.randrange(_FAILING) == 0 else None
 
-    def disturb(self, executor: Executor, world: StubWorld) -> Iterator[Step]:
+    def disturb(self, executor: Executor, world: StubController) -> Iterator[Step]:
         """Evaluate a condition or enter an action, perhaps both."""
         if self._random.randrange(_PROBED):
             return
@@ -170,7 +170,7 @@ class Prober:
 
 def observe(
     make: Callable[[Sink], Executor],
-    world: StubWorld,
+    world: StubController,
     prober: Prober | None = None,
     most: int = 10_000,
 ) -> Observed:
@@ -258,7 +258,9 @@ def _names(kind: type) -> tuple[str, ...]:
     return tuple(one.name for one in fields(kind))
 
 
-def _evaluated(executor: Executor, code: CodeHandle, world: StubWorld) -> Value | RuntimeFailure:
+def _evaluated(
+    executor: Executor, code: CodeHandle, world: StubController
+) -> Value | RuntimeFailure:
     try:
         return executor.evaluate(code, world.read)
     except RuntimeFailure as error:
