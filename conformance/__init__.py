@@ -1,3 +1,1 @@
 """Conformance: do executors agree with one another, and with the documented rules of KRL?"""
-
-__all__: list[str] = []

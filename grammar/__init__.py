@@ -1,3 +1,1 @@
-"""The language: text to checked program. Knows nothing of running it."""
-
-__all__: list[str] = []
+"""The language: from text to a checked program. Knows nothing of running it."""

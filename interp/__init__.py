@@ -3,5 +3,3 @@
 Executors (`tree`, `bytecode`, `native`) and the controller with its robot know nothing of one
 another: between them stand the requests and events of `port`. `session` puts them together.
 """
-
-__all__: list[str] = []

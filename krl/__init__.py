@@ -1,3 +1,1 @@
 """The `krl` command: reads arguments, calls the packages below and prints."""
-
-__all__: list[str] = []

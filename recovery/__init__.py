@@ -1,3 +1,1 @@
-"""The survey: what the corpus knows that the grammar does not yet."""
-
-__all__: list[str] = []
+"""Grammar recovery: what a corpus shows that the grammar does not have yet."""
