@@ -29,13 +29,13 @@ _SHARD: Final = 50
 _LIFE: Final = 20
 #: When a world interferes, a smaller program may need another seed for it to do so again.
 _SEEDS: Final = 4
-#: So many are reduced; of the others only their numbers are told.
+#: So many are reduced; of the others only the numbers are reported.
 _MOST_REDUCED: Final = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A program on which an executor parts from the reference, made small if there is time."""
+    """A program on which an executor diverges from the reference, made small if there is time."""
 
     number: int
     difference: Difference
@@ -90,10 +90,10 @@ def fuzz(
     """Run so many programs on executors, of which the first is the reference.
 
     ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
-    address; reducing what was found is left to the process that asks. ``on_done`` is told how many
-    programs were done since it was told last. The result depends on ``programs``, ``seed`` and
-    ``executors`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker has
-    not these executors.
+    address; reducing what was found is left to the process that asks. ``on_done`` is called with
+    how many programs were done since the last call. The result depends on ``programs``, ``seed``
+    and ``executors`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker
+    has not these executors.
     """
     names = tuple(executors)
     shards = [
@@ -161,9 +161,9 @@ def _run_all(shard: _Shard) -> _Outcome:
         reference, *others = shard.executors
         expected = trace_of(program, EXECUTORS[reference], world)
         for name in others:
-            parted = difference(name, expected, trace_of(program, EXECUTORS[name], world))
-            if parted is not None:
-                found.findings.append(Finding(number, parted, files))
+            diverged = difference(name, expected, trace_of(program, EXECUTORS[name], world))
+            if diverged is not None:
+                found.findings.append(Finding(number, diverged, files))
         found.counts.update(counted(program, expected))
         found.ends[str(expected[-1][0])] += 1
         facts += len(expected)
@@ -175,7 +175,7 @@ def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
     attempts = range(_SEEDS if finding.difference.is_disturbed else 1)
     last = [finding.difference]
 
-    def parts(files: Files) -> bool:
+    def diverges(files: Files) -> bool:
         program = loaded(files)
         if program is None:
             return False
@@ -183,13 +183,13 @@ def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
             world = world_seed(seed, finding.number, attempt)
             expected = trace_of(program, EXECUTORS[reference], world)
             name = finding.difference.executor
-            parted = difference(name, expected, trace_of(program, EXECUTORS[name], world))
-            if parted is not None and parted.kind == finding.difference.kind:
-                last[0] = parted
+            diverged = difference(name, expected, trace_of(program, EXECUTORS[name], world))
+            if diverged is not None and diverged.kind == finding.difference.kind:
+                last[0] = diverged
                 return True
         return False
 
-    reduced = reduce_program(finding.files, parts)
+    reduced = reduce_program(finding.files, diverges)
     return Finding(finding.number, last[0], reduced.files, reduced.statements)
 
 

@@ -1,8 +1,8 @@
 """What of the language programs exercise: what stands on lines that were executed.
 
 Counted are kinds of nodes and their variants, operators, predefined functions, and the instructions
-that lines were compiled to. `language` lists what there is of each, so that what never came up can
-be told.
+that lines were compiled to. `language` lists what there is of each, so that what
+never occurred can be reported.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from interp.values.faults import FAULTS, LinkError
 
 __all__ = ["Counts", "counted", "language", "missing"]
 
-#: How often each thing came up, by its kind and its name.
+#: How often each thing occurred, by its kind and its name.
 Counts = Counter[tuple[str, str]]
 
 _MOTIONS: Final = (
@@ -58,7 +58,7 @@ def language() -> Mapping[str, tuple[str, ...]]:
 
 
 def missing(counts: Counts) -> dict[str, list[str]]:
-    """What never came up, by kind; kinds of which all came up are left out."""
+    """What never occurred, by kind; kinds of which all occurred are left out."""
     found = {
         kind: [name for name in names if not counts[kind, name]]
         for kind, names in language().items()
@@ -127,7 +127,7 @@ def _of(node: ast.Node) -> Iterator[tuple[str, str]]:
 
 
 def _variants(node: Any) -> Iterator[str]:
-    """What tells nodes of one kind apart."""
+    """What distinguishes nodes of one kind."""
     match node:
         case ast.If() if node.otherwise is not None:
             yield "IF ELSE"

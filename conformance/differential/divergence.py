@@ -76,7 +76,7 @@ def difference(
 
 
 def examine(program: Prepared, seed: str, executors: Sequence[str]) -> list[Difference]:
-    """Run a program on executors; where each of them parts from the first one, if it does."""
+    """Run a program on executors; where each of them diverges from the first one, if it does."""
     expected = trace_of(program, EXECUTORS[executors[0]], seed)
     found = (
         difference(name, expected, trace_of(program, EXECUTORS[name], seed))

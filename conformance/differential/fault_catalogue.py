@@ -54,7 +54,7 @@ class Mutant:
         return f"{self.op.name}: {self.fault}"
 
     def rule(self, rules: Rules, state: State) -> Rule:
-        """The wrong maker; its operations give up when they are called without end."""
+        """The wrong maker; its operations raise when they are called without end."""
         wrong = self.change(rules, state)
         left = [_ENDLESS]
 
@@ -127,8 +127,8 @@ def _by_shape(row: Shape) -> Iterator[tuple[str, Change]]:
     if row.name in _READS:
         yield "no value is 0", quiet(op, "uninitialised")
     if row.name.startswith("TELL"):
-        yield "tells nothing", instead(lambda _state, here, _operands: here.after)
-        yield "tells twice", twice(op)
+        yield "reports nothing", instead(lambda _state, here, _operands: here.after)
+        yield "reports twice", twice(op)
 
 
 def _unless(row: Shape, op: Op) -> Iterator[tuple[str, Change]]:

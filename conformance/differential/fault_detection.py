@@ -19,7 +19,7 @@ from interp.port.events import Sink
 from interp.program.load import Limits
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["Pool", "Verdict", "hunt", "mutated", "record_of"]
+__all__ = ["ReferenceRuns", "Verdict", "examine_mutants", "mutated", "record_of"]
 
 REFERENCE: Final = "tree"
 
@@ -53,7 +53,7 @@ def mutated(mutant: Mutant) -> Factory:
 
 
 @dataclass(slots=True)
-class Pool:
+class ReferenceRuns:
     """Programs of which the traces are known; made one after the other, as they are needed."""
 
     seed: int
@@ -61,8 +61,8 @@ class Pool:
     _programs: list[tuple[int, Prepared, list[Fact], frozenset[Op]]] = field(default_factory=list)
     _next: int = 0
 
-    def judge(self, mutant: Mutant) -> Verdict:
-        """Run a mutant on programs that have its instruction, until one gives it away."""
+    def examine(self, mutant: Mutant) -> Verdict:
+        """Run a mutant on programs that have its instruction, until one detects it."""
         factory, runs, place = mutated(mutant), 0, 0
         while place < len(self._programs) or self._grow():
             number, program, expected, ops = self._programs[place]
@@ -75,7 +75,7 @@ class Pool:
         return Verdict(mutant.op.name, mutant.fault, None, runs)
 
     def _grow(self) -> bool:
-        """Make another program; one on which the machine itself is wrong tells nothing."""
+        """Make another program; one on which the machine itself is wrong is left out."""
         while self._next < self.most:
             number = self._next
             self._next += 1
@@ -90,36 +90,36 @@ class Pool:
         return False
 
 
-def hunt(
+def examine_mutants(
     programs: int,
     seed: int,
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> list[Verdict]:
-    """Judge all mutants, each on so many programs at most; the result does not depend on ``jobs``.
+    """Run all mutants, each on so many programs at most; the result does not depend on ``jobs``.
 
-    ``on_done`` is told how many mutants were judged since it was told last.
+    ``on_done`` is called with how many mutants were examined since the last call.
     """
     count = len(mutants())
     if jobs <= 1:
-        pool = Pool(seed, programs)
+        runs = ReferenceRuns(seed, programs)
         alone: list[Verdict] = []
         for mutant in mutants():
-            alone.append(pool.judge(mutant))
+            alone.append(runs.examine(mutant))
             on_done(1)
         return alone
     shares = [tuple(range(first, count, jobs)) for first in range(jobs)]
     found: dict[int, Verdict] = {}
     tasks = ((share, seed, programs) for share in shares)
-    for share, verdicts in zip(shares, ordered_map(_judged, tasks, jobs=jobs), strict=True):
+    for share, verdicts in zip(shares, ordered_map(_examined, tasks, jobs=jobs), strict=True):
         found.update(zip(share, verdicts, strict=True))
         on_done(len(share))
     return [found[number] for number in range(count)]
 
 
-def _judged(numbers: Sequence[int], seed: int, programs: int) -> list[Verdict]:
-    pool, known = Pool(seed, programs), mutants()
-    return [pool.judge(known[number]) for number in numbers]
+def _examined(numbers: Sequence[int], seed: int, programs: int) -> list[Verdict]:
+    runs, known = ReferenceRuns(seed, programs), mutants()
+    return [runs.examine(known[number]) for number in numbers]
 
 
 def record_of(verdicts: Sequence[Verdict], programs: int, seed: int) -> dict[str, Any]:

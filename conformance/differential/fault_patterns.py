@@ -13,6 +13,7 @@ from interp.values.faults import Fault
 __all__ = [
     "Change",
     "Rules",
+    "around",
     "before",
     "behind",
     "change_top",
@@ -42,22 +43,27 @@ _TAKES: Final = {
 }  # fmt: skip
 
 
-def before(act: Callable[[list[Any]], object], op: Op) -> Change:
-    """Something is done to the stack first."""
+def around(act: Callable[[State, Operation], Operation | None], op: Op) -> Change:
+    """The right operation is done by something that does more or less beside it."""
 
     def change(rules: Rules, state: State) -> Rule:
         def made(here: Site, *operands: int) -> Operation:
             right = rules[op](here, *operands)
-
-            def operation() -> Operation | None:
-                act(state.stack)
-                return right()
-
-            return operation
+            return lambda: act(state, right)
 
         return made
 
     return change
+
+
+def before(act: Callable[[list[Any]], object], op: Op) -> Change:
+    """Something is done to the stack first."""
+
+    def first(state: State, right: Operation) -> Operation | None:
+        act(state.stack)
+        return right()
+
+    return around(first, op)
 
 
 def behind(act: Callable[[list[Any]], object], op: Op) -> Change:

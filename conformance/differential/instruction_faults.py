@@ -9,6 +9,7 @@ from typing import Any, Final
 from conformance.differential.fault_patterns import (
     Change,
     Rules,
+    around,
     before,
     behind,
     change_top,
@@ -62,22 +63,17 @@ def _stored_not(op: Op) -> list[tuple[str, Change]]:
 
 def _blocks(op: Op, takes: int) -> list[tuple[str, Change]]:
     """Instructions that write several cells."""
+    nothing = ("writes nothing", taking(takes, goes=False))
+    return [nothing] if op is Op.CLEAR else [nothing, _first_cell_empty(op)]
 
-    def short(rules: Rules, state: State) -> Rule:
-        def made(here: Site, *operands: int) -> Operation:
-            def after() -> Operation:
-                state.cells[:] = state.cells
-                state.cells[state.last] = None
-                return here.after
 
-            return rules[op](Site(here.code, here.place, here.body, after), *operands)
+def _first_cell_empty(op: Op) -> tuple[str, Change]:
+    def act(state: State, right: Operation) -> Operation | None:
+        found = right()
+        state.cells[state.last] = None
+        return found
 
-        return made
-
-    found: list[tuple[str, Change]] = [("writes nothing", taking(takes, goes=False))]
-    if op is not Op.CLEAR:
-        found.append(("the first cell gets no value", short))
-    return found
+    return "the first cell gets no value", around(act, op)
 
 
 def _clamped(op: Op) -> list[tuple[str, Change]]:
@@ -102,153 +98,72 @@ def _into_first_cell(state: State, here: Site, _operands: tuple[int, ...]) -> Op
 def _indices_exchanged(op: Op) -> tuple[str, Change]:
     """With two indices and more the last two are exchanged."""
 
-    def change(rules: Rules, state: State) -> Rule:
-        def made(here: Site, *operands: int) -> Operation:
-            right = rules[op](here, *operands)
+    def act(state: State, right: Operation) -> Operation | None:
+        stack = state.stack
+        if len(stack) - state.base >= 2 and type(stack[-2]) is int:
+            exchange(stack)
+        return right()
 
-            def operation() -> Operation | None:
-                stack = state.stack
-                if len(stack) - state.base >= 2 and type(stack[-2]) is int:
-                    exchange(stack)
-                return right()
-
-            return operation
-
-        return made
-
-    return "the last two indices are exchanged", change
+    return "the last two indices are exchanged", around(act, op)
 
 
-def _line(_rules: Rules, state: State) -> Rule:
-    """Statements are neither counted nor told."""
+def _line_uncounted(state: State, here: Site, _operands: tuple[int, ...]) -> Operation:
+    """Statements are neither counted nor reported."""
 
-    def made(here: Site, *_operands: int) -> Operation:
-        def operation() -> Operation:
-            state.statement = here.place
-            return here.after
+    def operation() -> Operation:
+        state.statement = here.place
+        return here.after
 
-        return operation
-
-    return made
+    return operation
 
 
-def _line_not_counted(rules: Rules, state: State) -> Rule:
-    def made(here: Site, *operands: int) -> Operation:
-        right = rules[Op.LINE](here, *operands)
-
-        def operation() -> Operation | None:
-            if state.left > 1:
-                state.left += 1
-            return right()
-
-        return operation
-
-    return made
+def _line_not_counted(state: State, right: Operation) -> Operation | None:
+    if state.left > 1:
+        state.left += 1
+    return right()
 
 
-def _line_place_kept(rules: Rules, state: State) -> Rule:
+def _line_place_kept(state: State, right: Operation) -> Operation | None:
     """The place of the statement stays that of the one before."""
-
-    def made(here: Site, *operands: int) -> Operation:
-        before: list[int] = []
-
-        def after() -> Operation:
-            state.statement = before[0] if before[0] >= 0 else here.place
-            return here.after
-
-        right = rules[Op.LINE](Site(here.code, here.place, here.body, after), *operands)
-
-        def operation() -> Operation | None:
-            before[:] = [state.statement]
-            return right()
-
-        return operation
-
-    return made
+    before = state.statement
+    found = right()
+    if before >= 0:
+        state.statement = before
+    return found
 
 
-def _case_always(_rules: Rules, state: State) -> Rule:
-    def made(here: Site, _constant: int, target: int) -> Operation:
-        def operation() -> Operation:
-            state.stack.pop()
-            return here.body[target]
+def _case_always(state: State, here: Site, operands: tuple[int, ...]) -> Operation:
+    def operation() -> Operation:
+        state.stack.pop()
+        return here.body[operands[1]]
 
-        return operation
-
-    return made
+    return operation
 
 
-def _call_mixed(rules: Rules, state: State) -> Rule:
+def _frame_moved(state: State, right: Operation) -> Operation | None:
     """The frame is one cell too far on."""
-
-    def made(here: Site, *operands: int) -> Operation:
-        right = rules[Op.CALL](here, *operands)
-
-        def operation() -> Operation | None:
-            found = right()
-            state.fp += 1
-            state.cells.append(None)
-            return found
-
-        return operation
-
-    return made
+    found = right()
+    state.fp += 1
+    state.cells.append(None)
+    return found
 
 
-def _call_keeps_base(rules: Rules, state: State) -> Rule:
-    """The statement that the routine began with counts as that of the caller."""
-
-    def made(here: Site, *operands: int) -> Operation:
-        right = rules[Op.CALL](here, *operands)
-
-        def operation() -> Operation | None:
-            statement = state.statement
-            found = right()
-            state.statement = statement
-            return found
-
-        return operation
-
-    return made
+def _statement_kept(state: State, right: Operation) -> Operation | None:
+    """The statement that the routine began with, or that of the caller, is not taken up."""
+    statement = state.statement
+    found = right()
+    state.statement = statement
+    return found
 
 
-def _call_keeps_cells(rules: Rules, state: State) -> Rule:
+def _cells_zero(state: State, right: Operation) -> Operation | None:
     """Local data has a value from the beginning."""
-
-    def made(here: Site, *operands: int) -> Operation:
-        right = rules[Op.CALL](here, *operands)
-
-        def operation() -> Operation | None:
-            found = right()
-            cells = state.cells
-            for place in range(state.fp, len(cells)):
-                if cells[place] is None:
-                    cells[place] = 0
-            return found
-
-        return operation
-
-    return made
-
-
-def _return_elsewhere(op: Op) -> Change:
-    """The frame of the caller is not restored."""
-
-    def change(rules: Rules, state: State) -> Rule:
-        def made(here: Site, *operands: int) -> Operation:
-            right = rules[op](here, *operands)
-
-            def operation() -> Operation | None:
-                before = state.statement
-                found = right()
-                state.statement = before
-                return found
-
-            return operation
-
-        return made
-
-    return change
+    found = right()
+    cells = state.cells
+    for place in range(state.fp, len(cells)):
+        if cells[place] is None:
+            cells[place] = 0
+    return found
 
 
 def _asked_for_more(op: Op) -> list[tuple[str, Change]]:
@@ -316,9 +231,9 @@ def _for_beyond(op: Op) -> Change:
 
 OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
     "LINE": [
-        ("neither counts nor tells", _line),
-        ("does not count", _line_not_counted),
-        ("keeps the place of the statement before", _line_place_kept),
+        ("neither counts nor reports", instead(_line_uncounted)),
+        ("does not count", around(_line_not_counted, Op.LINE)),
+        ("keeps the place of the statement before", around(_line_place_kept, Op.LINE)),
     ],
     "AT": [("keeps the line", instead(_guard))],
     "JUMP": [("falls through", taking(0, goes=False))],
@@ -334,22 +249,22 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
     ],
     "CASE": [
         ("the constant is one more", with_operands(lambda n, to: (n + 1, to), Op.CASE)),
-        ("always fits", _case_always),
+        ("always fits", instead(_case_always)),
         ("never fits", taking(0, goes=False)),
     ],
     "CALL": [
-        ("the frame is one cell too far on", _call_mixed),
+        ("the frame is one cell too far on", around(_frame_moved, Op.CALL)),
         (
             "the last two arguments are exchanged",
             before(lambda stack: exchange(stack) if len(stack) > 1 else None, Op.CALL),
         ),
-        ("keeps the statement of the caller", _call_keeps_base),
-        ("local data begins with 0", _call_keeps_cells),
+        ("keeps the statement of the caller", around(_statement_kept, Op.CALL)),
+        ("local data begins with 0", around(_cells_zero, Op.CALL)),
     ],
-    "RETURN": [("keeps the statement of the routine", _return_elsewhere(Op.RETURN))],
+    "RETURN": [("keeps the statement of the routine", around(_statement_kept, Op.RETURN))],
     "RETURN_VALUE": [
         ("the result is a little off", before(change_top, Op.RETURN_VALUE)),
-        ("keeps the statement of the routine", _return_elsewhere(Op.RETURN_VALUE)),
+        ("keeps the statement of the routine", around(_statement_kept, Op.RETURN_VALUE)),
     ],
     "ASK": _asked_for_more(Op.ASK),
     "BUILTIN": _asked_for_more(Op.BUILTIN),
@@ -412,7 +327,7 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
         *_blocks(Op.FILL_POSE, 2),
         ("the other way", before(exchange, Op.FILL_POSE)),
     ],
-    "FILL_ARRAY": [("the first cell gets no value", _blocks(Op.FILL_ARRAY, 4)[1][1])],
+    "FILL_ARRAY": [_first_cell_empty(Op.FILL_ARRAY)],
     "COPY_VIEW": [
         ("copies nothing", instead(_guard)),
         ("the last size is one more", behind(change_top, Op.COPY_VIEW)),
@@ -458,5 +373,5 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
     "INT_TO_CHAR": [("a code outside is 0", quiet(Op.INT_TO_CHAR, "inadmissible"))],
     "FOR_LOCAL": _for(Op.FOR_LOCAL),
     "FOR_DATA": _for(Op.FOR_DATA),
-    "TELL_BRANCH": [("tells another way", with_operands(lambda way: (way + 1,), Op.TELL_BRANCH))],
+    "TELL_BRANCH": [("reports another way", with_operands(lambda way: (way + 1,), Op.TELL_BRANCH))],
 }

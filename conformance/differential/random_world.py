@@ -39,7 +39,7 @@ from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, 
 __all__ = ["RandomWorld"]
 
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
-#: So many looks in vain, then every input is TRUE: nobody waits for ever.
+#: After so many polls in vain every input is TRUE, so that no wait is endless.
 _PATIENCE: Final = 3
 #: One request of so many is answered with a fault.
 _SELDOM: Final = 250
@@ -51,7 +51,7 @@ class RandomWorld:
     """Answers requests; the same requests get the same answers."""
 
     def __init__(self, seed: str, *, has_faults: bool = True) -> None:
-        self._random = Random(seed)  # nobody's secret depends on it
+        self._random = Random(seed)  # no secret depends on it
         self._has_faults = has_faults
         self._values: dict[Path, Any] = {}
         self._system = System.load()

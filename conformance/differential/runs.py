@@ -59,7 +59,7 @@ EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in executors.EXEC
 
 @dataclass(slots=True)
 class _Known:
-    """What the world may enter or look at, as far as it was told."""
+    """What the world may enter or evaluate, as far as requests have shown it."""
 
     interrupts: dict[int, DeclareInterrupt] = field(default_factory=dict)
     switched: dict[int, bool] = field(default_factory=dict)
@@ -178,7 +178,7 @@ class _Driver:
 def trace_of(
     prepared: Prepared, factory: Factory, seed: str, limits: Limits = LIMITS
 ) -> list[Fact]:
-    """All facts of a run; an executor that raises what it should not is told as a fact too."""
+    """All facts of a run; an executor that raises what it should not is recorded as a fact too."""
     trace = Trace()
     try:
         executor = factory(prepared, limits, trace)

@@ -117,7 +117,7 @@ def plain(value: Value | None) -> Any:
 
 
 def place_of(fact: Fact) -> At | None:
-    """Where a fact is told from; ``None`` where it is from nowhere."""
+    """The place a fact was reported from; ``None`` where it has none."""
     return fact[1] if len(fact) > 1 and isinstance(fact[1], At) else None
 
 

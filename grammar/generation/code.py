@@ -22,7 +22,6 @@ __all__ = [
     "ExpressionRule",
     "Naming",
     "Part",
-    "SettingRule",
     "Size",
     "Spelling",
     "StatementRule",
@@ -64,8 +63,6 @@ class Spelling:
 ExpressionRule = Callable[["Code", int], str]
 #: Writes a statement; whether the place had what it takes.
 StatementRule = Callable[["Code"], bool]
-#: A variable of the controller and a value for it, where the place has what it takes.
-SettingRule = Callable[["Code"], tuple[str, str] | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +87,6 @@ class Style:
     moving: Weighted[StatementRule]
     #: What stands under ON_ERROR_PROCEED.
     risky: Weighted[StatementRule]
-    #: What is assigned to variables of the controller.
-    settings: Weighted[SettingRule]
     #: Types of what is assigned, selected by, compared.
     assigned: Callable[[Code], Type]
     #: A value for a place of a type.
@@ -124,7 +119,6 @@ class Style:
     #: Whether a SWITCH has another CASE, and how many labels one has at most.
     case_share: int = 65
     case_labels: int = 3
-    wait_for_share: int = 50
     #: Declarations: without DECL, together with the one before, and with a value.
     short_declaration_share: int = 40
     group_share: int = 0

@@ -7,7 +7,7 @@ Numbers of closed programs are kept small as a rule, so that most go on; now and
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from grammar.generation.code import Code, Counter, ExpressionRule
@@ -19,34 +19,25 @@ __all__ = [
     "argument",
     "array",
     "atom",
-    "bits",
     "call_of",
     "chain",
-    "comparison",
     "constant",
     "constant_comparison",
     "constant_or_place",
     "count",
+    "divisor",
     "expression",
-    "joined",
+    "factor",
     "letter",
-    "mixed_comparison",
+    "letter_comparison",
     "near_comparison",
-    "negated",
     "operand",
     "pose",
-    "product",
-    "quotient",
     "read",
     "relation",
-    "scaled",
-    "signed",
-    "sum_of",
     "target",
     "text",
     "truth",
-    "truth_comparison",
-    "value_comparison",
 ]
 
 _ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")
@@ -222,7 +213,7 @@ def expression(code: Code, type_: Type, depth: int) -> str:
         if found:
             return call_of(code, choices.pick(found))
     elif way >= style.operator_share and type_ in style.functions:
-        return choices.weighted(style.functions[type_])(code, depth - 1)
+        return choices.weighted(style.functions[type_])(code, depth)
     if type_ in style.expressions:
         return choices.weighted(style.expressions[type_])(code, depth)
     return atom(code, type_)
@@ -239,14 +230,7 @@ def operand(code: Code, type_: Type, depth: int) -> str:
     return found if _ATOM.fullmatch(found) else f"({found})"
 
 
-def _other(code: Code, type_: Type) -> Type:
-    """The type of an operand beside one: REAL is joined by INT at times."""
-    if type_ == REAL and code.style.is_closed:
-        return code.choices.pick((REAL, REAL, REAL, INT))
-    return type_
-
-
-def _factor(code: Code, type_: Type) -> str:
+def factor(code: Code, type_: Type) -> str:
     """A number that a product stays small with."""
     choices = code.choices
     small = ("2", "3", "7", "-1", "0") if type_ == INT else ("0.5", "1.1", "-2.0")
@@ -254,7 +238,8 @@ def _factor(code: Code, type_: Type) -> str:
     return f"({found})" if found.startswith("-") else found
 
 
-def _divisor(code: Code, type_: Type) -> str:
+def divisor(code: Code, type_: Type) -> str:
+    """A number that is seldom zero."""
     choices = code.choices
     if code.risks():
         return choices.pick(("0", atom(code, type_)))
@@ -263,61 +248,16 @@ def _divisor(code: Code, type_: Type) -> str:
     return choices.pick(("2", "3", "(-2)", "7") if type_ == INT else ("2.0", "0.3", "4", "1.5"))
 
 
-def _of(type_: Type, rule: Callable[[Code, Type, int], str]) -> ExpressionRule:
-    return lambda code, depth: rule(code, type_, depth)
-
-
-def sum_of(type_: Type) -> ExpressionRule:
-    """A sum or a difference."""
-
-    def rule(code: Code, type_: Type, depth: int) -> str:
-        left = operand(code, type_, depth - 1)
-        sign = code.choices.pick("+-")
-        return code.spelling.binary(left, sign, operand(code, _other(code, type_), depth - 1))
-
-    return _of(type_, rule)
-
-
-def scaled(type_: Type) -> ExpressionRule:
-    """A product with a number that is small."""
-
-    def rule(code: Code, type_: Type, depth: int) -> str:
-        left = operand(code, type_, depth - 1)
-        return code.spelling.binary(left, "*", _factor(code, type_))
-
-    return _of(type_, rule)
-
-
-def product(type_: Type) -> ExpressionRule:
-    """A product of any numbers."""
-
-    def rule(code: Code, type_: Type, depth: int) -> str:
-        left = operand(code, _other(code, type_), depth - 1)
-        return code.spelling.binary(left, "*", operand(code, type_, depth - 1))
-
-    return _of(type_, rule)
-
-
-def quotient(type_: Type) -> ExpressionRule:
-    """A quotient whose divisor is seldom zero."""
-
-    def rule(code: Code, type_: Type, depth: int) -> str:
-        left = operand(code, type_, depth - 1)
-        return code.spelling.binary(left, "/", _divisor(code, type_))
-
-    return _of(type_, rule)
-
-
 def chain(type_: Type) -> ExpressionRule:
     """Sums and products without parentheses, so that precedence is at work [ARI-05]."""
 
-    def rule(code: Code, type_: Type, depth: int) -> str:
+    def rule(code: Code, depth: int) -> str:
         choices = code.choices
         found = atom(code, type_)
         for _ in range(choices.between(1, depth + 1)):
             sign = choices.pick("+-*/")
             if sign == "/":
-                right = _divisor(code, type_)
+                right = divisor(code, type_)
             elif sign == "*":
                 right = str(choices.between(0, 4))
             else:
@@ -325,35 +265,7 @@ def chain(type_: Type) -> ExpressionRule:
             found = code.spelling.binary(found, sign, right)
         return found
 
-    return _of(type_, rule)
-
-
-def signed(type_: Type) -> ExpressionRule:
-    """A number with a sign before it."""
-
-    def rule(code: Code, type_: Type, depth: int) -> str:
-        return f"{code.choices.pick('-+')}{operand(code, type_, depth - 1)}"
-
-    return _of(type_, rule)
-
-
-def bits(code: Code, depth: int) -> str:
-    """Bits of integers, or of a letter, combined."""
-    left = operand(code, INT, depth - 1)
-    word = code.choices.pick(("B_AND", "B_OR", "B_EXOR", "B_AND"))
-    right = code.choices.pick((INT, INT, INT, INT, INT, CHAR))
-    return f"{left} {word} {operand(code, right, depth - 1)}"
-
-
-def negated(word: str, type_: Type) -> ExpressionRule:
-    """NOT or B_NOT of an operand."""
-    return lambda code, depth: f"{word} {operand(code, type_, depth - 1)}"
-
-
-def joined(code: Code, depth: int) -> str:
-    """Truth values combined."""
-    operands = [operand(code, BOOL, depth - 1) for _ in range(code.choices.between(2, 3))]
-    return f" {code.choices.pick(('AND', 'OR', 'EXOR'))} ".join(operands)
+    return rule
 
 
 def letter(code: Code, depth: int) -> str:
@@ -401,31 +313,10 @@ def near_comparison(code: Code, _depth: int) -> str:
     return f"{left} {choices.pick(_ORDERS)} {choices.pick(others)}"
 
 
-def value_comparison(code: Code, depth: int) -> str:
-    """A comparison of numbers or letters."""
-    return comparison(
-        code, depth, code.choices.pick(((INT, INT), (REAL, REAL), (INT, REAL), (CHAR, CHAR)))
-    )
-
-
-def mixed_comparison(code: Code, depth: int) -> str:
-    """A comparison of values of two types."""
-    return comparison(code, depth, code.choices.pick(((CHAR, INT), (INT, CHAR), (REAL, INT))))
-
-
-def truth_comparison(code: Code, depth: int) -> str:
-    """A comparison of truth values."""
-    return comparison(code, depth, (BOOL, BOOL))
-
-
-def comparison(code: Code, depth: int, types: tuple[Type, Type]) -> str:
-    """A comparison of two values of these types."""
-    left, right = types
-    sign = code.choices.pick(_EQUAL if left == BOOL else _ORDERS)
-    if left == right == CHAR and code.risks():
-        return f'{operand(code, CHAR, depth - 1)} {sign} ""'  # which is no letter
-    first = operand(code, left, depth - 1)
-    return code.spelling.binary(first, sign, operand(code, right, depth - 1))
+def letter_comparison(code: Code, _depth: int) -> str:
+    """A comparison of letters, at times with a text that is none."""
+    right = '""' if code.risks() else atom(code, CHAR)
+    return f"{atom(code, CHAR)} {code.choices.pick(_ORDERS)} {right}"
 
 
 def constant_comparison(code: Code, depth: int) -> str:
@@ -435,6 +326,6 @@ def constant_comparison(code: Code, depth: int) -> str:
     functions = style.functions.get(type_)
     left = choices.weighted(functions)(code, depth) if functions else read(code, type_)
     if left is None:
-        return truth_comparison(code, depth)
+        return f"{atom(code, BOOL)}==TRUE"
     right = read(code, type_) if choices.chance(30) else None
     return code.spelling.binary(left, choices.pick(_EQUAL), right or constant(code, type_))

@@ -13,15 +13,13 @@ from grammar.generation.expressions import (
     target,
     truth,
 )
-from grammar.generation.literals import POSES
+from grammar.generation.patterns import output, pattern
 from grammar.generation.scope import Routine
-from grammar.generation.statements import output
 from grammar.semantics.types import INT, REAL
 
 __all__ = [
     "action_call",
     "brake",
-    "emily_motion",
     "interrupt",
     "motion",
     "motion_text",
@@ -79,30 +77,20 @@ def _segment(code: Code, kind: str) -> str:
 
 def _with(code: Code, percent: int) -> str:
     """Values for one motion only [SPL-08]."""
-    choices, eq = code.choices, code.spelling.eq
+    choices = code.choices
     if not choices.chance(percent):
         return ""
-    values = [
-        choices.pick(
-            (
-                f"$VEL.CP{eq}{expression(code, REAL, 1)}",
-                f"$ORI_TYPE{eq}#CONSTANT",
-                f"$VEL_AXIS[{choices.between(1, 6)}]{eq}50",
-                f"$BASE{eq}{atom(code, POSES[0])}",
-                f"$ACC.CP{eq}{constant(code, REAL)}",
-            )
-        )
-        for _ in range(choices.between(1, 2))
-    ]
+    values = [choices.pick(_VALUES)(code, 2) for _ in range(choices.between(1, 2))]
     return f" WITH {', '.join(values)}"
 
 
-def emily_motion(code: Code) -> bool:
-    """MOVE_EMI."""
-    name = code.choices.pick(("EMI1", "A"))
-    more = f" FLT {expression(code, REAL, 1)}" if code.choices.chance(50) else ""
-    code.spend()
-    return code.line(f'MOVE_EMI "{name}" "START"{more}')
+_VALUES: Final = tuple(
+    pattern(text)
+    for text in (
+        *("$VEL.CP:=<REAL>", "$ORI_TYPE:=#CONSTANT", "$VEL_AXIS[<1-6>]:=50"),
+        *("$BASE:=<atom FRAME>", "$ACC.CP:=<constant REAL>"),
+    )
+)
 
 
 # ------------------------------------------------------------------------- spline blocks
@@ -228,8 +216,7 @@ def _declaration(code: Code) -> bool:
     choices = code.choices
     actions = code.scope.actions()
     number, word = choices.pick(_NUMBERS), ""
-    inputs = f"$IN[{choices.between(1, 16)}]", f"$FLAG[{choices.between(1, 16)}]==TRUE"
-    condition = choices.pick((*inputs, truth(code)))
+    condition = choices.pick(_EVENTS)(code, 3)
     if actions and choices.chance(85):
         action = action_call(code, choices.pick(actions))
     else:
@@ -241,6 +228,9 @@ def _declaration(code: Code) -> bool:
         code.spend()
         code.line(f"INTERRUPT ON {number}")
     return True
+
+
+_EVENTS: Final = tuple(map(pattern, ("$IN[<1-16>]", "$FLAG[<1-16>]==TRUE", "<BOOL>")))
 
 
 def brake(code: Code) -> bool:

@@ -75,7 +75,7 @@ class Parameter:
 class Routine:
     """A routine that can be called; ``cost`` is how many statements it executes at most.
 
-    ``deepest`` is, where it calls itself, how often it may; the first parameter tells it how often.
+    ``deepest`` is, where it calls itself, how often it may; the first parameter says how often.
     One that ``is_action`` is called by interrupts and triggers, one that ``is_quick`` by both and
     by programs.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code, SettingRule
+from grammar.generation.code import Code
 from grammar.generation.expressions import (
     array,
     call_of,
@@ -14,31 +14,20 @@ from grammar.generation.expressions import (
     read,
     target,
     text,
-    truth,
 )
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, structure
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
 __all__ = [
-    "advance_setting",
     "assign_text",
     "assign_whole",
     "assignment",
     "call",
     "channel",
-    "cyclic_flag",
-    "cyclic_signal",
-    "fixed_setting",
-    "frame_setting",
-    "halt",
-    "invoke",
-    "lasting_condition",
-    "output",
+    "input_signal",
     "proceed",
-    "pulse",
-    "set_variable",
-    "value_setting",
-    "wait",
+    "set_advance",
+    "set_base",
 ]
 
 _STATE: Final = structure("STATE_T")
@@ -113,118 +102,20 @@ def proceed(code: Code) -> bool:
 # ------------------------------------------------------------------------- the controller
 
 
-def set_variable(code: Code) -> bool:
-    """A variable of the controller is assigned; ``?`` is a number in its name and its value."""
-    found = code.choices.weighted(code.style.settings)(code)
-    if found is not None:
-        code.spend()
-        number = str(code.choices.between(1, 16))
-        code.set(*(text.replace("?", number) for text in found))
-    return True
-
-
-def fixed_setting(*settings: tuple[str, str]) -> SettingRule:
-    """One of these."""
-    return lambda code: code.choices.pick(settings)
-
-
-def value_setting(type_: Type, *names: str) -> SettingRule:
-    """One of these variables with a value of its type, of integers a small one."""
-
-    def setting(code: Code) -> tuple[str, str]:
-        if type_ == INT:
-            return code.choices.pick(names), f"({expression(code, INT, 2)}) B_AND 63"
-        return code.choices.pick(names), expression(code, type_, 2)
-
-    return setting
-
-
-def frame_setting(code: Code) -> tuple[str, str]:
+def set_base(code: Code) -> bool:
     """The base or the tool, at times from a position with more components."""
     other = read(code, POSES[1]) if code.choices.chance(25) else None
     value = other or expression(code, POSES[0], 2)
-    return code.choices.pick(("$BASE", "$TOOL")), value
+    code.spend()
+    return code.set(code.choices.pick(("$BASE", "$TOOL")), value)
 
 
-def advance_setting(code: Code) -> tuple[str, str] | None:
+def set_advance(code: Code) -> bool:
     """How far the advance run goes; not within interrupts."""
     if code.part.is_action:
-        return None
-    return "$ADVANCE", str(code.choices.between(0, 5))
-
-
-def output(code: Code) -> str:
-    """An output that a program may set."""
-    choices, style = code.choices, code.style
-    if style.is_closed:
-        return f"$OUT[{choices.between(1, 16)}]"
-    names = code.scope.signals(is_output=True)
-    return (
-        choices.pick(names) if names and choices.chance(50) else f"$OUT[{choices.between(1, 512)}]"
-    )
-
-
-def lasting_condition(code: Code) -> str:
-    """A condition without data of the routine and without functions [IOT-11]."""
-    names = code.scope.signals(is_output=False) or [
-        "$IN[1]",
-        "$FLAG[2]",
-        "$OUT[3]",
-        "$TIMER[1]>100",
-    ]
-    left = code.choices.pick(names)
-    sign = code.choices.pick(("AND", "OR", "EXOR"))
-    return f"({left}) {sign} $FLAG[4]" if ">" in left else f"{left} {sign} $FLAG[4]"
-
-
-def cyclic_flag(code: Code) -> bool:
-    """A cyclical flag [IOT-11]."""
-    condition = lasting_condition(code)
+        return False
     code.spend()
-    return code.set(f"$CYCFLAG[{code.choices.between(1, 8)}]", condition)
-
-
-def pulse(code: Code) -> bool:
-    """PULSE [IOT-07]."""
-    name = output(code)
-    code.spend()
-    return code.call("PULSE", name, truth(code, 1), code.choices.pick(("0.1", "1", "0.5")))
-
-
-def wait(code: Code) -> bool:
-    """WAIT SEC, or WAIT FOR what comes to be true sooner or later."""
-    choices = code.choices
-    code.spend()
-    if choices.chance(100 - code.style.wait_for_share):
-        return code.line(f"WAIT SEC {choices.pick(('0', '0.5', '1', 'ABS(0.2)', '0.012'))}")
-    if not code.style.is_closed:
-        return code.line(f"WAIT FOR {truth(code, 1)}")
-    number = choices.between(1, 16)
-    condition = choices.pick(
-        (
-            f"$IN[{number}]",
-            f"$IN[{number}] AND $IN[3]",
-            f"($IN[{number}]) OR ({truth(code, 1)})",
-            f"$IN[{number}]==TRUE",
-            "TRUE",
-        )
-    )
-    return code.line(f"WAIT FOR {condition}")
-
-
-def halt(code: Code) -> bool:
-    """HALT, CONFIRM and CONTINUE."""
-    code.spend(2)
-    confirm = f"CONFIRM {expression(code, INT, 1)}"
-    return code.line(code.choices.weighted(Weighted((2, "HALT"), (2, confirm), (3, "CONTINUE"))))
-
-
-def invoke(code: Code) -> bool:
-    """A routine that only the world knows, for what it does."""
-    choices = code.choices
-    error = choices.pick(("ERR_CLEAR($ERR)", "ROB_STOP_RELEASE()", "DELETE_BACKWARD_BUFFER()"))
-    code.spend()
-    return code.line(choices.pick((error, f"WSPACEGIVE({choices.between(1, 4)})", "SYNC()")))
+    return code.set("$ADVANCE", str(code.choices.between(0, 5)))
 
 
 def channel(code: Code) -> bool:
@@ -238,30 +129,15 @@ def channel(code: Code) -> bool:
     return code.line(f"CCLOSE({handle}, {state})")
 
 
-def cyclic_signal(code: Code) -> bool:
-    """ANIN, ANOUT, DIGIN, on or off [IOT-04, IOT-05, IOT-09]."""
-    choices, eq = code.choices, code.spelling.eq
+def input_signal(code: Code) -> bool:
+    """ANIN or DIGIN into a variable that lasts [IOT-04, IOT-09]."""
+    found = target(code, REAL, is_local=False)
+    if found is None:
+        return False
+    word, source = code.choices.pick((("ANIN", "$ANIN[1]"), ("DIGIN", "$DIGIN1")))
+    factor = code.choices.pick(("1.0", "0.5", expression(code, REAL, 1)))
     code.spend(2)
-    way = choices.below(5)
-    number = choices.between(1, 4)
-    if way < 2:
-        found = target(code, REAL, is_local=False)
-        if found is None:
-            return False
-        factor = choices.pick(("1.0", "0.5", expression(code, REAL, 1)))
-        source = "$DIGIN1" if way else f"$ANIN[{number}]"
-        return code.line(f"{'DIGIN' if way else 'ANIN'} ON {found}{eq}{factor}*{source}+0.5")
-    if way == 2:
-        more = "".join(
-            f" {word}{eq}{choices.pick(('0.0', '1', expression(code, REAL, 1)))}"
-            for word in ("DELAY", "MINIMUM", "MAXIMUM")
-            if choices.chance(50)
-        )
-        value = expression(code, REAL, 1)
-        return code.line(f"ANOUT ON $ANOUT[{number}]{eq}{value}*0.5{more}")
-    sources = (("ANIN", f"$ANIN[{number}]"), ("ANOUT", f"$ANOUT[{number}]"), ("DIGIN", "$DIGIN1"))
-    word, source = choices.pick(sources)
-    return code.line(f"{word} OFF {source}")
+    return code.line(f"{word} ON {found}={factor}*{source}+0.5")
 
 
 # ------------------------------------------------------------------------- texts

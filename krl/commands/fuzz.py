@@ -41,7 +41,7 @@ def fuzz(
     """Make programs at random, run each on all executors, compare every request and event.
 
     The world answers at random too, and interferes with interrupts, triggers and faults; all of it
-    follows from the seed. A program on which two executors part is made as small as possible.
+    follows from the seed. A program on which two executors diverge is made as small as possible.
     Exit status 1 where there is one.
     """
     from conformance.differential.campaign import fuzz as run
@@ -71,7 +71,7 @@ def _chosen(wanted: list[str]) -> list[str]:
             raise InputError(f"{name}: this executor is not available here")
     names = list(dict.fromkeys(wanted or there))
     if len(names) < 2:
-        raise InputError("name two executors at least: one alone has none to be compared with")
+        raise InputError("name two executors at least: one alone cannot be compared")
     return names
 
 
@@ -100,11 +100,11 @@ def _print_summary(found: "Findings", seconds: float) -> None:
 
 
 def _show(console: Console, finding: "Finding", reference: str) -> None:
-    parted = finding.difference
+    difference = finding.difference
     size = "" if finding.statements is None else f", reduced to {finding.statements} statements"
     console.print(f"\n[bold]Program {finding.number}[/]{size}", soft_wrap=True)
-    console.print(f"{reference}: {parted.expected_text}", markup=False, soft_wrap=True)
-    console.print(f"{parted.executor}: {parted.actual_text}", markup=False, soft_wrap=True)
+    console.print(f"{reference}: {difference.expected_text}", markup=False, soft_wrap=True)
+    console.print(f"{difference.executor}: {difference.actual_text}", markup=False, soft_wrap=True)
     for path, text in finding.files:
         console.print(f"{path}:", markup=False)
         for number, row in enumerate(text.rstrip().split("\n"), start=1):

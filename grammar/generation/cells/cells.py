@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from grammar.generation.cells.dialect import Generation, Letters, a_dialect, a_way_to_store
 from grammar.generation.cells.modules import Cell, Module, library, process, public_data, sequence
-from grammar.generation.cells.names import WORDS, Names, Writing
+from grammar.generation.cells.names import Names, Writing, vocabulary
 from grammar.generation.cells.special import (
     old_machine,
     painting,
@@ -64,7 +64,7 @@ def files(seed: int, number: int) -> Iterator[File]:
     writing = (
         Writing.UPPER if dialect.generation is Generation.KRC1 else choices.weighted(_WRITINGS)
     )
-    names = Names(choices, WORDS[dialect.language], writing)
+    names = Names(choices, vocabulary(dialect.language), writing)
     cell = Cell(choices, dialect, names)
     root = f"{number:04}_{choices.pick(names.vocabulary.trades).lower()}/KRC"
     for folder, module in _modules(cell):

@@ -9,12 +9,12 @@ from grammar.generation.code import Code, StatementRule
 from grammar.generation.expressions import constant, expression, read
 from grammar.generation.literals import structure
 from grammar.generation.motions import (
-    emily_motion,
     motion,
     spline_block,
     spline_motion,
     trigger,
 )
+from grammar.generation.patterns import line
 from grammar.semantics.types import REAL
 
 __all__ = ["Forms"]
@@ -217,5 +217,5 @@ _ANYWHERE: tuple[tuple[int, StatementRule], ...] = (
     (75, trigger),
     (10, spline_block),
     (6, spline_motion),
-    (1, emily_motion),
+    (1, line('MOVE_EMI "planner" "<path|seam|edge>.emi" FLT 0')),
 )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
+from importlib import resources
 
 from grammar.generation.choices import Choices
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
 
-__all__ = ["LONGEST", "WORDS", "Names", "Vocabulary", "Writing"]
+__all__ = ["LONGEST", "Names", "Vocabulary", "Writing", "vocabulary"]
 
 LONGEST = 24
 """Characters of a name [TYP-05]."""
@@ -32,120 +35,13 @@ class Vocabulary:
     messages: tuple[str, ...]
 
 
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(text.split())
-
-
-def _lines(text: str) -> tuple[str, ...]:
-    return tuple(line.strip() for line in text.strip().splitlines())
-
-
-WORDS = {
-    "en": Vocabulary(
-        trades=_words(
-            "palletising tending gluing milling handling welding painting deburring packing sorting"
-            " foundry assembly washing testing cutting polishing dispensing bending moulding"
-        ),
-        stations=_words(
-            "infeed outfeed lathe press oven belt table magazine gripper camera gauge washer marker"
-            " scale labeller shelf drawer fixture clamp gate lift buffer pallet tray cooler riveter"
-            " spindle nozzle cutter torch dresser changer turner bench rack chute feeder mould die"
-        ),
-        verbs=_words(
-            "pick place load unload open close check search approach leave start reset prepare"
-            " measure count park clean change teach wait mount release turn align weigh mark scan"
-        ),
-        things=_words(
-            "part box sheet layer row slot hole seam edge point path tool base batch order cycle"
-            " blank door bottle screw plate ring frame cover label tile bar disc"
-        ),
-        integers=_words("count index number step code level size limit total tries rank shift"),
-        reals=_words("speed height width offset weight force torque length angle depth gap pitch"),
-        truths=_words(
-            "ready done full empty busy found fault present locked active enabled wanted"
-        ),
-        texts=_words("text title serial recipe caption remark"),
-        states=_words(
-            "idle waiting loading working unloading cleaning blocked finished stopped default"
-        ),
-        remarks=_lines(
-            """
-            wait until the {station} is free
-            the {thing} must not be touched here
-            next {thing} of the {station}
-            old value, kept for the restart
-            distance from the {thing} to the {station}
-            only in automatic mode
-            do not change, measured on site
-            {station}: {thing} first, then the rest
-            see the drawing of the {station}
-            counts every {thing}; reset at shift change
-            was slower before the {station} was rebuilt
-            sensor of the {station} bounces, so ask twice
-            """
-        ),
-        messages=_lines(
-            """
-            {station}: no {thing}
-            {station} is not ready
-            {thing} lost; check the {station}
-            wrong {thing} in the {station}
-            {station}: time is over
-            {thing} %1 is finished
-            please empty the {station}
-            """
-        ),
-    ),
-    "de": Vocabulary(
-        trades=_words(
-            "Palettieren Beladen Kleben Fraesen Handhaben Schweissen Lackieren Entgraten Packen"
-            " Sortieren Giesserei Montage Waschen Pruefen Schneiden Polieren Biegen"
-        ),
-        stations=_words(
-            "Zufuhr Abfuhr Presse Ofen Band Tisch Magazin Greifer Kamera Waage Spanner Schranke"
-            " Ablage Palette Puffer Lift Regal Lade Drehteller Duese Fraeser Brenner Wechsler"
-            " Wender Kuehlung Stempel Bohrer Nieter Rutsche Form"
-        ),
-        verbs=_words(
-            "Hole Bringe Lade Entlade Oeffne Schliesse Pruefe Suche Starte Richte Messe Zaehle"
-            " Parke Reinige Wechsle Warte Drehe Wiege Stempel Loese"
-        ),
-        things=_words(
-            "Teil Karton Blech Lage Reihe Platz Loch Naht Kante Punkt Bahn Rohling Deckel Flasche"
-            " Schraube Platte Ring Rahmen Etikett Tuer Auftrag Takt"
-        ),
-        integers=_words("Zaehler Nummer Schritt Code Stufe Anzahl Grenze Summe Versuch Index"),
-        reals=_words("Tempo Hoehe Breite Versatz Gewicht Kraft Moment Laenge Winkel Tiefe Abstand"),
-        truths=_words("Bereit Fertig Voll Leer Belegt Gefunden Fehler Da Zu Aktiv Frei Gewollt"),
-        texts=_words("Text Titel Serie Rezept Hinweis"),
-        states=_words("Ruhe Warten Laden Arbeiten Entladen Reinigen Gesperrt Beendet Default"),
-        remarks=_lines(
-            """
-            warten, bis {station} frei ist
-            {thing} hier nicht berühren
-            alter Wert, für den Wiederanlauf
-            Abstand zwischen {thing} und {station}
-            nur im Automatikbetrieb
-            nicht ändern, vor Ort gemessen
-            siehe Zeichnung zu {station}
-            zählt jeden Durchlauf; beim Schichtwechsel löschen
-            früher langsamer, vor dem Umbau
-            Fühler prellt, daher zweimal prüfen
-            {station}: zuerst {thing}, dann der Rest
-            """
-        ),
-        messages=_lines(
-            """
-            {station}: {thing} fehlt
-            {station} nicht bereit
-            {thing} verloren; {station} prüfen
-            {station}: Zeit überschritten
-            {thing} %1 fertig
-            bitte {station} leeren
-            """
-        ),
-    ),
-}
+@cache
+def vocabulary(language: str) -> Vocabulary:
+    """The words of a language: ``en`` or ``de``."""
+    text = (resources.files(__package__) / "texts" / "words.toml").read_text("utf-8")
+    return Vocabulary(
+        **{kind: tuple(words) for kind, words in tomllib.loads(text)[language].items()}
+    )
 
 
 class Writing(Enum):
@@ -167,7 +63,7 @@ def _prefix(type_: Type) -> str:
 
 
 class Names:
-    """Makes names that nobody has taken yet; ``outer`` are names that are seen from here.
+    """Makes names that are not taken yet; ``outer`` are names that are seen from here.
 
     They are put together from two words or more, so that none is a word of the language.
     """

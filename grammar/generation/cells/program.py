@@ -16,6 +16,7 @@ from grammar.generation.choices import Choices
 from grammar.generation.code import Code, Part, Size, Style
 from grammar.generation.control_flow import give_back, returned, statement
 from grammar.generation.expressions import truth
+from grammar.generation.patterns import pattern
 from grammar.generation.routines import (
     begin,
     declare,
@@ -24,12 +25,12 @@ from grammar.generation.routines import (
     routine_text,
 )
 from grammar.generation.scope import Parameter, Routine, Scope
-from grammar.generation.statements import lasting_condition
 from grammar.semantics.types import INT, REAL, Array
 
 __all__ = ["Program"]
 
 _INTERRUPTS: Final = (*range(4, 40), *range(81, 129))
+_LASTING: Final = pattern("<lasting> <AND|OR|AND NOT> $IN[<1-512>]")
 _SIZE: Final = Size(statements=6, depth=2)
 #: Values of a local array that the beginning of a routine sets.
 _MOST_FIRST_VALUES: Final = 12
@@ -136,7 +137,7 @@ class Program:
         code = self.code()
         code.line(self.choices.pick(("BRAKE", "BRAKE", "BRAKE", "BRAKE F")))
         code.set("$OUT[1]", "FALSE")
-        with code.block("REPEAT", f"UNTIL {lasting_condition(code)}"):
+        with code.block("REPEAT", f"UNTIL {_LASTING(code, 1)}"):
             code.line("HALT")
         code.set("$OUT[1]", "TRUE")
         routine = Routine(self.names.routine(self._station()))
@@ -232,7 +233,7 @@ class Program:
                 code.call("BAS", "#INITMOV", "0")
             with code.fold("USER INI", "USER INI"), code.indented():
                 for number, routine in interrupts.items():
-                    event = lasting_condition(code)
+                    event = _LASTING(code, 1)
                     if choices.chance(60):
                         event = f"$IN[{choices.between(1, 512)}]==FALSE"
                     interrupt(number, event, routine.name)

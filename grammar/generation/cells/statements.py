@@ -7,10 +7,11 @@ from grammar.generation.cells.names import Names
 from grammar.generation.code import Code
 from grammar.generation.control_flow import statements
 from grammar.generation.expressions import expression, target
-from grammar.generation.statements import output, proceed
+from grammar.generation.patterns import output
+from grammar.generation.statements import proceed
 from grammar.semantics.types import INT
 
-__all__ = ["ask", "careful", "fold", "message", "remark", "set_output", "stop"]
+__all__ = ["ask", "careful", "fold", "message", "remark", "set_output"]
 
 
 def _names(code: Code) -> Names:
@@ -71,13 +72,6 @@ def careful(code: Code) -> bool:
         return False
     code.call("ERR_CLEAR", "$ERR")
     return proceed(code)
-
-
-def stop(code: Code) -> bool:
-    """HALT, with a message at times."""
-    if code.choices.chance(50):
-        code.call("MsgNote", _names(code).message())
-    return code.line("HALT")
 
 
 def remark(code: Code) -> bool:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Final
 
+from grammar.generation import control_flow, statements
 from grammar.generation.cells.dialect import Dialect
 from grammar.generation.cells.forms import Forms
 from grammar.generation.cells.names import Names
@@ -16,66 +17,19 @@ from grammar.generation.cells.statements import (
     message,
     remark,
     set_output,
-    stop,
 )
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.code import Code, ExpressionRule, StatementRule, Style
-from grammar.generation.control_flow import (
-    backward_jump,
-    branch,
-    give_back,
-    loop,
-    loop_for,
-    loop_repeat,
-    loop_while,
-    switch,
-)
 from grammar.generation.expressions import (
-    atom,
-    bits,
     chain,
-    comparison,
     constant,
     constant_comparison,
     expression,
-    joined,
-    negated,
     pose,
-    product,
-    quotient,
-    read,
-    relation,
-    scaled,
-    signed,
-    sum_of,
-)
-from grammar.generation.functions import (
-    add,
-    clear,
-    compare,
-    controller_variable,
-    direction,
-    find,
-    length,
-    root,
-    sine,
-    tangent,
 )
 from grammar.generation.literals import TEXT, Literals, predefined, structure
+from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
-from grammar.generation.statements import (
-    assign_text,
-    assign_whole,
-    assignment,
-    call,
-    cyclic_flag,
-    fixed_setting,
-    frame_setting,
-    pulse,
-    set_variable,
-    value_setting,
-    wait,
-)
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 __all__ = ["E6AXIS", "E6POS", "FRAME", "LOCALS", "RESULTS", "style_of"]
@@ -125,15 +79,6 @@ def _parameter(choices: Choices, _has_arrays: bool) -> Parameter:
     return Parameter("", type_, is_out=type_ != TEXT and choices.chance(10))
 
 
-def _number_comparison(code: Code, _depth: int) -> str:
-    """A number compared with a constant."""
-    type_ = code.choices.pick((INT, INT, REAL))
-    sign = code.choices.pick(("==", "==", "<>", "<", ">", ">=", "<=", "=>", "=<"))
-    if type_ == REAL and sign in ("==", "<>"):
-        sign = "<"
-    return code.spelling.binary(read(code, type_) or "$TIMER[1]", sign, constant(code, type_))
-
-
 def _value(code: Code, place: str, type_: Type) -> str:
     """What a place is given: often one more, often a constant."""
     choices = code.choices
@@ -144,98 +89,108 @@ def _value(code: Code, place: str, type_: Type) -> str:
     return expression(code, type_, choices.between(1, 2))
 
 
-def _truth_comparison(code: Code, _depth: int) -> str:
-    """A truth value compared with one of the constants, as many people write it."""
-    value = code.choices.pick(("TRUE", "TRUE", "FALSE"))
-    return code.spelling.binary(atom(code, BOOL), "==", value)
-
-
-def _numbers(type_: Type) -> Sequence[tuple[int, ExpressionRule]]:
-    return (
-        (40, sum_of(type_)),
-        (8, scaled(type_)),
-        (7, product(type_)),
-        (4, quotient(type_)),
-        (3, chain(type_)),
-        (3, signed(type_)),
-    )
-
-
 _EXPRESSIONS: Final[Mapping[Type, Weighted[ExpressionRule]]] = {
-    INT: Weighted(*_numbers(INT), (5, bits), (1, negated("B_NOT", INT))),
-    REAL: Weighted(*_numbers(REAL)),
-    BOOL: Weighted((60, relation), (26, joined), (10, negated("NOT", BOOL))),
-    **{type_: Weighted((1, pose(type_))) for type_ in (FRAME, E6POS)},
+    INT: patterns(
+        (40, "<operand INT>~<+|->~<operand INT>"),
+        (8, "<operand INT>~*~<factor INT>"),
+        (7, "<operand INT>~*~<operand INT>"),
+        (4, "<operand INT>~/~<divisor INT>"),
+        (3, chain(INT)),
+        (3, "-<operand INT>"),
+        (5, "<operand INT> <B_AND|B_OR|B_EXOR> <'B1'|'B0110'|'HF'|'HFF'>"),
+        (1, "B_NOT <operand INT>"),
+    ),
+    REAL: patterns(
+        (40, "<operand REAL>~<+|->~<operand REAL>"),
+        (8, "<operand REAL>~*~<factor REAL>"),
+        (7, "<operand REAL>~*~<operand REAL>"),
+        (4, "<operand REAL>~/~<divisor REAL>"),
+        (3, chain(REAL)),
+        (3, "-<operand REAL>"),
+    ),
+    BOOL: patterns(
+        (60, "<relation>"),
+        (15, "<operand BOOL> <AND|OR> <operand BOOL>"),
+        (10, "<operand BOOL> <AND|OR|EXOR> <operand BOOL> <AND|OR> <operand BOOL>"),
+        (10, "NOT <operand BOOL>"),
+    ),
+    **{type_: patterns((1, pose(type_))) for type_ in (FRAME, E6POS)},
 }
 _FUNCTIONS: Final[Mapping[Type, Weighted[ExpressionRule]]] = {
-    INT: Weighted((4, length), (2, find), (1, add)),
-    REAL: Weighted((5, sine), (3, root), (1, tangent), (1, direction)),
-    BOOL: Weighted((3, compare), (1, clear)),
-    _MODE_OP: Weighted((1, controller_variable("$MODE_OP"))),
-    FRAME: Weighted(
-        (3, controller_variable("BASE_DATA[?]")), (1, controller_variable("$NULLFRAME"))
+    INT: patterns(
+        (4, "STRLEN(<text>)"),
+        (2, "STRFIND(1,<text>,<text>,<constant CASE_SENSE_T>)"),
+        (1, "STRADD(<letters>,<text>)"),
     ),
-    E6POS: Weighted((1, controller_variable("$POS_ACT"))),
+    REAL: patterns(
+        (5, "<SIN|COS|ABS>(<REAL>)"),
+        (3, "SQRT(ABS(<REAL>))"),
+        (1, "TAN(<atom REAL>)"),
+        (1, "ATAN2(<REAL>,<REAL>)"),
+    ),
+    BOOL: patterns(
+        (3, "STRCOMP(<text>,<text>,<constant CASE_SENSE_T>)"), (1, "STRCLEAR(<letters>)")
+    ),
+    _MODE_OP: patterns((1, "$MODE_OP")),
+    FRAME: patterns((3, "BASE_DATA[<1-32>]"), (1, "$NULLFRAME")),
+    E6POS: patterns((1, "$POS_ACT")),
 }
 _ATOMS: Final[Mapping[Type, tuple[int, Weighted[ExpressionRule]]]] = {
-    INT: (3, Weighted((1, controller_variable("$TIMER[?]")))),
+    INT: (3, patterns((1, "$TIMER[<1-16>]"))),
     REAL: (
         8,
-        Weighted(
-            (3, controller_variable("$VEL.CP", "$POS_ACT.Z", "$POS_ACT.X", "$AXIS_ACT.A1")),
-            (2, controller_variable("$ANIN[?]", numbers=8)),
-        ),
+        patterns((3, "<$VEL.CP|$POS_ACT.Z|$POS_ACT.X|$AXIS_ACT.A1>"), (2, "$ANIN[<1-8>]")),
     ),
     BOOL: (
         35,
-        Weighted(
-            (20, controller_variable("$IN[?]", numbers=512)),
-            (6, controller_variable("$FLAG[?]", numbers=999)),
-            (2, controller_variable("$TIMER_FLAG[?]")),
-        ),
+        patterns((20, "$IN[<1-512>]"), (6, "$FLAG[<1-999>]"), (2, "$TIMER_FLAG[<1-16>]")),
     ),
 }
-_SETTINGS: Final = Weighted(
-    (
-        10,
-        fixed_setting(
-            *(("$VEL.CP", f"0.{tenth}") for tenth in range(1, 9)),
-            *(("$ACC.CP", f"{number}.0") for number in range(1, 6)),
-            *(("$APO.CDIS", f"{number}0.0") for number in range(1, 9)),
-            *(("$APO.CPTP", "50"), ("$OV_PRO", "100"), ("$VEL_AXIS[1]", "50.0")),
-            *(("$TIMER[?]", "0"), ("$TIMER_STOP[?]", "FALSE"), ("$TIMER_STOP[?]", "TRUE")),
-            *(("$ORI_TYPE", "#VAR"), ("$ORI_TYPE", "#CONSTANT"), ("$CIRC_TYPE", "#BASE")),
-            *(("$TOOL", "TOOL_DATA[?]"), ("$BASE", "BASE_DATA[?]"), ("$CIRC_TYPE", "#PATH")),
-        ),
-    ),
-    (1, frame_setting),
-    (1, value_setting(REAL, "$ANOUT[?]")),
-    (4, value_setting(BOOL, "$FLAG[?]")),
+_RELATIONS: Final = patterns(
+    (20, "<atom INT>~<equal>~<constant INT>"),
+    (10, "<atom INT>~<order>~<constant INT>"),
+    (15, "<atom REAL>~<order>~<constant REAL>"),
+    (8, "<atom INT>~<order>~<operand INT>"),
+    (10, "<atom REAL>~<order>~<operand REAL>"),
+    (18, "<atom BOOL>~==~<TRUE|TRUE|FALSE>"),
+    (20, constant_comparison),
 )
 _STATEMENTS: Final = Weighted[StatementRule](
     (110, set_output),
-    (60, set_variable),
-    (10, cyclic_flag),
-    (400, assignment),
-    (30, assign_whole),
-    (35, assign_text),
-    (100, call),
+    (
+        45,
+        line(
+            *("$VEL.CP:=0.<1-9>", "$ACC.CP:=<1-5>.0", "$APO.CDIS:=<1-80>.0", "$APO.CPTP:=<5-100>"),
+            *("$OV_PRO:=<10|30|50|100>", "$VEL_AXIS[<1-6>]:=<10-100>.0", "$TIMER[<1-16>]:=0"),
+            *("$TIMER_STOP[<1-16>]:=<TRUE|FALSE>", "$ORI_TYPE:=<#VAR|#CONSTANT|#JOINT>"),
+            *("$CIRC_TYPE:=<#BASE|#PATH>", "$TOOL:=TOOL_DATA[<1-16>]", "$BASE:=BASE_DATA[<1-32>]"),
+        ),
+    ),
+    (18, line("$FLAG[<1-999>]:=<BOOL>")),
+    (4, line("$ANOUT[<1-8>]:=<REAL>")),
+    (4, statements.set_base),
+    (10, line("$CYCFLAG[<1-32>]:=<lasting> <AND|OR|AND NOT> $IN[<1-512>]")),
+    (400, statements.assignment),
+    (30, statements.assign_whole),
+    (35, statements.assign_text),
+    (100, statements.call),
     (40, message),
     (6, ask),
-    (110, wait),
-    (7, pulse),
-    (14, stop),
+    (85, line("WAIT FOR <BOOL>")),
+    (30, line("WAIT SEC <0|0.1|0.2|0.25|0.5|1.0|2|0.012>")),
+    (7, line("PULSE(<output>,<TRUE|TRUE|FALSE>,<0.1|0.2|0.5|1.0|3.0>)")),
+    (14, line("HALT")),
     (10, careful),
     (170, remark),
-    (137, branch),
-    (23, loop_for),
-    (3, loop_while),
-    (4, loop_repeat),
-    (3, loop),
-    (17, switch),
+    (137, control_flow.branch),
+    (23, control_flow.loop_for),
+    (3, control_flow.loop_while),
+    (4, control_flow.loop_repeat),
+    (3, control_flow.loop),
+    (17, control_flow.switch),
     (22, fold),
-    (6, give_back),
-    (5, backward_jump),
+    (6, control_flow.give_back),
+    (5, control_flow.backward_jump),
 )
 
 
@@ -251,17 +206,10 @@ def style_of(dialect: Dialect, names: Names, forms: Forms) -> Style:
         literals=_literals(dialect),
         expressions=_EXPRESSIONS,
         functions=_FUNCTIONS,
-        relations=Weighted(
-            (45, _number_comparison),
-            (8, lambda code, depth: comparison(code, depth, (INT, INT))),
-            (10, lambda code, depth: comparison(code, depth, (REAL, REAL))),
-            (18, _truth_comparison),
-            (20, constant_comparison),
-        ),
+        relations=_RELATIONS,
         statements=_STATEMENTS,
         moving=forms.rules,
-        risky=Weighted((1, assignment)),
-        settings=_SETTINGS,
+        risky=Weighted((1, statements.assignment)),
         assigned=lambda code: _any_enumeration(code, code.choices.weighted(_ASSIGNED), INT),
         value=_value,
         parameter=_parameter,
@@ -283,7 +231,6 @@ def style_of(dialect: Dialect, names: Names, forms: Forms) -> Style:
         whole_share=75,
         any_place_share=0,
         omitted_share=0,
-        wait_for_share=75,
         else_share=36,
         exit_share=5,
         case_share=80,

@@ -27,8 +27,8 @@ def write_cells(
     """Write cells below ``folder`` until they have ``size`` bytes, or less than a file more.
 
     The same size and seed give the same files everywhere, and a larger size the same and more.
-    ``on_bytes`` is told the bytes of each file once it is written. Memory does not grow with the
-    size. Raises OSError when a file cannot be written.
+    ``on_bytes`` is called with the bytes of each file once it is written. Memory does not grow with
+    the size. Raises OSError when a file cannot be written.
     """
     written = number_of_files = 0
     for cell in count(1):

@@ -242,7 +242,7 @@ class _Programs:
         return routine_text(code, routine, is_global=is_global)
 
     def _recursive(self, name: str, scope: Scope, *, is_library: bool) -> list[str]:
-        """A routine that calls itself as often as its first parameter tells."""
+        """A routine that calls itself as often as its first parameter says."""
         choices = self.choices
         result = choices.pick((INT, REAL, None))
         given = [Parameter(DEPTH, INT, is_out=False)]

@@ -4,73 +4,27 @@ from __future__ import annotations
 
 from typing import Final
 
+from grammar.generation import control_flow, motions, statements
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.closed.formatted_texts import format_text, scan_text
 from grammar.generation.closed.types import COLOUR, MODE, POINT, RECORD
 from grammar.generation.closed.values import assigned_value
 from grammar.generation.code import Code, Spelling, StatementRule, Style
-from grammar.generation.control_flow import (
-    backward_jump,
-    branch,
-    give_back,
-    loop,
-    loop_for,
-    loop_repeat,
-    loop_while,
-    switch,
-)
 from grammar.generation.expressions import (
     atom,
-    bits,
     chain,
     constant,
     constant_comparison,
     expression,
-    joined,
     letter,
-    mixed_comparison,
+    letter_comparison,
     near_comparison,
-    negated,
     pose,
-    product,
-    quotient,
-    relation,
-    scaled,
-    signed,
-    sum_of,
-    truth_comparison,
-    value_comparison,
 )
-from grammar.generation.functions import CASES, CONTROLLER_VALUES, VAR_STATE, VAR_TYPE
+from grammar.generation.functions import CONTROLLER_VALUES
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, Literals, predefined
-from grammar.generation.motions import (
-    brake,
-    emily_motion,
-    interrupt,
-    motion,
-    spline_block,
-    spline_motion,
-    trigger,
-)
+from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
-from grammar.generation.statements import (
-    advance_setting,
-    assign_text,
-    assign_whole,
-    assignment,
-    call,
-    cyclic_flag,
-    cyclic_signal,
-    fixed_setting,
-    frame_setting,
-    halt,
-    invoke,
-    proceed,
-    pulse,
-    set_variable,
-    value_setting,
-    wait,
-)
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
 __all__ = ["CLOSED", "PLAIN", "RESULTS"]
@@ -119,14 +73,15 @@ _ASSIGNED: Final = Weighted[Type](
     (8, INT), (6, REAL), (4, BOOL), (3, CHAR), (2, COLOUR), (1, MODE), (1, POINT), (1, RECORD)
 )
 _SELECTORS: Final[tuple[Type, ...]] = (INT, CHAR, COLOUR, MODE, INT)
+_VAR_STATE: Final = predefined("VAR_STATE")
 _ENUMERATIONS: Final = Weighted[Type](
     (4, COLOUR),
     (2, MODE),
-    (2, VAR_STATE),
-    (2, VAR_TYPE),
+    (2, _VAR_STATE),
+    (2, predefined("VAR_TYPE")),
     (1, predefined("ORI_TYPE")),
     (1, predefined("MODE_OP")),
-    (1, CASES),
+    (1, predefined("CASE_SENSE_T")),
 )
 _CRITERIA: Final = (
     *("", "", "", " C_PTP", " C_DIS", " C_ORI", " C_VEL", " C_PTP C_DIS", " C_DIS C_ORI"),
@@ -146,7 +101,7 @@ def _parameter(choices: Choices, has_arrays: bool) -> Parameter:
 
 def _compared(code: Code) -> Type:
     type_ = code.choices.weighted(_ENUMERATIONS)
-    return type_ if type_ in CONTROLLER_VALUES or code.scope.places(type_).holders else VAR_STATE
+    return type_ if type_ in CONTROLLER_VALUES or code.scope.places(type_).holders else _VAR_STATE
 
 
 def _goal(code: Code, kind: str) -> str:
@@ -164,14 +119,14 @@ def _goal(code: Code, kind: str) -> str:
     return f"({found})" if choices.chance(10) else found
 
 
-_RISKY: Final = Weighted[StatementRule](
-    (6, assignment),
-    (2, set_variable),
-    (2, call),
-    (2, branch),
-    (1, assign_whole),
-    (1, motion),
-    (1, switch),
+#: Variables of the controller: of INT small values, as they are numbers, times and percentages.
+_SETTINGS: Final = (
+    (7, line("<$OUT|$OUT|$FLAG|$TIMER_STOP>[<1-16>]:=<BOOL>", "$STOPNOAPROX:=<BOOL>")),
+    (3, line("<$VEL.CP|$VEL.ORI1|$ACC.CP|$APO.CDIS|$APO.CORI|$ANOUT[1]>:=<REAL>")),
+    (3, line("<$TIMER[1]|$TIMER[2]|$OV_PRO|$APO.CPTP>:=(<INT>) B_AND 63")),
+    (2, line("$ORI_TYPE:=<#VAR|#CONSTANT>", "$CIRC_TYPE:=#BASE", "$IPO_MODE:=#TCP")),
+    (3, statements.set_base),
+    (2, statements.set_advance),
 )
 
 CLOSED: Final = Style(
@@ -179,98 +134,106 @@ CLOSED: Final = Style(
     spelling=Spelling(),
     literals=_LITERALS,
     expressions={
-        INT: Weighted(
-            (3, lambda code, _depth: atom(code, INT)),
-            (3, chain(INT)),
-            (3, sum_of(INT)),
-            (2, scaled(INT)),
-            (2, quotient(INT)),
-            (4, bits),
-            (1, negated("B_NOT", INT)),
-            (2, signed(INT)),
+        INT: patterns(
+            (12, "<atom INT>"),
+            (12, chain(INT)),
+            (12, "<operand INT>~<+|->~<beside INT>"),
+            (8, "<operand INT>~*~<factor INT>"),
+            (8, "<operand INT>~/~<divisor INT>"),
+            (13, "<operand INT> <B_AND|B_OR|B_EXOR|B_AND> <operand INT>"),
+            (3, "<operand INT> <B_AND|B_OR|B_EXOR|B_AND> <operand CHAR>"),
+            (4, "B_NOT <operand INT>"),
+            (8, "<-|+><operand INT>"),
         ),
-        REAL: Weighted(
-            (3, lambda code, _depth: atom(code, REAL)),
+        REAL: patterns(
+            (3, "<atom REAL>"),
             (2, chain(REAL)),
-            (5, sum_of(REAL)),
-            (3, scaled(REAL)),
-            (2, product(REAL)),
-            (3, quotient(REAL)),
-            (2, signed(REAL)),
+            (5, "<operand REAL>~<+|->~<beside REAL>"),
+            (3, "<operand REAL>~*~<factor REAL>"),
+            (2, "<beside REAL>~*~<operand REAL>"),
+            (3, "<operand REAL>~/~<divisor REAL>"),
+            (2, "<-|+><operand REAL>"),
         ),
-        BOOL: Weighted(
-            (2, lambda code, _depth: atom(code, BOOL)),
-            (9, relation),
-            (7, joined),
-            (2, negated("NOT", BOOL)),
+        BOOL: patterns(
+            (4, "<atom BOOL>"),
+            (18, "<relation>"),
+            (7, "<operand BOOL> <AND|OR|EXOR> <operand BOOL>"),
+            (7, "<operand BOOL> <AND|OR|EXOR> <operand BOOL> <AND|OR|EXOR> <operand BOOL>"),
+            (4, "NOT <operand BOOL>"),
         ),
-        CHAR: Weighted((1, letter)),
-        **{type_: Weighted((1, pose(type_))) for type_ in POSES},
+        CHAR: patterns((1, letter)),
+        **{type_: patterns((1, pose(type_))) for type_ in POSES},
     },
     functions=CONTROLLER_VALUES,
-    relations=Weighted(
-        (4, near_comparison),
-        (2, value_comparison),
-        (1, mixed_comparison),
-        (1, truth_comparison),
-        (2, constant_comparison),
+    relations=patterns(
+        (24, near_comparison),
+        (9, "<operand INT>~<order>~<operand INT>"),
+        (3, "<operand REAL>~<order>~<operand REAL>"),
+        (5, "<operand REAL>~<order>~<operand INT>"),
+        (3, letter_comparison),
+        (2, "<operand CHAR>~<order>~<operand INT>"),
+        (2, "<operand INT>~<order>~<operand CHAR>"),
+        (6, "<operand BOOL>~<equal>~<operand BOOL>"),
+        (12, constant_comparison),
     ),
     statements=Weighted(
-        (20, assignment),
-        (6, assign_whole),
-        (5, assign_text),
-        (6, call),
-        (7, branch),
-        (4, switch),
-        (5, loop_for),
-        (3, loop_while),
-        (3, loop_repeat),
-        (3, loop),
-        (2, backward_jump),
-        (1, give_back),
-        (4, proceed),
-        (5, set_variable),
-        (1, cyclic_flag),
-        (2, pulse),
-        (2, wait),
-        (2, halt),
-        (1, invoke),
-        (2, cyclic_signal),
-        (3, format_text),
-        (2, scan_text),
-        (5, motion),
-        (2, spline_motion),
-        (1, emily_motion),
-        (2, spline_block),
-        (2, trigger),
-        (4, interrupt),
-        (2, brake),
-    ),
-    moving=Weighted((1, motion)),
-    risky=_RISKY,
-    settings=Weighted(
+        (80, statements.assignment),
+        (24, statements.assign_whole),
+        (20, statements.assign_text),
+        (24, statements.call),
+        (28, control_flow.branch),
+        (16, control_flow.switch),
+        (20, control_flow.loop_for),
+        (12, control_flow.loop_while),
+        (12, control_flow.loop_repeat),
+        (12, control_flow.loop),
+        (8, control_flow.backward_jump),
+        (4, control_flow.give_back),
+        (16, statements.proceed),
+        *_SETTINGS,
+        (4, line("$CYCFLAG[<1-8>]:=<lasting> <AND|OR|EXOR> $FLAG[4]")),
+        (8, line("PULSE(<output>, <BOOL>, <0.1|1|0.5>)")),
+        (4, line("WAIT SEC <0|0.5|1|ABS(0.2)|0.012>")),
         (
             4,
-            value_setting(BOOL, "$OUT[?]", "$OUT[?]", "$FLAG[?]", "$TIMER_STOP[?]", "$STOPNOAPROX"),
-        ),
-        (
-            2,
-            value_setting(
-                REAL, "$VEL.CP", "$VEL.ORI1", "$ACC.CP", "$APO.CDIS", "$APO.CORI", "$ANOUT[?]"
+            line(
+                *("WAIT FOR $IN[<1-16>]", "WAIT FOR $IN[<1-16>] AND $IN[3]", "WAIT FOR TRUE"),
+                *("WAIT FOR ($IN[<1-16>]) OR (<BOOL>)", "WAIT FOR $IN[<1-16>]==TRUE"),
             ),
         ),
-        (2, value_setting(INT, "$TIMER[?]", "$OV_PRO", "$APO.CPTP")),
+        (2, line("HALT", cost=2)),
+        (2, line("CONFIRM <INT>", cost=2)),
+        (4, line("CONTINUE", cost=2)),
         (
-            1,
-            fixed_setting(
-                ("$ORI_TYPE", "#VAR"),
-                ("$ORI_TYPE", "#CONSTANT"),
-                ("$CIRC_TYPE", "#BASE"),
-                ("$IPO_MODE", "#TCP"),
+            4,
+            line(
+                *("ERR_CLEAR($ERR)", "ROB_STOP_RELEASE()", "DELETE_BACKWARD_BUFFER()"),
+                *("WSPACEGIVE(<1-4>)", "SYNC()"),
             ),
         ),
-        (2, frame_setting),
-        (1, advance_setting),
+        (3, statements.input_signal),
+        (2, line("ANOUT ON $ANOUT[<1-4>]=<REAL>*0.5 DELAY=<0.0|1> MAXIMUM=<REAL>", cost=2)),
+        (1, line("ANOUT ON $ANOUT[<1-4>]=<REAL>*0.5 MINIMUM=<REAL>", cost=2)),
+        (3, line("ANIN OFF $ANIN[<1-4>]", "ANOUT OFF $ANOUT[<1-4>]", "DIGIN OFF $DIGIN1")),
+        (12, format_text),
+        (8, scan_text),
+        (20, motions.motion),
+        (8, motions.spline_motion),
+        (4, line('MOVE_EMI "<EMI1|A>" "START"', 'MOVE_EMI "<EMI1|A>" "START" FLT <REAL>')),
+        (8, motions.spline_block),
+        (8, motions.trigger),
+        (16, motions.interrupt),
+        (8, motions.brake),
+    ),
+    moving=Weighted((1, motions.motion)),
+    risky=Weighted[StatementRule](
+        (60, statements.assignment),
+        *_SETTINGS,
+        (20, statements.call),
+        (20, control_flow.branch),
+        (10, statements.assign_whole),
+        (10, motions.motion),
+        (10, control_flow.switch),
     ),
     assigned=lambda code: code.choices.weighted(_ASSIGNED),
     value=assigned_value,

@@ -30,7 +30,7 @@ def assigned_value(code: Code, _place: str, type_: Type) -> str:
             return f"{operand(code, INT, 1)} B_OR 16777217"
         return expression(code, INT, depth)
     if type_ == CHAR and code.risks():
-        return '""'  # the checker lets it stand for a letter
+        return '""'  # the checker accepts it for a letter
     if type_ == CHAR and choices.chance(25):
         if code.risks():
             return expression(code, INT, 1)

@@ -27,11 +27,11 @@ def fuzz(
     jumps that go the wrong way, faults that are not raised.
     """
     from conformance.differential.fault_catalogue import mutants
-    from conformance.differential.fault_detection import hunt, record_of
+    from conformance.differential.fault_detection import examine_mutants, record_of
 
     check_files(json_file)
-    with progress_bar("hunting mutants", len(mutants())) as bar:
-        verdicts = hunt(programs, seed, all_cores(jobs), bar)
+    with progress_bar("examining mutants", len(mutants())) as bar:
+        verdicts = examine_mutants(programs, seed, all_cores(jobs), bar)
     record = record_of(verdicts, programs, seed)
     write_json(record, json_file, indent=1)
     console = Console(highlight=False)

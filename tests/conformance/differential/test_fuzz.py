@@ -13,8 +13,8 @@ from conformance.differential import campaign, runs
 from conformance.differential.campaign import fuzz, record_of
 from conformance.differential.divergence import difference, examine, prepared
 from conformance.differential.fault_catalogue import Mutant, mutants
-from conformance.differential.fault_detection import Pool, mutated
-from conformance.differential.fault_detection import record_of as record_of_hunt
+from conformance.differential.fault_detection import ReferenceRuns, mutated
+from conformance.differential.fault_detection import record_of as record_of_faults
 from conformance.differential.random_world import RandomWorld
 from conformance.differential.reduction import reduce_program, statements_of
 from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
@@ -80,19 +80,19 @@ def test_findings_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch) ->
         (Op.MUL_REAL, "the result is not rounded to single"),
         (Op.STORE_DATA, "stores nothing"),
         (Op.JUMP_UNLESS, "never goes elsewhere"),
-        (Op.TELL_LOCAL, "tells nothing"),
+        (Op.TELL_LOCAL, "reports nothing"),
     ],
 )
 def test_planted_faults_are_found(op: Op, fault: str) -> None:
-    """A machine with a wrong instruction parts from the reference within few programs."""
-    verdict = Pool(1, 200).judge(mutant_of(op, fault))
+    """A machine with a wrong instruction diverges from the reference within few programs."""
+    verdict = ReferenceRuns(1, 200).examine(mutant_of(op, fault))
     assert verdict.caught_by is not None
 
 
 def test_right_machine_is_no_mutant() -> None:
     """A mutant whose change is none is not found."""
     same = Mutant(Op.ADD_INT, "is right", lambda rules, _state: rules[Op.ADD_INT])
-    assert Pool(1, 10).judge(same).caught_by is None
+    assert ReferenceRuns(1, 10).examine(same).caught_by is None
 
 
 def test_mutants_are_many_and_all_different() -> None:
@@ -102,12 +102,14 @@ def test_mutants_are_many_and_all_different() -> None:
     assert {"UNLINKED"} >= {op.name for op in Op} - {one.op.name for one in mutants()}
 
 
-def test_record_of_a_hunt() -> None:
-    """What was missed is told by name."""
-    pool = Pool(1, 20)
+def test_record_of_planted_faults() -> None:
+    """What was missed is listed by name."""
+    runs = ReferenceRuns(1, 60)
     same = Mutant(Op.ADD_INT, "is right", lambda rules, _state: rules[Op.ADD_INT])
-    verdicts = [pool.judge(one) for one in (same, mutant_of(Op.ADD_INT, "does what SUB_INT does"))]
-    record = record_of_hunt(verdicts, 40, 1)
+    verdicts = [
+        runs.examine(one) for one in (same, mutant_of(Op.ADD_INT, "does what SUB_INT does"))
+    ]
+    record = record_of_faults(verdicts, 40, 1)
     assert (2, 1, 0.5) == (record["mutants"], record["caught"], record["share"])
     assert ["ADD_INT: is right"] == record["missed"]
 
@@ -118,7 +120,7 @@ def test_record_of_a_hunt() -> None:
 def test_difference_is_reduced(
     wrong: Callable[[Mutant], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A program on which executors part is made small and still tells them apart."""
+    """A program on which executors diverge is made small, and they still diverge."""
     wrong(mutant_of(Op.MUL_INT, "does what ADD_INT does"))
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
     found = fuzz(60, 1, ["tree", "vm"])
@@ -166,8 +168,8 @@ def _loads(files: Any) -> bool:
     return campaign.loaded(files) is not None
 
 
-def test_difference_tells_the_first_fact() -> None:
-    """The first fact that differs is told, or that there is none on one side."""
+def test_difference_has_the_first_fact() -> None:
+    """The first fact that differs is shown, or that there is none on one side."""
     left, right = [("line", AT), ("call", AT, "A")], [("line", AT), ("call", AT, "B")]
     found = difference("vm", left, right)
     assert found is not None
@@ -209,7 +211,7 @@ def test_world_keeps_what_is_written() -> None:
     assert "index" == answer.slug
 
 
-def test_world_lets_nobody_wait_for_ever() -> None:
+def test_no_wait_is_endless() -> None:
     """After some looks in vain every input is TRUE."""
     world = RandomWorld("x", has_faults=False)
     for _ in range(4):

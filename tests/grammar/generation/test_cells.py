@@ -150,13 +150,13 @@ def test_cells_are_laid_out_like_controllers(corpus: Mapping[File, str]) -> None
 
 
 def test_corpus_has_the_size_asked_for(tmp_path: Path) -> None:
-    """There is as much as was asked for, by less than a file more, and each byte was told of."""
-    told: list[int] = []
-    written = write_cells(tmp_path, 120_000, seed=5, on_bytes=told.append)
+    """There is as much as was asked for, by less than a file more, and each byte was reported."""
+    reported: list[int] = []
+    written = write_cells(tmp_path, 120_000, seed=5, on_bytes=reported.append)
     sizes = [path.stat().st_size for path in tmp_path.rglob("*") if path.is_file()]
-    assert written.bytes == sum(sizes) == sum(told)
-    assert written.files == len(sizes) == len(told)
-    assert 120_000 <= written.bytes < 120_000 + told[-1]
+    assert written.bytes == sum(sizes) == sum(reported)
+    assert written.files == len(sizes) == len(reported)
+    assert 120_000 <= written.bytes < 120_000 + reported[-1]
 
 
 def test_larger_corpus_begins_like_a_smaller_one(tmp_path: Path) -> None:

@@ -1,0 +1,149 @@
+"""Patterns of KRL: text with places to fill, which most rules of a style are.
+
+Between ``<`` and ``>`` stands what a place is filled with: ``<INT>`` an expression of a type,
+``<operand INT>`` the same in parentheses where it is not an atom, ``<atom INT>``, ``<constant
+INT>``, ``<place INT>`` what can be assigned, ``<1-16>`` a number, ``<a|b>`` one of these words, or
+a word of `_FILLERS`. ``~`` is the gap around operators, ``:=`` the sign of an assignment.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Final
+
+from grammar.generation.choices import Weighted
+from grammar.generation.code import Code, ExpressionRule, StatementRule
+from grammar.generation.expressions import (
+    array,
+    atom,
+    constant,
+    constant_or_place,
+    divisor,
+    expression,
+    factor,
+    operand,
+    relation,
+    text,
+)
+from grammar.generation.literals import TEXT, predefined
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
+
+__all__ = ["line", "output", "pattern", "patterns"]
+
+_PLACE: Final = re.compile(r"<[^<>]+>|~|:=")
+_SCALARS: Final[Mapping[str, Type]] = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}
+#: How deep expressions of a statement nest.
+_DEPTH: Final = 2
+
+
+def patterns(*weights: tuple[int, str | ExpressionRule]) -> Weighted[ExpressionRule]:
+    """Rules by weight, of which those that are text are patterns."""
+    return Weighted(
+        *((weight, pattern(rule) if isinstance(rule, str) else rule) for weight, rule in weights)
+    )
+
+
+def pattern(text: str) -> ExpressionRule:
+    """The rule that fills the places of a pattern, from left to right."""
+    pieces: list[str | ExpressionRule] = []
+    end = 0
+    for found in _PLACE.finditer(text):
+        pieces += [text[end : found.start()], _filler(found[0])]
+        end = found.end()
+    pieces.append(text[end:])
+
+    def rule(code: Code, depth: int) -> str:
+        return "".join(one if isinstance(one, str) else one(code, depth) for one in pieces)
+
+    return rule
+
+
+def line(*texts: str, cost: int = 1) -> StatementRule:
+    """The rule that writes one of these patterns as a statement."""
+    rules = [pattern(text) for text in texts]
+
+    def statement(code: Code) -> bool:
+        code.spend(cost)
+        return code.line(code.choices.pick(rules)(code, _DEPTH))
+
+    return statement
+
+
+def output(code: Code, _depth: int = 0) -> str:
+    """An output that a program may set."""
+    choices = code.choices
+    if code.style.is_closed:
+        return f"$OUT[{choices.between(1, 16)}]"
+    names = code.scope.signals(is_output=True)
+    return (
+        choices.pick(names) if names and choices.chance(50) else f"$OUT[{choices.below(512) + 1}]"
+    )
+
+
+def _filler(place: str) -> ExpressionRule:
+    if place == "~":
+        return lambda code, _depth: code.spelling.gap
+    if place == ":=":
+        return lambda code, _depth: code.spelling.eq
+    content = place[1:-1]
+    if content in _FILLERS:
+        return _FILLERS[content]
+    if "|" in content:
+        words = content.split("|")
+        return lambda code, _depth: code.choices.pick(words)
+    low, dash, high = content.partition("-")
+    if dash:
+        first, last = int(low), int(high)
+        return lambda code, _depth: str(code.choices.between(first, last))
+    kind, _, name = content.rpartition(" ")
+    return _of_type(kind, _SCALARS[name] if name in _SCALARS else predefined(name))
+
+
+def _of_type(kind: str, type_: Type) -> ExpressionRule:
+    """A value of a type, of a kind."""
+    match kind:
+        case "":
+            return lambda code, depth: expression(code, type_, depth - 1)
+        case "operand":
+            return lambda code, depth: operand(code, type_, depth - 1)
+        case "beside":  # REAL is joined by INT at times
+            types = (type_, type_, type_, INT)
+            return lambda code, depth: operand(code, code.choices.pick(types), depth - 1)
+        case "atom":
+            return lambda code, _depth: atom(code, type_)
+        case "constant":
+            return lambda code, _depth: constant(code, type_)
+        case "place":
+            return lambda code, _depth: constant_or_place(code, type_)
+        case "factor":
+            return lambda code, _depth: factor(code, type_)
+        case "divisor":
+            return lambda code, _depth: divisor(code, type_)
+    raise ValueError(f"nothing fills <{kind} {type_}>")
+
+
+def _lasting(code: Code, _depth: int) -> str:
+    names = code.scope.signals(is_output=False)
+    return code.choices.pick(names or ("$IN[1]", "$FLAG[2]", "$OUT[3]", "($TIMER[1]>100)"))
+
+
+def _name(code: Code, _depth: int) -> str:
+    names = [one.name for one in code.scope.variables()]
+    return code.choices.pick([*names, "NOWHERE", "$VEL.CP"])
+
+
+_FILLERS: Final[Mapping[str, ExpressionRule]] = {
+    #: A comparison; signs of comparisons of numbers, and of others.
+    "relation": relation,
+    "order": lambda code, _depth: code.choices.pick(("==", "<>", "<", ">", "<=", ">=", "=>", "=<")),
+    "equal": lambda code, _depth: code.choices.pick(("==", "<>")),
+    #: A text, and one that can be changed.
+    "text": lambda code, _depth: text(code),
+    "letters": lambda code, _depth: array(code, TEXT) or '"abc"',
+    "output": output,
+    #: What does not end with the routine, for conditions that are looked at later [IOT-11].
+    "lasting": _lasting,
+    #: The name of a variable that is there, or of none.
+    "name": _name,
+}
