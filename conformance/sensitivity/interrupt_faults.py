@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from conformance.sensitivity.planted_fault import Fault, Plant, constant, on
+from conformance.sensitivity.planted_fault import (
+    Fault,
+    Plant,
+    constant,
+    group_in,
+    on,
+)
 from interp.controller import interrupts, motion_queue
 from interp.controller.interrupt_unit import InterruptUnit
 from interp.controller.interrupts import Interrupts
@@ -24,15 +30,10 @@ _SUITES: Final = ("interrupt", "program")
 
 def faults() -> tuple[Fault, ...]:
     """All of them."""
-    groups: tuple[tuple[str, tuple[str, ...], tuple[tuple[str, Plant], ...]], ...] = (
-        ("interrupts", _SUITES, _INTERRUPTS),
-        ("BRAKE and RESUME", (*_SUITES, "spline"), _BRAKING),
-        ("triggers", ("trigger", "spline"), _TRIGGERS),
-    )
-    return tuple(
-        Fault(group, words, suites, plant)
-        for group, suites, rows in groups
-        for words, plant in rows
+    return (
+        *group_in("interrupts", _SUITES, _INTERRUPTS),
+        *group_in("BRAKE and RESUME", (*_SUITES, "spline"), _BRAKING),
+        *group_in("triggers", ("trigger", "spline"), _TRIGGERS),
     )
 
 

@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
 
-__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "group_of", "on", "several"]
+__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "group_in", "group_of", "on", "several"]
 
 #: Plants a fault for as long as the context lasts.
 Plant = Callable[[], AbstractContextManager[None]]
@@ -41,6 +41,13 @@ class Fault:
 def group_of(name: str, rows: Iterable[tuple[str, tuple[str, ...], Plant]]) -> tuple[Fault, ...]:
     """The faults of a group: words, suites, plant of each."""
     return tuple(Fault(name, words, suites, plant) for words, suites, plant in rows)
+
+
+def group_in(
+    name: str, suites: tuple[str, ...], rows: Iterable[tuple[str, Plant]]
+) -> tuple[Fault, ...]:
+    """The faults of a group that the same suites have to find: words, plant of each."""
+    return tuple(Fault(name, words, suites, plant) for words, plant in rows)
 
 
 def on(owner: Any, name: str, make: Make) -> Plant:

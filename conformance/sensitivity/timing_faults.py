@@ -166,11 +166,6 @@ _SIGNALS: Final = (
         on(Signals, "_put_analog", _clamped_analog),
     ),
     (
-        "a pulse is half as long",
-        ("io",),
-        on(Signals, "pulse", lambda right: lambda self, n, v, t: right(self, n, v, t / 2)),
-    ),
-    (
         "a pulse is a tenth of a second longer",
         ("io",),
         on(Signals, "pulse", lambda right: lambda self, n, v, t: right(self, n, v, t + 0.1)),
@@ -201,15 +196,8 @@ def _fine_timer(_right: Any) -> Any:
     return value
 
 
-def _timer_read(otherwise: Callable[[Timers, Any, Any], Any]) -> Any:
-    def make(right: Any) -> Any:
-        def read(self: Timers, path: Any) -> Any:
-            value = right(self, path)
-            return otherwise(self, path, value) if path[0] == "$TIMER_FLAG" else value
-
-        return read
-
-    return make
+def _raised_flag(right: Any) -> Any:
+    return lambda self, path: path[0] == "$TIMER_FLAG" or right(self, path)
 
 
 def _timer_write(drops: Callable[[Any, Any], bool]) -> Any:
@@ -268,14 +256,9 @@ _TIMERS: Final = (
         on(Timers, "write", _timer_write(lambda p, _: p[0] == "$TIMER")),
     ),
     (
-        "the flag of a timer tells the contrary",
-        ("io",),
-        on(Timers, "read", _timer_read(lambda _self, _path, value: not value)),
-    ),
-    (
         "the flag of a timer is always TRUE",
         ("io",),
-        on(Timers, "read", _timer_read(lambda _self, _path, _value: True)),
+        on(Timers, "read", _raised_flag),
     ),
     (
         "cyclic flags keep their first value",
