@@ -212,6 +212,7 @@ simpleStatement
     | splineMotion
     | emilyMotion
     | confirm
+    | approximatedSplineMotion
     ;
 
 assignment
@@ -354,6 +355,14 @@ splineMotion
     | SCIRC target ',' target (',' CA expression)? with? C_SPL?
     | (SPTP_REL | SLIN_REL | SPL_REL) target with? C_SPL? reference?
     | SCIRC_REL target ',' target (',' CA expression)? with? C_SPL? reference?
+    ;
+
+// Alone, with a criterion of the older planner [SPL-02]; none stands in a block [SPL-04].
+approximatedSplineMotion
+    : (SPTP | SLIN) target with? approximation
+    | SCIRC target ',' target (',' CA expression)? with? approximation
+    | (SPTP_REL | SLIN_REL) target with? approximation reference?
+    | SCIRC_REL target ',' target (',' CA expression)? with? approximation reference?
     ;
 
 emilyMotion

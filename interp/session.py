@@ -7,10 +7,11 @@ trace, to the bit, on every executor and with every robot.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Literal
 
+from grammar.syntax.source import Source
 from interp.controller.controller import Controller
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
@@ -27,6 +28,7 @@ from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,
     read_machine,
+    resized,
 )
 from interp.robot.models import default_machine, model_file
 from interp.robot.planning.planned_arm import PlannedArm
@@ -37,7 +39,15 @@ from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
 
-__all__ = ["EXECUTORS", "RunResult", "RunSetup", "available", "machine_of_program", "run_program"]
+__all__ = [
+    "EXECUTORS",
+    "RunResult",
+    "RunSetup",
+    "available",
+    "machine_of_program",
+    "run_program",
+    "submit_of",
+]
 
 #: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
 #: forearm level.
@@ -55,7 +65,10 @@ class RunSetup:
     assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
     ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand before it
     counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another
-    robot than ``robot`` names, of the machine and the cycle in µs.
+    robot than ``robot`` names, of the machine and the cycle in µs. ``is_tolerant``: where another
+    arm stands in for one whose machine data is not understood, or a declaration for one that the
+    project lacks, the controller skips motions that cannot be planned and predefined routines that
+    are not simulated.
     """
 
     executor: str = "tree"
@@ -72,6 +85,7 @@ class RunSetup:
     patience: int = HOUR
     limits: Limits | None = None
     make_robot: Callable[[MachineData, int], Robot] | None = None
+    is_tolerant: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +93,8 @@ class RunResult:
     """What came of a run: how it ended, the trace, and where the arm went.
 
     ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
-    ``start`` are those that were used.
+    ``start`` are those that were used; ``machine_note`` says why the machine is not the project's
+    own, where it had to be told.
     """
 
     outcome: RunOutcome
@@ -88,6 +103,7 @@ class RunResult:
     machine: MachineData
     start: tuple[float, ...]
     controller: Controller
+    machine_note: str = ""
 
 
 def run_program(
@@ -106,13 +122,23 @@ def run_program(
     """
     if isinstance(prepared, CheckedProgram):
         prepared = Prepared(prepared, setup.routine)
-    program, profile = prepared.program, setup.profile
+    program, profile, note = prepared.program, setup.profile, ""
     program.start(prepared.routine)  # what is wrong with it is said alike for all executors
     values = system_values(program)
-    machine = setup.machine or machine_of_program(program, profile)
+    if setup.machine is not None:
+        machine = setup.machine
+    elif setup.is_tolerant:
+        machine, note = _machine_or_other(program, profile)
+        starts = [program.start(prepared.routine)]
+        starts += [program.start(setup.submit)] if setup.submit else []
+        is_other = bool(note) and _machine_data(program) is not None
+        is_tolerant = is_other or bool(program.used_stand_ins(*starts))
+        profile = replace(profile, is_tolerant=is_tolerant)
+    else:
+        machine = machine_of_program(program, profile)
     start = setup.start or _home(values, machine)
     try:
-        arm = PlannedArm(machine, start)
+        arm = PlannedArm(machine, start, is_selected=not profile.is_tolerant)
     except Fault as fault:
         raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
     robot = (setup.make_robot or partial(make_robot, setup.robot))(machine, profile.cycle)
@@ -142,7 +168,7 @@ def run_program(
     )
     outcome = _run(controller, setup, on_time)
     path = tracking.record() if robot.step else None
-    return RunResult(outcome, trace.events, path, machine, tuple(start), controller)
+    return RunResult(outcome, trace.events, path, machine, tuple(start), controller, note)
 
 
 #: Virtual time in µs from one report of progress to the next.
@@ -163,22 +189,49 @@ def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]
             return outcome
 
 
+def submit_of(program: CheckedProgram) -> str | None:
+    """The submit program of a project: SPS, as controllers call it."""
+    for unit in program.units.values():
+        routines = program.routines_of(unit)
+        if unit.module.suffix == ".sub" and routines and routines[0].node.name.key == "SPS":
+            return routines[0].name
+    return None
+
+
+def _machine_or_other(program: CheckedProgram, profile: Profile) -> tuple[MachineData, str]:
+    """The arm of the project's own machine data, else one in its place and why."""
+    source = _machine_data(program)
+    if source is None:
+        machine = machine_of_program(program, profile)
+        return machine, f"no machine data of an arm: {machine.name} stands in"
+    try:
+        return read_machine(source.text, source.path), ""
+    except (DataListError, MachineDataError) as error:
+        machine = default_machine()
+        note = f"{error}: {machine.name} stands in"
+        return resized(machine, source.text, source.path), note
+
+
+def _machine_data(program: CheckedProgram) -> Source | None:
+    for unit in program.units.values():
+        module = unit.module
+        is_machine = module.name == "$MACHINE" and module.suffix == ".dat"
+        if is_machine and "$LENGTH_A" in unit.source.text.upper():
+            return unit.source
+    return None
+
+
 def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData:
     """The arm of the project's own machine data, else that of the profile.
 
     Raises `LinkError` where the project has machine data of an arm that is not understood.
     """
-    for unit in program.units.values():
-        module = unit.module
-        if (
-            module.name == "$MACHINE"
-            and module.suffix == ".dat"
-            and "$LENGTH_A" in unit.source.text
-        ):
-            try:
-                return read_machine(unit.source.text, module.path)
-            except (DataListError, MachineDataError) as error:
-                raise LinkError(str(error)) from error
+    source = _machine_data(program)
+    if source is not None:
+        try:
+            return read_machine(source.text, source.path)
+        except (DataListError, MachineDataError) as error:
+            raise LinkError(str(error)) from error
     if profile.machine == default_machine().name.lower():
         return default_machine()
     path = model_file(f"{profile.machine}.dat")

@@ -11,24 +11,29 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from support.files.discovery import Found
 
-__all__ = ["load_program", "read_sources", "sources_below"]
+__all__ = ["load_program", "project_root", "read_sources", "sources_below"]
 
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
+_ENDINGS = frozenset({".src", ".dat", ".sub"})
 _MOST_FILES = 20_000
 
 
-def load_program(file: Path, *, strict: bool = False) -> "tuple[CheckedProgram, list[str]]":
+def load_program(
+    file: Path, *, strict: bool = False, stands_in: bool = False
+) -> "tuple[CheckedProgram, list[str]]":
     """The program that begins with a file, and why files of its project were left out.
 
     ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
-    checker finds is no obstacle: what it is about fails when it is reached. Raises `InputError` for
-    what cannot be read, and `interp.values.faults.LinkError` for what cannot be run.
+    checker finds is no obstacle: what it is about fails when it is reached. With ``stands_in`` the
+    project gets stand-ins for what it lacks. Raises `InputError` for what cannot be read, and
+    `interp.values.faults.LinkError` for what cannot be run.
     """
     from interp.program.load import load
 
     sources, main, left = read_sources(file)
-    return load(sources, main, strict=strict), left
+    program = load(sources, main, strict=strict, stands_in=stands_in, unread=left)
+    return program, left
 
 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
@@ -55,46 +60,62 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     """The files of the project of a file, the path of that file among them, and what was left out.
 
-    A project is what one controller holds: the nearest R1 or STEU that the file lies in and what
-    stands beside that, else the folder that the file lies in, without those below. Files that
-    cannot be read as KRL are left out, but not the one that was asked for.
+    What lies below `project_root`, of which `grammar.semantics.link` takes the file's own project.
+    Files that cannot be read are left out, but not the one that was asked for.
     """
-    from grammar.syntax import ast
-    from grammar.syntax.build import read_module
     from grammar.syntax.source import Source
     from support.files.decode import decode
     from support.files.discovery import Found, IngestError, Skipped, discover, read
 
     archive, inner = _in_archive(file)
+    if archive is None and not file.is_file():
+        raise InputError(f"{file}: no such file")
+    root = archive or project_root(file)
     try:
-        root = archive or _root_of(file)
         found = [one for one in discover([root]) if isinstance(one, Found)]
     except IngestError as error:
         raise InputError(str(error)) from error
-    if archive is None and root == file.resolve().parent:  # a loose file: not what lies below
-        found = [one for one in found if one.file.parent == root and one.member is None]
+    if archive is None:
+        found = [one for one in found if one.member is None]
+    asked = next((one for one in found if _is_asked_for(one, file, inner)), None)
+    if asked is None:
+        raise InputError(f"{file}: no KRL program")
+    main = _shown(asked, root)
+    found = _of_one_project(found, root, main)
+    if len(found) > _MOST_FILES:
+        found = [one for one in found if one.file.parent == asked.file.parent]
     sources: list[Source] = []
     left: list[str] = []
-    main = ""
-    for one in found[:_MOST_FILES]:
-        is_main = _is_asked_for(one, file, inner)
+    for one in found:
         data = read(one)
         decoded = data.reason if isinstance(data, Skipped) else decode(data)
         if isinstance(decoded, str):
-            if is_main:
+            if one is asked:
                 raise InputError(f"{one.path}: {decoded}")
             left.append(f"{one.path}: {decoded}")
             continue
-        source = Source(decoded.text, _shown(one, root))
-        syntax = read_module(source.text, source.path)
-        if isinstance(syntax, ast.Module) or is_main:
-            sources.append(source)
-        else:
-            left.append(f"{one.path}:{syntax[0].line}: it cannot be read")
-        main = source.path if is_main else main
-    if not main:
-        raise InputError(f"{file}: no KRL program")
+        sources.append(Source(decoded.text, _shown(one, root)))
     return sources, main, left
+
+
+def _of_one_project(found: "Sequence[Found]", root: Path, main: str) -> "list[Found]":
+    """The files of the project of one of them, by where they lie."""
+    from grammar.semantics.link import File, link
+
+    by_path = {_shown(one, root): one for one in found}
+    for project in link([File(path, None) for path in by_path]).projects:
+        paths = [module.path for module in project.modules]
+        if main in paths:
+            if project.is_controller:
+                return [by_path[path] for path in paths]
+            is_inside = _is_in_drive(main)
+            return [by_path[path] for path in paths if _is_in_drive(path) == is_inside]
+    return []
+
+
+def _is_in_drive(path: str) -> bool:
+    """Whether a file lies in R1 or STEU; what lies beside them is another project."""
+    return not _PARTS.isdisjoint(path.upper().split("/")[:-1])
 
 
 def _shown(found: "Found", root: Path) -> str:
@@ -123,9 +144,39 @@ def _is_asked_for(found: "Found", file: Path, inner: str) -> bool:
     return not inner and found.file.resolve() == file.resolve()
 
 
-def _root_of(file: Path) -> Path:
-    """The folder that holds the project of a file: it lies below R1 or STEU there, or alone."""
-    if not file.is_file():
-        raise InputError(f"{file}: no such file")
-    folders = file.resolve().parents
-    return next((one.parent for one in folders if one.name.upper() in _PARTS), folders[0])
+def project_root(path: Path) -> Path:
+    """The folder that holds the project of a file or folder, from wherever one enters it.
+
+    That is what lies around R1 or STEU, or around a drive of another name (`is_drive`). A folder
+    without such a layout around it is a project itself; the files of one that lies in a folder with
+    KRL of its own, Program for instance, belong to that.
+    """
+    from grammar.semantics.link import is_drive
+
+    path = path.resolve()
+    folder = path if path.is_dir() else path.parent
+    for one in (folder, *folder.parents):
+        if one.name.upper() in _PARTS:
+            return one.parent
+        names = _folders_in(one)
+        if is_drive(names):
+            return one.parent if "STEU" in map(str.upper, _folders_in(one.parent)) else one
+        if _PARTS & set(map(str.upper, names)) and one.name.upper() == "KRC":
+            return one
+    while _has_krl(folder.parent):
+        folder = folder.parent
+    return folder
+
+
+def _folders_in(folder: Path) -> list[str]:
+    try:
+        return [one.name for one in folder.iterdir() if one.is_dir()]
+    except OSError:
+        return []
+
+
+def _has_krl(folder: Path) -> bool:
+    try:
+        return any(one.suffix.lower() in _ENDINGS for one in folder.iterdir())
+    except OSError:
+        return False

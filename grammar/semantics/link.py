@@ -46,7 +46,7 @@ from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, R
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 
-__all__ = ["Clash", "File", "Project", "Workspace", "link", "words_of"]
+__all__ = ["Clash", "File", "Project", "Workspace", "extended", "is_drive", "link", "words_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +93,7 @@ class Project:
         is_complete: bool | None,
     ) -> None:
         self.root = root
+        self.system = system
         self.is_controller = is_controller
         self.modules = tuple(modules)
         self._data = {_place(module): module for module in modules if module.suffix == ".dat"}
@@ -239,6 +240,14 @@ def link(
     return Workspace(tuple(projects))
 
 
+def extended(project: Project, files: Iterable[File]) -> Project:
+    """A project with more files, wherever these lie."""
+    modules = [*project.modules, *map(_module, files)]
+    return Project(
+        project.root, project.is_controller, modules, project.system, project.is_complete
+    )
+
+
 # ------------------------------------------------------------------------------------- modules
 
 _WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)", re.IGNORECASE)
@@ -311,7 +320,7 @@ def _has_all(modules: Sequence[Module]) -> bool:
 
 _DRIVES = {"r1", "steu"}
 #: What lies in these: a folder called R1 alone may be somebody's name for a robot.
-_ROOMS = {"program", "system", "mada", "tp", "folgen"}
+_PARTS = {"program", "system", "mada", "tp", "folgen"}
 _CONFIG = "$config.dat"
 
 _Folder = tuple[str, ...]
@@ -341,8 +350,12 @@ def _grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
         groups: dict[tuple[bool, _Folder], list[_Placed]] = defaultdict(list)
         loose = []
         drives = {root for placed in by_origin[origin] for root in _drive_roots(placed.folded)}
+        renamed = _renamed_drives(by_origin[origin])
         for placed in by_origin[origin]:
             root = _last(drives, placed.folded, _DRIVES)
+            if root is None:
+                drive = _last(renamed.keys(), placed.folded)
+                root = None if drive is None else renamed[drive]
             if root is None:
                 loose.append(placed)
             else:
@@ -362,8 +375,33 @@ def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
     for depth, name in enumerate(folders):
         if name in _DRIVES:
             is_below_krc = depth > 0 and folders[depth - 1] == "krc"
-            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in _ROOMS):
+            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in _PARTS):
                 yield folders[:depth]
+
+
+def is_drive(names: Iterable[str]) -> bool:
+    """Whether a folder that holds folders of these names is the drive of a controller.
+
+    As R1 does, whatever it is called: Program, TP or others beside System or Mada.
+    """
+    parts = _PARTS & {name.casefold() for name in names}
+    return len(parts) > 1 and not parts.isdisjoint({"system", "mada"})
+
+
+def _renamed_drives(files: Iterable[_Placed]) -> dict[_Folder, _Folder]:
+    """The drives that are not called R1, each with the root of its project.
+
+    That is the folder around it where STEU lies beside it, else itself.
+    """
+    inside: dict[_Folder, set[str]] = defaultdict(set)
+    for placed in files:
+        for depth, name in enumerate(placed.folded):
+            inside[placed.folded[:depth]].add(name)
+    return {
+        folder: folder[:-1] if folder and "steu" in inside[folder[:-1]] else folder
+        for folder, names in inside.items()
+        if is_drive(names) and not (folder and folder[-1] in _DRIVES)
+    }
 
 
 def _last(roots: Set[_Folder], folders: _Folder, inside: Set[str] | None = None) -> _Folder | None:

@@ -241,6 +241,7 @@ RULES: Mapping[str, Rule] = {
     "motion": _motion,
     "approximation": _all("criterion"),
     "criterion": _symbol,
+    "approximatedSplineMotion": _motion,
     "splineMotion": _motion,
     "with": _all("assignment"),
     "splineItem": _spline_item,

@@ -19,16 +19,16 @@ from grammar.syntax import ast
 from grammar.syntax.references import calls_in
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
+from interp.controller.automatic_inputs import OPERATOR
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
-from interp.program.load import CheckedProgram, Routine, load_all
-from interp.session import RunSetup, run_program
+from interp.program.load import CheckedProgram, load_all
+from interp.session import RunSetup, run_program, submit_of
 from interp.values.faults import Fault, LinkError
 
 __all__ = [
-    "OPERATOR",
     "PATIENCE",
     "MainProgram",
     "Ran",
@@ -38,13 +38,6 @@ __all__ = [
     "survey_profile",
 ]
 
-#: What the person at the panel and the cell do, as lines of a script.
-OPERATOR: Final = """\
-on HALT after 1 press START
-on message after 1 press CONFIRM
-on dialogue after 1 answer 1
-fulfil waits after 1
-"""
 #: Folders of a backup that hold what the controller and its packages bring along.
 _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
 #: Requests of the submit program in a cycle: it goes round many times a second all the same.
@@ -83,7 +76,9 @@ class Ran:
 
     ``at`` is where it was when its time was over. ``furthest_mm`` is how far a measured tool was
     from its set-point at most, where the robot measures. ``inputs``: how many changes of inputs it
-    took to fulfil its waits.
+    took to fulfil its waits. ``skipped`` are motions that could not be planned where something
+    stood in for what the backup lacks, ``stood_in`` what did. ``is_own_fault``: it
+    stopped at a fault with nothing that stood in.
     """
 
     result: Result
@@ -94,14 +89,19 @@ class Ran:
     machine: str = ""
     furthest_mm: float | None = None
     inputs: int = 0
+    skipped: int = 0
+    stood_in: tuple[str, ...] = ()
+    is_own_fault: bool = False
 
 
-def main_programs(sources: Iterable[Source]) -> tuple[list[MainProgram], list[tuple[str, str]]]:
+def main_programs(
+    sources: Iterable[Source], *, stands_in: bool = False
+) -> tuple[list[MainProgram], list[tuple[str, str]]]:
     """The main programs of files of one origin, and which files cannot be read and why.
 
     Files that are not laid out like a backup have none of R1: all their folders count.
     """
-    programs, unread = load_all(sources)
+    programs, unread = load_all(sources, stands_in=stands_in)
     called: dict[int, set[str]] = {}
     moving: dict[int, set[str]] = {}
     for program in programs:
@@ -125,7 +125,7 @@ def main_programs(sources: Iterable[Source]) -> tuple[list[MainProgram], list[tu
                     Prepared(program),
                     path,
                     first.name,
-                    _submit_of(program),
+                    submit_of(program),
                     _has_machine(program),
                 )
             )
@@ -159,19 +159,6 @@ def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
     return (called - chosen) | (chosen & others), moving
 
 
-def _submit_of(program: CheckedProgram) -> str | None:
-    """The submit program of a backup: SPS, as controllers call it."""
-    for unit in program.units.values():
-        routines = program.routines_of(unit)
-        if unit.module.suffix == ".sub" and routines and _is_sps(routines[0]):
-            return routines[0].name
-    return None
-
-
-def _is_sps(routine: Routine) -> bool:
-    return routine.node.name.key == "SPS"
-
-
 def _has_machine(program: CheckedProgram) -> bool:
     return any(
         unit.module.name == "$MACHINE" and "$LENGTH_A" in unit.source.text
@@ -198,6 +185,11 @@ def run_main(main: MainProgram, setup: RunSetup, script: str = "") -> Ran:
     except LinkError as error:
         return Ran("refused", 0.0, 0, reason=str(error))
     outcome = run.outcome
+    program = main.prepared.program
+    starts = [program.start(name) for name in (main.routine, main.submit) if name is not None]
+    stood_in = tuple(one.name for one in program.used_stand_ins(*starts))
+    if run.machine_note:
+        stood_in = (*stood_in, run.machine_note)
     path = run.path
     furthest = None
     if path is not None and path.tips_measured is not None:
@@ -223,6 +215,9 @@ def run_main(main: MainProgram, setup: RunSetup, script: str = "") -> Ran:
         run.machine.name,
         furthest,
         run.controller.automatic_inputs.count,
+        len(run.controller.skipped_motions),
+        stood_in,
+        result == "fault" and not stood_in,
     )
 
 

@@ -16,9 +16,18 @@ from typing import Final
 
 from interp.controller.input_script import Assign, Script
 from interp.controller.state import ControllerState
+from interp.controller.trace import path_text
 from interp.port.requests import At, Path
 
-__all__ = ["AutomaticInputs"]
+__all__ = ["OPERATOR", "AutomaticInputs"]
+
+#: What the person at the panel and the cell do, as lines of a script.
+OPERATOR: Final = """\
+on HALT after 1 press START
+on message after 1 press CONFIRM
+on dialogue after 1 answer 1
+fulfil waits after 1
+"""
 
 #: More inputs than these are not tried: there would be too many combinations.
 _MOST: Final = 10
@@ -38,6 +47,10 @@ class AutomaticInputs:
         self._changes: Iterator[tuple[int, bool]] = iter(())
         #: How many inputs were changed.
         self.count = 0
+        #: Where the program has waited, for how long in µs, and the variables that it read there.
+        self.waited: dict[At, tuple[int, tuple[str, ...]]] = {}
+        self._names: dict[str, None] = {}
+        self._before = 0
 
     @property
     def is_on(self) -> bool:
@@ -47,10 +60,12 @@ class AutomaticInputs:
     def was_read(self, path: Path) -> None:
         """The program reads a variable, perhaps an input for the condition of a WAIT FOR."""
         self._read |= dict.fromkeys(_places(path))
+        self._names[path_text(path)] = None
 
     def begin(self) -> None:
         """The program comes to a WAIT FOR."""
         self._read.clear()
+        self._names.clear()
         self._since = None
 
     def was_false(self, at: At, now: int) -> None:
@@ -58,11 +73,14 @@ class AutomaticInputs:
         if self._after is None:
             return
         if self._since is None or self._since[0] != at:
-            self._since = at, now
+            self._since, self._before = (at, now), now
             self._changes = iter(())
             found = [place for place in self._read if place not in self._scripted]
             if len(found) <= _MOST:
                 self._changes = _combinations({place: self._has(place) for place in found})
+        before = self.waited.get(at, (0, ()))[0]
+        self.waited[at] = before + now - self._before, tuple(self._names)
+        self._before = now
         if now - self._since[1] >= self._after:
             for place, value in islice(self._changes, 1):
                 self.count += 1

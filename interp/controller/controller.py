@@ -41,6 +41,8 @@ from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["Controller"]
 
+_MOST_WAITS = 5
+
 
 class Controller:
     """Runs a program, and a submit program beside it.
@@ -90,11 +92,12 @@ class Controller:
         state.observers += [arm.changed, player.changed]
         state.messages.listeners += [player.shown, panel.shown]
         channels.listeners.append(player.received)
+        motions = MotionRequests(state, queue)
         table = _table(
             VariableAccess(state, queue, advance, automatic),
             PredefinedRoutines(state, arm, frames, channels, advance),
             waits,
-            MotionRequests(state, queue),
+            motions,
             queue,
             interrupts,
             cyclic,
@@ -120,12 +123,22 @@ class Controller:
         self.core = arm.core
         self.variables = state.variables
         self.automatic_inputs = automatic
+        self.skipped_motions = motions.skipped
         self._queue = queue
 
     @property
     def points(self) -> list[PlannedPoint]:
         """The end points of all motions that were planned and do not end where they start."""
         return self._queue.points
+
+    @property
+    def unfulfilled(self) -> list[str]:
+        """Where the program has waited longest, and for what; only with automatic inputs."""
+        waited = sorted(self.automatic_inputs.waited.items(), key=lambda one: -one[1][0])
+        return [
+            f"{', '.join(names) or 'a condition'} at {at.file}:{at.line}, {time / 1e6:g} s"
+            for at, (time, names) in waited[:_MOST_WAITS]
+        ]
 
     def run(self, until: int = HOUR) -> RunOutcome:
         """Run until the program ends, or halts and nobody starts it, or until a time in µs.

@@ -6,7 +6,8 @@ from interp.controller.messages import own_fault
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
-from interp.port.requests import Move, MoveEmily, MoveSpline
+from interp.port.requests import At, Move, MoveEmily, MoveSpline
+from interp.values.faults import Fault
 
 __all__ = ["MotionRequests"]
 
@@ -17,6 +18,8 @@ class MotionRequests:
     def __init__(self, state: ControllerState, queue: MotionQueue) -> None:
         self._state = state
         self._queue = queue
+        #: Motions that could not be planned, where and why, if the profile is tolerant.
+        self.skipped: list[tuple[At, Fault]] = []
 
     def move(self, task: Task, request: Move | MoveSpline) -> Answer:
         """A motion is planned; the program goes on once it is at most $ADVANCE motions ahead.
@@ -27,7 +30,16 @@ class MotionRequests:
         if task.name == "submit":
             raise own_fault("submit_motion")
         is_first = self._queue.is_unused
-        self._queue.plan(task, request)
+        try:
+            self._queue.plan(task, request)
+        except Fault as error:
+            if not self._state.profile.is_tolerant:
+                raise
+            self.skipped.append((request.at, error))
+            self._state.messages.post(
+                task.name, request.at, error.number or 0, f"motion skipped: {error}", "notification"
+            )
+            return None
         if is_first and self._state.profile.runs_coincidence:
             return self._coincide(task, request)
         advance = self._state.variables.read(("$ADVANCE",))

@@ -107,7 +107,8 @@ class MotionBuilder:
         if kind not in _KINDS or kind == "SPL":
             raise own_fault("motion_kind")
         target = target_of(request.target)
-        if self._number == 0 and (suffix or kind not in _JOINT or not is_complete(target)):
+        is_first = self._number == 0 and not self._state.profile.is_tolerant
+        if is_first and (suffix or kind not in _JOINT or not is_complete(target)):
             raise message_fault(1443)
         snapshot = self._variables.snapshot(request.values)
         self._check_frames(snapshot, kind, target)
@@ -130,7 +131,11 @@ class MotionBuilder:
 
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """A spline block. Raises `Fault`."""
-        if self._number == 0 and not _begins_completely(request):
+        if (
+            self._number == 0
+            and not self._state.profile.is_tolerant
+            and not _begins_completely(request)
+        ):
             raise message_fault(1443)
         snapshot = self._variables.snapshot(request.values)
         built = PlannedMotion(

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
-from grammar.semantics.predefined import System
-from grammar.semantics.types import INT
+from grammar.semantics.predefined import PredefinedFunction, System
+from grammar.semantics.types import INT, UNKNOWN
 from interp.controller.advance_run import AdvanceRun
 from interp.controller.arm_control import ArmControl
 from interp.controller.channels import Channels, Waiting
@@ -33,6 +33,7 @@ from interp.values.values import (
     known,
     single,
     text_of,
+    zero,
 )
 
 __all__ = ["PredefinedRoutines"]
@@ -72,12 +73,23 @@ class PredefinedRoutines:
     def call(self, task: Task, request: Invoke) -> Answer:
         """The result and the arguments after the call, or a wait. Raises `Fault`."""
         rule = _RULES.get(request.name)
-        if rule is None:
-            raise own_fault("unsupported")
         entry = self._functions.get(request.name) or self._newest[request.name]
+        if rule is None:
+            return self._unsupported(task, request, entry)
         if entry.stops or self._stops_advance(request):
             return self._advance.when_reached(task, request, lambda: rule(self, task, request))
         return rule(self, task, request)
+
+    def _unsupported(self, task: Task, request: Invoke, entry: PredefinedFunction) -> Reply:
+        """What is not simulated: a fault, or nothing with a zero as its result."""
+        if not self._state.profile.is_tolerant:
+            raise own_fault("unsupported")
+        text = f"{request.name} is not simulated"
+        self._state.messages.post(task.name, request.at, 0, text)
+        result = entry.result
+        if result is None:
+            return None, request.arguments
+        return 0 if result == UNKNOWN else zero(result), request.arguments
 
     @staticmethod
     def _stops_advance(request: Invoke) -> bool:

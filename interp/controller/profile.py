@@ -47,7 +47,8 @@ class Profile:
     coincidence run, which ends exactly and holds the program until it is started again [ADV-14].
     ``submit_every`` is in cycles. ``sizes`` are those of arrays, ``most`` how many there may be of
     something at once. ``values`` are initial values by name, as `interp.values.json_form` writes
-    them.
+    them. ``is_tolerant``: a motion that cannot be planned and a predefined routine that is not
+    simulated are skipped, each with a message, instead of being a fault.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Profile:
     sizes: Mapping[str, int]
     most: Mapping[str, int]
     values: Mapping[str, Any]
+    is_tolerant: bool = False
 
     @staticmethod
     def load(name: str = "kss8") -> Profile:

@@ -23,6 +23,7 @@ from grammar.semantics.types import Array, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
+from interp.standins.completion import StandIn, complete
 from interp.values.faults import LinkError
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
@@ -79,12 +80,16 @@ class Routine:
 
 @dataclass(frozen=True, eq=False)
 class CheckedProgram:
-    """A project, and the file that it begins with; without errors if it ``is_strict``."""
+    """A project, and the file that it begins with; without errors if it ``is_strict``.
+
+    ``stand_ins`` are those for all files of the project, see `used_stand_ins`.
+    """
 
     project: Project
     main: Unit
     units: Mapping[Module, Unit]
     is_strict: bool = True
+    stand_ins: tuple[StandIn, ...] = ()
 
     @cached_property
     def routines(self) -> Mapping[Symbol, Routine]:
@@ -124,6 +129,25 @@ class CheckedProgram:
             has = "parameters" if found[0].node.parameters else "a structure or array as its result"
             raise LinkError(f"{found[0].name} has {has}, so a program cannot begin with it")
         return found[0]
+
+    def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
+        """The stand-ins that files reached from some routines use, in their order."""
+        if not self.stand_ins:
+            return ()
+        reached: dict[Module, Unit] = {}
+        todo = [routine.unit for routine in routines]
+        while todo:
+            unit = todo.pop()
+            if unit.module in reached:
+                continue
+            reached[unit.module] = unit
+            answers = unit.checked.resolution.answers.values()
+            others = {one.module for one in answers if isinstance(one, Found)}
+            data = self.project.data_of(unit.module)
+            others.add(data)
+            todo += [self.units[other] for other in others if other is not None]
+        names = {name.key for unit in reached.values() for name in unit.checked.resolution.answers}
+        return tuple(one for one in self.stand_ins if one.name.upper() in names)
 
     def can_begin(self, routine: Routine) -> bool:
         """Whether a program can begin with a routine, as there is nobody to give or take values."""
@@ -168,24 +192,38 @@ def _has_no_index(node: ast.Expression) -> bool:
 
 
 def load(
-    sources: Iterable[Source], main: str, system: System | None = None, *, strict: bool = True
+    sources: Iterable[Source],
+    main: str,
+    system: System | None = None,
+    *,
+    strict: bool = True,
+    stands_in: bool = False,
+    unread: list[str] | None = None,
 ) -> CheckedProgram:
     """Link and check files, of which ``main`` is the path of the one to begin with.
 
     Only the project that it belongs to counts. Without ``strict`` errors that the checker finds are
-    no obstacle: what they are about fails when it is reached. Raises `LinkError` with the first
-    thing that is wrong.
+    no obstacle: what they are about fails when it is reached. With ``stands_in`` the project gets
+    stand-ins for what none of its files has. Raises `LinkError` with the first thing that is wrong;
+    where ``unread`` is given, it receives why other files cannot be read, which then are left out.
     """
     by_path = {source.path: source for source in sources}
-    files = [File(path, _read(source)) for path, source in by_path.items()]
+    files = []
+    for path, source in by_path.items():
+        try:
+            files.append(File(path, _read(source)))
+        except LinkError as error:
+            if unread is None or path == main:
+                raise
+            unread.append(str(error))
     for project in link(files, system).projects:
         if any(module.path == main for module in project.modules):
-            return _checked(project, by_path, main, strict=strict)
+            return _checked(project, by_path, main, strict=strict, stands_in=stands_in)
     raise LinkError(f"{main} is not among the files")
 
 
 def load_all(
-    sources: Iterable[Source], system: System | None = None
+    sources: Iterable[Source], system: System | None = None, *, stands_in: bool = False
 ) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
     """Link and check files of any number of projects; gives a program for each file with routines.
 
@@ -201,16 +239,29 @@ def load_all(
             unread.append((path, str(error)))
     programs: list[CheckedProgram] = []
     for project in link(files, system).projects:
-        whole = _checked(project, by_path, project.modules[0].path, strict=False)
+        first = project.modules[0].path
+        whole = _checked(project, by_path, first, strict=False, stands_in=stands_in)
         programs += [
-            replace(whole, main=unit) for unit in whole.units.values() if whole.routines_of(unit)
+            replace(whole, main=unit)
+            for unit in whole.units.values()
+            if unit.module.path in by_path and whole.routines_of(unit)
         ]
     return tuple(programs), tuple(unread)
 
 
 def _checked(
-    project: Project, sources: Mapping[str, Source], main: str, *, strict: bool
+    project: Project,
+    sources: Mapping[str, Source],
+    main: str,
+    *,
+    strict: bool,
+    stands_in: bool,
 ) -> CheckedProgram:
+    stand_ins: tuple[StandIn, ...] = ()
+    if stands_in:
+        whole = complete(project, sources)
+        project, stand_ins = whole.project, tuple(whole.stand_ins)
+        sources = {**sources, **{source.path: source for source in whole.sources}}
     units: dict[Module, Unit] = {}
     for module in project.modules:
         source = sources[module.path]
@@ -219,7 +270,7 @@ def _checked(
         if strict and one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)
-    return CheckedProgram(project, first, units, strict)
+    return CheckedProgram(project, first, units, strict, stand_ins)
 
 
 def _read(source: Source) -> ast.Module:

@@ -1,5 +1,6 @@
 """`krl run`: a program on the controller, with an arm that moves."""
 
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["run"]
 
 _MOST_TOLD = 3
+_AUTO = "auto"
+#: Virtual seconds that a run lasts at most, without and with automatic inputs.
+_SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 
 
 class Executor(StrEnum):
@@ -76,10 +80,20 @@ def run(
         str, typer.Option(metavar="NAME", help="The controller: kss8, kss5, or a .toml file.")
     ] = "kss8",
     io_script: Annotated[
-        Path | None, typer.Option("--io", metavar="SCRIPT", help="What inputs do, and when.")
+        Path | None,
+        typer.Option(
+            "--io",
+            metavar="SCRIPT",
+            help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
+            "Default: auto in a terminal, else nothing.",
+        ),
     ] = None,
     submit: Annotated[
-        str | None, typer.Option(metavar="NAME", help="A routine of the project for the submit.")
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="A routine of the project for the submit; with --io auto its SPS by default.",
+        ),
     ] = None,
     trace: Annotated[
         Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace here.")
@@ -102,24 +116,48 @@ def run(
         typer.Option(help="Plan motions as they come, or as the paper did in batches."),
     ] = Motion.LOOKAHEAD,
     max_time: Annotated[
-        float, typer.Option(min=0.0, metavar="S", help="Stop after so much virtual time.")
-    ] = 3600.0,
+        float | None,
+        typer.Option(
+            "--max-time",
+            "--until",
+            min=0.0,
+            metavar="S",
+            help="Stop after so much virtual time; default: 3600, with --io auto 600.",
+        ),
+    ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Run nothing while the checker finds an error.")
+        bool,
+        typer.Option(
+            "--strict",
+            help="Run nothing while the checker finds an error; nothing stands in.",
+        ),
     ] = False,
 ) -> int:
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
     The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
-    its end or to a HALT, 1 after a fault or where its time or budget was used up.
+    its end or to a HALT, 1 after a fault, where its time or budget was used up, or where a motion
+    was skipped. What the project lacks, a routine behind an inline form for instance, stands in and
+    is listed; motions that cannot be planned for want of it are skipped.
     """
     with _expected_errors():
+        from interp.controller.automatic_inputs import OPERATOR
         from interp.controller.input_script import Script
         from interp.controller.profile import Profile
-        from interp.session import RunSetup, available
+        from interp.session import RunSetup, available, submit_of
 
         chosen = executor.value if executor is not None else available()[-1]
-        script = Script() if io_script is None else Script.read(_text(io_script))
+        is_auto = str(io_script) == _AUTO or (io_script is None and sys.stdout.isatty())
+        if is_auto:
+            script = Script.read(OPERATOR, _AUTO)
+        else:
+            script = Script() if io_script is None else Script.read(_text(io_script))
+        if is_auto and io_script is None:
+            typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
+        _check_targets(trace, path, html, video, robot)
+        program, left = load_program(file, strict=strict, stands_in=not strict)
+        if is_auto and submit is None:
+            submit = submit_of(program)
         setup = RunSetup(
             executor=chosen,
             robot=robot.value,
@@ -129,20 +167,41 @@ def run(
             submit=submit,
             is_full=trace_level is Level.FULL,
             motion=motion.value,
-            until=round(max_time * 1e6),
+            until=round((max_time or (_AUTO_SECONDS if is_auto else _SECONDS)) * 1e6),
+            is_tolerant=not strict,
         )
-        _check_targets(trace, path, html, video, robot)
-        program, left = load_program(file, strict=strict)
         for why in left[:_MOST_TOLD]:
             typer.echo(one_line(f"left out: {why}"), err=True)
         if len(left) > _MOST_TOLD:
             typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html, video)
+    for line in _notes(done, program, setup):
+        typer.echo(one_line(line), err=True)
     typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
     if html is not None:
         typer.echo(one_line(f"page: {html}"))
-    return FINE if done.outcome.ending in ("end", "halt") else FINDINGS
+    is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped_motions
+    return FINE if is_fine else FINDINGS
+
+
+def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
+    """What stood in, which motions were skipped, and what a program that never ends waited for."""
+    from interp.standins.completion import summary
+
+    starts = [program.start(name) for name in (setup.routine, setup.submit) if name is not None]
+    used = program.used_stand_ins(*(starts or [program.start()]))
+    if used:
+        yield f"stood in: {summary(used)}"
+    if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
+        yield f"stood in: {done.machine_note}"
+    skipped = done.controller.skipped_motions
+    for at, error in skipped[:_MOST_TOLD]:
+        yield f"motion skipped: {at.file}:{at.line}: {error}"
+    if len(skipped) > _MOST_TOLD:
+        yield f"motion skipped: {len(skipped) - _MOST_TOLD} more"
+    for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
+        yield f"waited for: {line}"
 
 
 @contextmanager

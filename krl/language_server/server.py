@@ -22,6 +22,7 @@ from grammar.syntax.formatter import FormatterDefect, formatter
 from grammar.syntax.source import Source
 from krl.language_server.hover import Outline, definition, hover, outline
 from krl.language_server.workspace import Looked, OpenProject
+from krl.program_loading import project_root
 
 __all__ = ["server"]
 
@@ -77,7 +78,7 @@ class _Desk:
         for folder in self._server.workspace.folders.values():
             path = to_fs_path(folder.uri)
             if path is not None:
-                count = self._project.add_folder(Path(path))
+                count = self._project.add_folder(project_root(Path(path)))
                 logging.getLogger(__name__).info("%d files below %s", count, path)
 
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:

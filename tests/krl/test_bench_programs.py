@@ -51,7 +51,7 @@ def results(backup: Path, *options: str) -> dict[str, dict[str, Any]]:
 
 def test_main_programs_and_their_results(backup: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """What CELL alone calls, or nobody, is a main program; a HALT is gone on from by START."""
-    found = {name: row["result"] for name, row in results(backup).items()}
+    found = {name: row["result"] for name, row in results(backup, "--strict").items()}
     assert {
         "cell": "waits",
         "ends": "end",
@@ -65,6 +65,14 @@ def test_main_programs_and_their_results(backup: Path, capsys: pytest.CaptureFix
     said = capsys.readouterr().out
     assert "8 main programs on the robot none, tree; 0 files that cannot be read" in said
     assert "to its end: 3; waits for ever: 2; never ends: 1; a fault: 1;" in said
+
+
+def test_what_stands_in(backup: Path) -> None:
+    """A routine that a backup lacks stands in, and the row lists it; other rows have none."""
+    found = results(backup)
+    lacks, fails = found["lacks"], found["fails"]
+    assert ("end", 1, ["nothing"]) == (lacks["result"], lacks["motions"], lacks["stood_in"])
+    assert ("fault", [], True) == (fails["result"], fails["stood_in"], fails["is_own_fault"])
 
 
 def test_where_and_why(backup: Path) -> None:

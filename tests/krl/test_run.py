@@ -72,10 +72,21 @@ def test_time_that_is_over(run: Run) -> None:
 
 
 def test_what_no_file_has(run: Run) -> None:
-    """A call of what no file has fails when it is reached, and with --strict before anything is."""
-    status, out, _ = run("NOWHERE ( )\n")
+    """What no file has stands in and is listed; with --strict its call fails when it is reached."""
+    status, out, err = run("NOWHERE ( )\n")
+    assert (0, "stood in: by its uses only NOWHERE (main.src:2)") == (status, err.splitlines()[0])
+    status, out, _ = run("NOWHERE ( )\n", "--strict")
     assert 1 == status
     assert "main.src: fault after 0 s at main.src:2: NOWHERE is declared nowhere\n" == out
+
+
+def test_automatic_inputs(run: Run) -> None:
+    """With --io auto waits are fulfilled and a HALT is left; what never comes is told."""
+    status, out, _ = run("HALT\nWAIT FOR $IN[3] AND NOT $IN[4]\n", "--io", "auto")
+    assert (0, True) == (status, out.startswith("main.src: end after 2."))
+    status, out, err = run("WAIT FOR $OV_PRO==50\n", "--io", "auto", "--until", "5")
+    assert (1, "main.src: time after 5 s at main.src:2\n") == (status, out)
+    assert err.startswith("waited for: $OV_PRO at main.src:2, 4.9")
 
 
 def test_strict(run: Run) -> None:
@@ -202,7 +213,7 @@ def test_project_of_a_loose_file(run: Run, tmp_path: Path, monkeypatch: pytest.M
     (tmp_path / "a.src").write_text("DEF a ( )\nnear ( )\nEND\n", encoding="utf-8")
     assert (0, "a.src: halt after 0 s at near.src:2\n", "") == run(None, "a.src")
     (tmp_path / "a.src").write_text("DEF a ( )\nfar ( )\nEND\n", encoding="utf-8")
-    assert 1 == run(None, "a.src")[0]
+    assert 1 == run(None, "a.src", "--strict")[0]
 
 
 def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
@@ -359,4 +370,4 @@ def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     assert 0 == status
     assert "main.src: halt" in out
     assert err.startswith("left out: ")
-    assert "other.src:2: it cannot be read\n" in err
+    assert "other.src:2: " in err

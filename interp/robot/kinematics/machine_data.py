@@ -16,11 +16,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
-from interp.robot.kinematics.data_list import Key, Value, read_data_list
+from interp.robot.kinematics.data_list import DataListError, Key, Value, read_data_list
 from interp.values.poses import IDENTITY, Pose
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "WristLink",
     "machine_of",
     "read_machine",
+    "resized",
 ]
 
 ROBOT_AXES = 6
@@ -159,6 +160,20 @@ def read_machine(text: str, path: str = "") -> MachineData:
     return machine_of(read_data_list(text, path), path)
 
 
+def resized(machine: MachineData, text: str, path: str = "") -> MachineData:
+    """A machine in place of one whose data cannot be understood, as far as that data goes.
+
+    Its axes get the limits and dynamics that the data has for rotary axes, its arm the length.
+    """
+    try:
+        values = read_data_list(text, path)
+    except DataListError:
+        return machine
+    reader = _Reader(values, path)
+    axes = tuple(reader.axis_or(axis, number) for number, axis in enumerate(machine.axes, start=1))
+    return replace(machine, axes=axes)
+
+
 def machine_of(values: Mapping[Key, Value], path: str = "") -> MachineData:
     """The machine of the values of a $machine.dat; see `read_machine`."""
     return _Reader(values, path).machine()
@@ -210,6 +225,16 @@ class _Reader:
         )
 
     # ---------------------------------------------------------------------------------- parts
+
+    def axis_or(self, other: Axis, number: int) -> Axis:
+        """The limits and dynamics of a rotary axis, with the direction of another machine's."""
+        try:
+            axis = self._axis(number)
+        except MachineDataError:
+            return other
+        if axis.kind is AxisKind.LINEAR or axis.dynamics is None or axis.lower > axis.upper:
+            return other
+        return replace(axis, direction=other.direction)
 
     def _axis(self, number: int) -> Axis:
         kind = self._kind(number)

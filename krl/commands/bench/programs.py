@@ -1,5 +1,6 @@
 """`krl bench programs`: which main programs of controllers' backups run to their end."""
 
+import time
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -36,6 +37,9 @@ _RESULTS = {
     "crash": "a defect of ours",
 }
 
+#: What a program does that has nothing left to do.
+_SERVED = ("end", "halt", "waits", "goes on")
+
 
 def programs(
     paths: ProgramsArgument = None,
@@ -54,6 +58,9 @@ def programs(
         bool,
         typer.Option("--every", help="Programs without machine data of their own too."),
     ] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Nothing stands in for what a backup lacks.")
+    ] = False,
     max_time: Annotated[
         float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
     ] = 600.0,
@@ -63,7 +70,8 @@ def programs(
 
     Their submit program runs beside them; somebody goes on after a HALT and acknowledges messages.
     The inputs that a WAIT FOR waits for come after 1 s, but for those that a script sets itself. A
-    program waits when its arm has stood for 20 s. Exit status 1 after a defect of ours.
+    program waits when its arm has stood for 20 s. What a backup lacks stands in, as in `krl run`.
+    Exit status 1 after a defect of ours.
     """
     from interp.bench.main_programs import main_programs, run_main, survey_profile
     from interp.controller.input_script import ScriptError
@@ -79,27 +87,32 @@ def programs(
         robot=robot.value,
         profile=survey_profile(),
         until=round(max_time * 1e6),
+        is_tolerant=not strict,
     )
     rows: list[dict[str, Any]] = []
     unread: list[dict[str, str]] = []
     with progress_bar("running programs") as bar:
         for origin, sources in origins.items():
-            mains, left = main_programs(sources)
+            mains, left = main_programs(sources, stands_in=not strict)
             unread += [{"path": path, "reason": reason} for path, reason in left]
             wanted = [main for main in mains if every or main.has_machine]
             bar.expect(len(wanted))
             for main in wanted:
+                before = time.perf_counter()
                 try:
                     ran = run_main(main, setup, _script(scripts, origin, main))
                 except ScriptError as error:
                     raise InputError(f"--scripts: {error}") from error
-                rows.append({"origin": origin, "path": main.path, **asdict(ran)})
+                wall = round(time.perf_counter() - before, 3)
+                rows.append({"origin": origin, "path": main.path, **asdict(ran), "wall": wall})
                 bar()
     record = {
         "bench": "programs",
         "executor": setup.executor,
         "robot": setup.robot,
         "results": dict(Counter(row["result"] for row in rows)),
+        "moved": sum(row["motions"] > 0 for row in rows),
+        "served": sum(row["result"] in _SERVED for row in rows),
         "programs": rows,
         "unread": unread,
     }
@@ -134,6 +147,8 @@ def _print(record: Mapping[str, Any]) -> None:
         table.add_column("ran")
         table.add_column("virtual s", justify="right")
         table.add_column("motions", justify="right")
+        table.add_column("skipped", justify="right")
+        table.add_column("stood in", justify="right")
         table.add_column("inputs", justify="right")
         table.add_column("where and why", overflow="fold")
         for row in (row for row in rows if row["origin"] == origin):
@@ -143,6 +158,8 @@ def _print(record: Mapping[str, Any]) -> None:
                 _RESULTS[row["result"]],
                 f"{row['seconds']:,.1f}",
                 f"{row['motions']:,}",
+                f"{row['skipped']:,}",
+                f"{len(row['stood_in']):,}",
                 f"{row['inputs']:,}",
                 one_line(where + row["reason"]),
             )
@@ -150,3 +167,6 @@ def _print(record: Mapping[str, Any]) -> None:
     counts = record["results"]
     told = [f"{words}: {counts[name]:,}" for name, words in _RESULTS.items() if name in counts]
     console.print("; ".join(told), soft_wrap=True)
+    if rows:
+        moved, served = (record[name] / len(rows) for name in ("moved", "served"))
+        console.print(f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever")

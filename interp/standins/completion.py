@@ -1,0 +1,302 @@
+"""A project with stand-ins for what it uses and does not hold.
+
+What a file of the project declares always counts: a stand-in is made only for a name that nothing
+declares. What `library` has is taken from there; for the rest a declaration is made of how the
+names are used. Stand-ins are files like others, so executors and checks know nothing of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+from grammar.check.framework import check_module
+from grammar.semantics.link import File, Project, extended
+from grammar.semantics.resolve import Resolution, resolve
+from grammar.semantics.scopes import Found, Module, SystemScope
+from grammar.semantics.symbols import Kind
+from grammar.semantics.types import UNKNOWN, Enumeration, Structure, Type
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.references import Space
+from grammar.syntax.source import Source
+from interp.standins.library import Datum, load_library
+from interp.standins.signatures import Signatures
+from interp.standins.uses import FOLDER, Uses
+
+__all__ = ["Completed", "StandIn", "complete", "summary"]
+
+_LIST: Final = "STANDIN"
+_ROUNDS: Final = 4
+#: Behind the name of its type: the value that variables of this type begin with.
+_DEFAULT: Final = "_DEFAULT"
+_MOST_SHOWN: Final = 8
+_ORIGINS: Final = {
+    "library": "from the library",
+    "signature": "by its uses only",
+    "default": "with the controller's default",
+}
+#: Where a stand-in comes from: our own version of it, its signature alone, or the controller's
+#: own default for data that $config.dat would declare.
+Origin = Literal["library", "signature", "default"]
+_Kind = Literal["routine", "variable", "type"]
+_Places = dict[str, tuple[Module, ast.Name]]
+
+
+@dataclass(frozen=True, slots=True)
+class StandIn:
+    """A name that no file declares: what it is, where from it stands in, and its first use."""
+
+    name: str
+    kind: _Kind
+    origin: Origin
+    path: str
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Completed:
+    """A project with its stand-ins, and the texts of these."""
+
+    project: Project
+    sources: Sequence[Source]
+    stand_ins: Sequence[StandIn]
+
+
+@dataclass(slots=True)
+class _Wanted:
+    """Names that nothing declares, in upper case, with the places of their first uses."""
+
+    data: _Places = field(default_factory=dict)
+    routines: _Places = field(default_factory=dict)
+    types: _Places = field(default_factory=dict)
+    defaults: _Places = field(default_factory=dict)
+    modules: list[Module] = field(default_factory=list)
+
+    def take(self, module: Module, resolution: Resolution) -> None:
+        """What one file wants."""
+        names = {
+            Space.VALUE: self.data,
+            Space.ROUTINE: self.routines,
+            Space.TYPE: self.types,
+        }
+        is_wanting = False
+        for use in resolution.open_uses:
+            wanted = names.get(use.space) if use.space is not None else None
+            if wanted is not None and not use.name.text.startswith("$"):
+                wanted.setdefault(use.name.key, (module, use.name))
+                is_wanting = True
+        for name, answer in resolution.answers.items():
+            if not isinstance(answer, Found) or not isinstance(answer.scope, SystemScope):
+                continue
+            if _is_of_config(answer):
+                known = name.key in load_library().data
+                (self.data if known else self.defaults).setdefault(name.key, (module, name))
+            elif answer.symbol.kind is Kind.ROUTINE and answer.symbol.given == UNKNOWN:
+                self.routines.setdefault(name.key, (module, name))
+                is_wanting = True
+        if is_wanting:
+            self.modules.append(module)
+
+
+def _is_of_config(found: Found) -> bool:
+    """Whether it is data that a $config.dat declares, and this project has none that does."""
+    if not isinstance(found.scope, SystemScope) or found.symbol.kind is not Kind.VARIABLE:
+        return False
+    name = found.symbol.name
+    return not name.startswith("$") and bool(found.scope.system.variables[name].file)
+
+
+def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
+    """Add stand-ins to a project; ``sources`` are the texts of its files by path.
+
+    A project that lacks nothing comes back as it is.
+    """
+    wanted = _Wanted()
+    for module in project.modules:
+        if module.syntax is not None:
+            wanted.take(module, resolve(project, module))
+    if not (wanted.data or wanted.routines or wanted.types):
+        return Completed(project, (), _listed(wanted, sources))
+    listed = _listed(wanted, sources)
+    made = _Making(project, wanted)
+    for number in range(_ROUNDS):
+        if not made.improve(sources, is_last=number == _ROUNDS - 1):
+            break
+    return Completed(made.project, tuple(made.sources()), listed)
+
+
+def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ...]:
+    library = load_library()
+    found = []
+    kinds: tuple[tuple[_Kind, _Places, Mapping[str, object]], ...] = (
+        ("routine", wanted.routines, library.routines),
+        ("type", wanted.types, library.types),
+        ("variable", wanted.data, library.data),
+    )
+    for kind, names, known in kinds:
+        for key, (module, name) in names.items():
+            origin: Origin = "library" if key in known else "signature"
+            found.append(_stand_in(name, kind, origin, module, sources))
+    for module, name in wanted.defaults.values():
+        found.append(_stand_in(name, "variable", "default", module, sources))
+    return tuple(found)
+
+
+def _stand_in(
+    name: ast.Name,
+    kind: _Kind,
+    origin: Origin,
+    module: Module,
+    sources: Mapping[str, Source],
+) -> StandIn:
+    line = sources[module.path].place(name.span[0])[0]
+    return StandIn(name.text, kind, origin, module.path, line)
+
+
+class _Making:
+    """Stand-ins in the making: each round knows the types that the last one has found."""
+
+    def __init__(self, project: Project, wanted: _Wanted) -> None:
+        self._original = project
+        self._wanted = wanted
+        self._texts: dict[str, str] = {}
+        self._files: dict[tuple[str, str], File] = {}
+        self._add_library()
+        self.project = self._linked()
+
+    def sources(self) -> Iterator[Source]:
+        """The stand-ins as files."""
+        for path, text in sorted(self._texts.items()):
+            yield Source(text, path)
+
+    def improve(self, sources: Mapping[str, Source], *, is_last: bool) -> bool:
+        """Make declarations of what is known now; whether they differ from those before."""
+        library, wanted = load_library(), self._wanted
+        checked = [
+            check_module(self.project, module, sources[module.path]) for module in wanted.modules
+        ]
+        unknown = [name for name in wanted.types if name not in library.types]
+        uses = Uses(
+            self.project,
+            [name for name in wanted.data if name not in library.data],
+            [name for name in wanted.routines if name not in library.routines],
+            unknown,
+        )
+        for one in checked:
+            uses.read(one)
+        values = {
+            datum.type: self._value(datum)
+            for name, datum in library.data.items()
+            if name == f"{datum.type}{_DEFAULT}"
+        }
+        signatures = Signatures(self._enumerations(), self._type, values)
+        before = dict(self._texts)
+        for name in unknown:
+            signatures.type(name, uses.types[name])
+        for name, routine in uses.routines.items():
+            self._texts[_path(name)] = signatures.routine(name, routine)
+        data = [
+            line
+            for name, use in uses.data.items()
+            for line in signatures.data(name, use, is_last=is_last)
+        ]
+        self._texts[_data_path()] = self._data_list(signatures, data)
+        if self._texts == before and not is_last:
+            return True
+        self.project = self._linked()
+        return not is_last
+
+    # ------------------------------------------------------------------------- the library
+
+    def _add_library(self) -> None:
+        """Routines of the library that are wanted, and what they want in turn."""
+        library, wanted = load_library(), self._wanted
+        known: set[str] = set()
+        while known != set(wanted.routines):
+            known = set(wanted.routines)
+            for name in known & set(library.routines):
+                self._texts[_path(name)] = library.routines[name]
+            project = self._linked()
+            inner = _Wanted()
+            for module in project.modules:
+                if module.folder == FOLDER and module.syntax is not None:
+                    inner.take(module, resolve(project, module))
+            for mine, more in (
+                (wanted.routines, inner.routines),
+                (wanted.data, inner.data),
+                (wanted.types, inner.types),
+            ):
+                for name in more:
+                    if name in library.routines or name in library.data or name in library.types:
+                        mine.setdefault(name, self._first_use())
+        self._texts[_data_path()] = self._data_list(None, [])
+
+    def _first_use(self) -> tuple[Module, ast.Name]:
+        return next(iter((self._wanted.routines | self._wanted.data).values()))
+
+    def _data_list(self, signatures: Signatures | None, lines: Sequence[str]) -> str:
+        library = load_library()
+        texts = [library.types[one] for one in self._wanted.types if one in library.types]
+        if signatures is not None:
+            texts += signatures.types.values()
+        for name in self._wanted.data:
+            datum = library.data.get(name)
+            if datum is not None:
+                texts.append(f"DECL GLOBAL {datum.type} {name}={self._value(datum)}")
+        return "\n".join([f"DEFDAT {_LIST} PUBLIC", *texts, *lines, "ENDDAT", ""])
+
+    def _value(self, datum: Datum) -> str:
+        """The value of a datum of the library, with the members that its type has here."""
+        type_ = self._type(datum.type)
+        if datum.members is None or not isinstance(type_, Structure):
+            return datum.value
+        known = {member.name.upper() for member in type_.members}
+        return f"{{{','.join(text for name, text in datum.members.items() if name in known)}}}"
+
+    # ------------------------------------------------------------------------- the project
+
+    def _linked(self) -> Project:
+        texts = sorted(self._texts.items())
+        for path, text in texts:
+            if (path, text) not in self._files:
+                syntax = read_module(text, path)
+                assert isinstance(syntax, ast.Module), f"stand-ins can be read: {syntax}"
+                self._files[path, text] = File(path, syntax)
+        return extended(self._original, [self._files[one] for one in texts])
+
+    def _type(self, name: str) -> Type | None:
+        project = getattr(self, "project", self._original)
+        found = project.scope(project.modules[0]).find(Space.TYPE, name.upper())
+        return project.types.of(found) if isinstance(found, Found) else None
+
+    def _enumerations(self) -> Iterator[Enumeration]:
+        for module in self.project.modules:
+            if module.table is None or module.folder == FOLDER:
+                continue
+            for space, symbol in module.table.table.symbols():
+                if space is Space.TYPE and symbol.kind is Kind.ENUMERATION:
+                    found = self._type(symbol.key)
+                    if isinstance(found, Enumeration):
+                        yield found
+
+
+def _path(name: str) -> str:
+    return f"{FOLDER}/{name}.src"
+
+
+def _data_path() -> str:
+    return f"{FOLDER}/{_LIST}.dat"
+
+
+def summary(stand_ins: Sequence[StandIn]) -> str:
+    """One line: what stood in, by where it came from, each with its first use."""
+    parts = []
+    for origin, words in _ORIGINS.items():
+        some = [one for one in stand_ins if one.origin == origin]
+        shown = [f"{one.name} ({one.path.rpartition('/')[2]}:{one.line})" for one in some]
+        more = [f"{len(shown) - _MOST_SHOWN} more"] if len(shown) > _MOST_SHOWN else []
+        if shown:
+            parts.append(f"{words} {', '.join(shown[:_MOST_SHOWN] + more)}")
+    return "; ".join(parts)

@@ -1,0 +1,84 @@
+"""What controllers and their packages bring along, as KRL of our own in ``library/``.
+
+A backup often lacks the routines behind inline forms, and $config.dat with what they need. They are
+written from the rules and from public manuals. Each routine and each declaration stands alone, so
+that only what a backup lacks is taken; the routines of spline forms are those of generated cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+
+__all__ = ["Datum", "Library", "load_library"]
+
+_SHARED = ("bas_spline.src", "ir_stopm.src")
+
+
+@dataclass(frozen=True, slots=True)
+class Datum:
+    """A variable: the name of its type, and its value, of an aggregate by its members."""
+
+    type: str
+    value: str
+    members: Mapping[str, str] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """By name in upper case: texts of routines and of types, and variables with their values."""
+
+    routines: Mapping[str, str]
+    types: Mapping[str, str]
+    data: Mapping[str, Datum]
+
+
+@dataclass(slots=True)
+class _Reader:
+    routines: dict[str, str] = field(default_factory=dict)
+    types: dict[str, str] = field(default_factory=dict)
+    data: dict[str, Datum] = field(default_factory=dict)
+
+    def take(self, text: str) -> None:
+        module = read_module(text)
+        assert isinstance(module, ast.Module), "our own files can be read"
+        if isinstance(module.content, ast.Program):
+            for routine in module.content.routines:
+                self.routines[routine.name.key] = text[slice(*routine.span)] + "\n"
+            return
+        for item in module.content.items:
+            if isinstance(item, ast.Enumeration | ast.Structure):
+                self.types[item.name.key] = text[slice(*item.span)]
+            elif isinstance(item, ast.VariableDeclaration):
+                for one in item.declarators:
+                    self.data[one.name.key] = _datum(text, item.type.key, one.value)
+
+
+def _datum(text: str, type_: str, value: ast.Expression | None) -> Datum:
+    assert value is not None, "each datum of the library has a value"
+    members = None
+    if isinstance(value, ast.Aggregate):
+        members = {part.name.key: text[slice(*part.span)] for part in value.components}
+    return Datum(type_, text[slice(*value.span)], members)
+
+
+@cache
+def load_library() -> Library:
+    """The library that belongs to this package."""
+    reader = _Reader()
+    for file in _files():
+        reader.take(file.read_text(encoding="utf-8"))
+    return Library(reader.routines, reader.types, reader.data)
+
+
+def _files() -> Iterator[Traversable]:
+    folder = resources.files("interp.standins").joinpath("library")
+    yield from sorted(folder.iterdir(), key=lambda file: file.name)
+    shared = resources.files("grammar.generation.cells").joinpath("texts")
+    yield from (shared.joinpath(name) for name in _SHARED)

@@ -1,0 +1,278 @@
+"""Declarations for names that nothing declares, from what their uses tell.
+
+A routine becomes its signature alone: it does nothing, gives variables passed to it a value where
+they have none, and returns a default. The defaults are those with which a program goes on: TRUE for
+a function that tells whether something has worked, but FALSE where a WHILE waits for its end; 0 for
+its numbers; for a number that nothing assigns the first that a SWITCH asks for, else 1; for
+positions one where the arm may stand. What is only waited for, and never assigned, is an input.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice, product
+from math import prod
+from typing import Final
+
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    UNKNOWN,
+    Array,
+    Constant,
+    Enumeration,
+    Scalar,
+    Structure,
+    Text,
+    Type,
+    is_axes,
+    is_cartesian,
+)
+from interp.standins.uses import DataUse, RoutineUse
+
+__all__ = ["Signatures"]
+
+#: Where the arm may stand, away from the singularity of its wrist.
+_UPRIGHT: Final = {"A1": "0.0", "A2": "-90.0", "A3": "90.0", "A5": "45.0"}
+_AXES: Final = frozenset({f"A{number}" for number in range(1, 7)})
+_EXTERNAL: Final = frozenset({f"E{number}" for number in range(1, 7)})
+_FRAME: Final = frozenset("XYZABC")
+_AXIS_MOTIONS: Final = frozenset({"PTP", "SPTP", "PTP_REL", "SPTP_REL"})
+_TEXT_LENGTH: Final = 80
+#: Elements in each dimension, by how many there are; more where an index is a larger number.
+_ELEMENTS: Final = {1: 32, 2: 8, 3: 4}
+_MOST_ELEMENTS: Final = 4096
+#: More elements than these get no value.
+_MOST_VALUES: Final = 64
+_FIRST_INPUT: Final = 1024
+_LONGEST: Final = 20
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """A type as it is written, and a value of it; ``is_text``: CHAR in a row."""
+
+    name: str
+    value: str
+    is_text: bool = False
+
+
+class Signatures:
+    """Makes declarations; ``find_type`` gives a type of the project that is seen everywhere.
+
+    ``values`` are defaults by the names of their types, where zeros will not do. ``types`` are the
+    lines of new types, by name in upper case.
+    """
+
+    def __init__(
+        self,
+        enumerations: Iterable[Enumeration],
+        find_type: Callable[[str], Type | None],
+        values: Mapping[str, str],
+    ) -> None:
+        self.types: dict[str, str] = {}
+        self._values = values
+        self._enumerations = list(enumerations)
+        self._find_type = find_type
+        self._input = _FIRST_INPUT
+
+    # ------------------------------------------------------------------------- data
+
+    def data(self, name: str, use: DataUse, *, is_last: bool) -> list[str]:
+        """The lines that declare a variable, none where nothing tells its type.
+
+        When ``is_last``, a variable of which nothing is known is an INT.
+        """
+        kind = self._kind(name, use)
+        if kind is None and not is_last:
+            return []
+        kind = kind or self._number(use)
+        if kind.name == "BOOL" and use.is_waited_for and not use.is_assigned and not use.indices:
+            self._input -= 1
+            return [f"GLOBAL SIGNAL {name} $IN[{self._input + 1}]"]
+        if kind.is_text and use.indices <= 1:
+            return [f"DECL GLOBAL CHAR {name}[{_TEXT_LENGTH}]", f'{name}[]=" "']
+        if not use.indices:
+            return [f"DECL GLOBAL {kind.name} {name}={kind.value}"]
+        sizes = self._sizes(use, is_text=kind.is_text)
+        lines = [f"DECL GLOBAL {kind.name} {name}[{','.join(map(str, sizes))}]"]
+        if use.is_assigned:  # by the program, before it reads them
+            return lines
+        counted = sizes[:-1] if kind.is_text else sizes
+        elements = product(*(range(1, size + 1) for size in counted))
+        for indices in islice(elements, _MOST_VALUES):
+            place = ",".join(map(str, indices)) + ("," if kind.is_text else "")
+            lines.append(f"{name}[{place}]={kind.value}")
+        return lines
+
+    def type(self, name: str, use: DataUse) -> None:
+        """Declare a type that only its name is known of, from how its variables are used."""
+        if use.constants and not use.members:
+            self.types[name] = f"GLOBAL ENUM {name} {','.join(use.constants.values())}"
+        else:
+            self._structure(name, use)
+
+    def _kind(self, name: str, use: DataUse) -> _Kind | None:
+        numbers = [one for one in use.types if one in (INT, REAL)]
+        for one in use.types:
+            if one not in numbers:
+                known = self._known(one, use)
+                if known is not None:
+                    return known
+        if use.constants:
+            return self._enumeration(name, use)
+        members = set(use.members)
+        if members:
+            if members <= _AXES | _EXTERNAL:
+                return self._named("E6AXIS")
+            if members <= _FRAME and not use.motions:
+                return self._named("FRAME")
+            if members <= _FRAME | _EXTERNAL | {"S", "T"}:
+                return self._position("E6POS")
+            made = f"{name[:_LONGEST]}_T"
+            return _Kind(made, self._structure(made, use))
+        if use.motions:
+            return self._position("E6AXIS" if use.motions <= _AXIS_MOTIONS else "E6POS")
+        if use.is_text:
+            return _Kind("CHAR", '" "', is_text=True)
+        return self._number(use) if numbers else None
+
+    def _number(self, use: DataUse) -> _Kind:
+        value = "0" if use.is_assigned else use.asked_for or "1"
+        return _Kind("REAL", f"{value}.0") if REAL in use.types else _Kind("INT", value)
+
+    def _known(self, type_: Type, use: DataUse) -> _Kind | None:
+        if type_ in (BOOL, CHAR):
+            return _Kind(str(type_), "FALSE" if type_ == BOOL else '" "', use.is_text)
+        if not isinstance(type_, Structure | Enumeration) or self._find_type(type_.name) != type_:
+            return None
+        if use.motions and (is_axes(type_) or is_cartesian(type_)):
+            return self._position(type_.name)
+        value = self._values.get(type_.name.upper())
+        return _Kind(type_.name, default(type_) if value is None else value)
+
+    def _named(self, name: str) -> _Kind:
+        found = self._find_type(name)
+        assert found is not None, "every controller has it"
+        return _Kind(name, default(found))
+
+    def _position(self, name: str) -> _Kind:
+        """A target: axes upright; of a pose nothing is told, so that the arm stays [POS-06]."""
+        found = self._find_type(name)
+        is_pose = found is not None and is_cartesian(found)
+        if is_pose:
+            return _Kind(name, "{E1 0.0}" if name in ("E6POS", "E3POS") else "{A 0.0}")
+        return self._named(name)
+
+    def _enumeration(self, name: str, use: DataUse) -> _Kind:
+        first = next(iter(use.constants.values()))
+        for one in self._enumerations:
+            has_all = not one.is_open and all(constant in one for constant in use.constants)
+            if has_all and self._find_type(one.name) == one:
+                return _Kind(one.name, f"#{first}")
+        made = f"{name[:_LONGEST]}_E"
+        self.types[made] = f"GLOBAL ENUM {made} {','.join(use.constants.values())}"
+        return _Kind(made, f"#{first}")
+
+    def _structure(self, name: str, use: DataUse) -> str:
+        """Declare a structure with the members that are used; its value."""
+        members, values = [], []
+        for member, inner in use.members.items():
+            kind = self._kind(f"{name}_{member}", inner) or _Kind("INT", "0")
+            sizes = f"[{_TEXT_LENGTH}]" if kind.is_text else ""
+            if inner.indices and not kind.is_text:
+                sizes = f"[{','.join(map(str, self._sizes(inner, is_text=False)))}]"
+            members.append(f"{kind.name} {member}{sizes}")
+            if not sizes or kind.is_text:
+                values.append(f"{member}{'[]' if kind.is_text else ''} {kind.value}")
+        self.types[name] = f"GLOBAL STRUC {name} {','.join(members) or 'INT UNUSED'}"
+        return f"{{{','.join(values) or 'UNUSED 0'}}}"
+
+    @staticmethod
+    def _sizes(use: DataUse, *, is_text: bool) -> Sequence[int]:
+        count = min(use.indices, 3)
+        sizes = [max(_ELEMENTS[count], largest) for largest in use.largest[:count]]
+        if prod(sizes) > _MOST_ELEMENTS:
+            sizes = [_ELEMENTS[count]] * count
+        if is_text:
+            sizes[-1] = _TEXT_LENGTH
+        return sizes
+
+    # ------------------------------------------------------------------------- routines
+
+    def routine(self, name: str, use: RoutineUse) -> str:
+        """The text of a routine, its signature alone."""
+        heads, declared, body = [], [], []
+        for place, given in enumerate(use.arguments, start=1):
+            parameter = f"P{place}"
+            kind, is_out = self._parameter(f"{name}_{parameter}", given)
+            brackets = "[]" if kind.is_text else ""
+            heads.append(f"{parameter}{brackets} :{'OUT' if is_out else 'IN'}")
+            declared.append(f"DECL {kind.name} {parameter}{brackets}")
+            if is_out and not kind.is_text:
+                body += [
+                    f'IF VARSTATE("{parameter}")<>#INITIALIZED THEN',
+                    f"{parameter}={kind.value}",
+                    "ENDIF",
+                ]
+        lines = [f"GLOBAL DEF {name} ({','.join(heads)} )", *declared, *body, "END"]
+        if use.is_function:
+            kind = self._kind(f"{name}_R", use.result) or self._number(DataUse(is_assigned=True))
+            value = kind.value
+            if kind.name == "BOOL":
+                value = "FALSE" if use.result.is_left_by_false else "TRUE"
+            elif kind.name in ("INT", "REAL"):
+                value = "0" if kind.name == "INT" else "0.0"
+            lines = [
+                f"GLOBAL DEFFCT {kind.name} {name} ({','.join(heads)} )",
+                *declared,
+                f"DECL {kind.name} RESULT",
+                *body,
+                f"RESULT={value}",
+                "RETURN RESULT",
+                "ENDFCT",
+            ]
+        return "\n".join(lines) + "\n"
+
+    def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool]:
+        use = DataUse(is_assigned=True)
+        for type_, _ in given:
+            match type_:
+                case Constant(name=constant):
+                    use.constants.setdefault(constant.upper(), constant)
+                case Text() | Array(element=Scalar(name="CHAR")):
+                    use.is_text = True
+                case _:
+                    use.types.append(type_)
+        kind = self._kind(name, use) or self._number(use)
+        is_out = bool(given) and all(
+            is_variable and str(type_) == kind.name for type_, is_variable in given
+        )
+        return kind, is_out
+
+
+def default(type_: Type) -> str:
+    """A value of a type, as it is written in a data list."""
+    match type_:
+        case Enumeration(constants=constants):
+            return f"#{constants[0]}"
+        case Structure(members=members) if is_axes(type_):
+            axes = (f"{one.name} {_UPRIGHT.get(one.name.upper(), '0.0')}" for one in members)
+            return f"{{{','.join(axes)}}}"
+        case Structure():
+            return f"{{{','.join(_components(type_))}}}"
+        case Scalar():
+            return {REAL: "0.0", BOOL: "FALSE", CHAR: '" "'}.get(type_, "0")
+    return "0"
+
+
+def _components(type_: Structure) -> Iterator[str]:
+    for member in type_.members:
+        if isinstance(member.type, Array):
+            if member.type.element == CHAR and len(member.type.sizes) == 1:
+                yield f'{member.name}[] " "'
+        elif member.type != UNKNOWN:
+            yield f"{member.name} {default(member.type)}"

@@ -1,0 +1,384 @@
+"""What the uses of undeclared names tell of them: a type, indices, members, arguments.
+
+A name that no file declares is used all the same. ``X=3.5`` says that X is a number, ``WAIT FOR X``
+that it is a truth value, ``PTP X`` that it is a position, ``X[2].NR`` that it is an array of
+structures. `Uses` gathers this over the files of a project; nothing is guessed here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from grammar.check.framework import Checked
+from grammar.semantics.link import Project
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind, RoutineSymbol
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    UNKNOWN,
+    Aggregate,
+    Array,
+    Constant,
+    Enumeration,
+    Scalar,
+    Structure,
+    Text,
+    Type,
+)
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import walk
+
+__all__ = ["FOLDER", "DataUse", "RoutineUse", "Uses"]
+
+#: The folder that stand-ins seem to lie in; no file of a backup lies there.
+FOLDER = "<stand-in>"
+
+_LOGICAL = frozenset({"AND", "OR", "EXOR"})
+_BITWISE = frozenset({"B_AND", "B_OR", "B_EXOR"})
+_RELATIONS = frozenset({"==", "<>", "<", ">", "<=", ">="})
+
+
+@dataclass(slots=True, eq=False)
+class DataUse:
+    """How a variable, a member or a result is used.
+
+    ``types`` are those that it was met with, in the order of the text; ``indices`` is the most
+    indices at once, 0 where there is none, and ``largest`` the largest number in each place.
+    ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
+    kinds of motions that go to it. ``asked_for`` is the first number that a
+    SWITCH or a comparison asks for.
+    """
+
+    types: list[Type] = field(default_factory=list)
+    members: dict[str, DataUse] = field(default_factory=dict)
+    constants: dict[str, str] = field(default_factory=dict)
+    motions: set[str] = field(default_factory=set)
+    indices: int = 0
+    largest: list[int] = field(default_factory=lambda: [0, 0, 0])
+    is_text: bool = False
+    is_assigned: bool = False
+    is_waited_for: bool = False
+    is_left_by_false: bool = False
+    asked_for: str = ""
+
+    def member(self, name: ast.Name) -> DataUse:
+        """How a member of it is used."""
+        return self.members.setdefault(name.key, DataUse())
+
+    @property
+    def is_told(self) -> bool:
+        """Whether anything tells its type."""
+        return bool(self.types or self.members or self.constants or self.motions or self.is_text)
+
+
+@dataclass(slots=True, eq=False)
+class RoutineUse:
+    """How a routine is called: what stands in each place of its arguments."""
+
+    result: DataUse = field(default_factory=DataUse)
+    is_function: bool = False
+    arguments: list[list[tuple[Type, bool]]] = field(default_factory=list)
+
+
+class Uses:
+    """Gathers the uses of names that are wanted: ``data``, ``routines`` and ``types`` by name."""
+
+    def __init__(
+        self,
+        project: Project,
+        data: Iterable[str],
+        routines: Iterable[str],
+        types: Iterable[str],
+    ) -> None:
+        self._project = project
+        self.types: Mapping[str, DataUse] = {name: DataUse() for name in types}
+        self.data: Mapping[str, DataUse] = {name: DataUse() for name in data}
+        self.routines: Mapping[str, RoutineUse] = {name: RoutineUse() for name in routines}
+        self._checked: Checked | None = None
+        self._result: Type = UNKNOWN
+        self._statements: set[ast.Call] = set()
+
+    def read(self, checked: Checked) -> None:
+        """Look at one file."""
+        syntax = checked.module.syntax
+        assert syntax is not None, "only what can be read is looked at"
+        self._checked = checked
+        if isinstance(syntax.content, ast.DataList):
+            self._look(syntax)
+            return
+        for routine in syntax.content.routines:
+            found = checked.resolution.found(routine.name)
+            self._result = UNKNOWN if found is None else self._project.types.of(found)
+            self._look(routine)
+
+    # ------------------------------------------------------------------------- statements
+
+    def _look(self, root: ast.Node) -> None:
+        for node in walk(root):
+            rule = _RULES.get(type(node))
+            if rule is not None:
+                rule(self, node)
+
+    def _statement(self, node: ast.CallStatement) -> None:
+        self._statements.add(node.call)
+
+    def _assignment(self, node: ast.Assignment) -> None:
+        self._unify(node.target, node.value)
+        use = self._use(node.target)
+        if use is not None:
+            use.is_assigned = True
+
+    def _condition(self, node: ast.If | ast.Repeat | ast.InterruptDeclaration) -> None:
+        self._expect(node.condition, BOOL)
+
+    def _while(self, node: ast.While) -> None:
+        self._expect(node.condition, BOOL)
+        use = self._use(node.condition)
+        if use is not None:
+            use.is_left_by_false = True
+
+    def _wait(self, node: ast.WaitFor) -> None:
+        self._expect(node.condition, BOOL)
+        for one in walk(node.condition):
+            use = self._use(one) if isinstance(one, ast.Variable) else None
+            if use is not None:
+                use.is_waited_for = True
+
+    def _pause(self, node: ast.WaitSeconds) -> None:
+        self._expect(node.duration, REAL)
+
+    def _for(self, node: ast.For) -> None:
+        for number in (node.first, node.last, node.step):
+            if number is not None:
+                self._expect(number, INT)
+
+    def _return(self, node: ast.Return) -> None:
+        if node.value is not None:
+            self._expect(node.value, self._result)
+
+    def _trigger(self, node: ast.Trigger) -> None:
+        self._expect(node.place, REAL)
+        self._expect(node.delay, REAL)
+
+    def _unary(self, node: ast.Unary) -> None:
+        if node.operator in ("NOT", "B_NOT"):
+            self._expect(node.operand, BOOL if node.operator == "NOT" else INT)
+
+    def _subscript(self, node: ast.Subscript) -> None:
+        self._use(node)
+        for index in node.indices:
+            if index is not None:
+                self._expect(index, INT)
+
+    def _switch(self, node: ast.Switch) -> None:
+        for branch in node.branches:
+            for value in branch.values:
+                self._unify(node.selector, value)
+        for branch in node.branches[:1]:
+            for value in branch.values:
+                self._meets(node.selector, value)
+
+    def _motion(self, node: ast.Motion) -> None:
+        for point in (node.auxiliary, node.target):
+            for use in self._targets(point):
+                use.motions.add(node.kind)
+        if node.angle is not None:
+            self._expect(node.angle, REAL)
+
+    def _targets(self, node: ast.Expression | None) -> Iterator[DataUse]:
+        if isinstance(node, ast.Parenthesised):
+            yield from self._targets(node.inner)
+        elif isinstance(node, ast.Binary) and node.operator == ":":
+            yield from self._targets(node.right)
+        elif node is not None:
+            use = self._use(node)
+            if use is not None:
+                yield use
+
+    def _binary(self, node: ast.Binary) -> None:
+        if node.operator in _LOGICAL | _BITWISE:
+            wanted = BOOL if node.operator in _LOGICAL else INT
+            self._expect(node.left, wanted)
+            self._expect(node.right, wanted)
+        elif node.operator in _RELATIONS:
+            self._unify(node.left, node.right)
+            if node.operator in ("==", "<>"):
+                self._meets(node.left, node.right)
+                self._meets(node.right, node.left)
+        elif node.operator == ":":
+            frame = self._project.types.of(_system_type(self._project, "FRAME"))
+            self._expect(node.left, frame)
+            self._expect(node.right, frame)
+        else:
+            self._unify(node.left, node.right)
+
+    def _meets(self, node: ast.Expression, value: ast.Expression) -> None:
+        """A number is asked whether it is another one: that is a value that it may have."""
+        use = self._use(node)
+        if use is not None and isinstance(value, ast.IntegerLiteral) and not use.asked_for:
+            use.asked_for = str(value.value)
+
+    def _call(self, node: ast.Call) -> None:
+        is_value = node not in self._statements
+        assert self._checked is not None, "a file is looked at"
+        use = self.routines.get(node.name.key)
+        found = self._checked.resolution.found(node.name)
+        if use is not None and self._is_undeclared(node.name):
+            use.is_function = use.is_function or is_value
+            for place, argument in enumerate(node.arguments):
+                if place == len(use.arguments):
+                    use.arguments.append([])
+                if argument is not None:
+                    type_ = self._type(argument)
+                    if isinstance(argument, ast.Subscript) and argument.indices == (None,):
+                        type_ = type_ if isinstance(type_, Array) else Array(CHAR, (None,))
+                        self._expect(argument, type_)
+                    use.arguments[place].append((type_, self._is_variable(argument)))
+        elif found is not None and isinstance(found.symbol, RoutineSymbol):
+            for parameter, argument in zip(found.symbol.parameters, node.arguments, strict=False):
+                if argument is not None:
+                    self._expect(argument, self._project.types.of(Found(parameter, found.scope)))
+
+    def _is_undeclared(self, name: ast.Name) -> bool:
+        """Whether no file declares a name here: another may have it for itself."""
+        assert self._checked is not None, "a file is looked at"
+        found = self._checked.resolution.found(name)
+        if found is None or found.module is None or found.symbol.kind is Kind.EXTERNAL:
+            return True
+        return found.module.folder == FOLDER
+
+    def _is_variable(self, node: ast.Expression) -> bool:
+        """Whether it can be changed; system variables are left alone."""
+        while isinstance(node, ast.Subscript | ast.Member):
+            node = node.base
+        if not isinstance(node, ast.Variable) or node.name.text.startswith("$"):
+            return False
+        assert self._checked is not None, "a file is looked at"
+        found = self._checked.resolution.found(node.name)
+        return found is not None and found.module is not None and found.symbol.kind in _PLAIN
+
+    # ------------------------------------------------------------------------- expressions
+
+    def _use_of(self, name: ast.Name) -> DataUse | None:
+        """The use of an undeclared variable, or of the undeclared type of a declared one."""
+        if self._is_undeclared(name):
+            return self.data.get(name.key)
+        assert self._checked is not None, "a file is looked at"
+        found = self._checked.resolution.found(name)
+        written = None if found is None else found.symbol.type
+        return None if written is None else self.types.get(written.key)
+
+    def _use(self, node: ast.Expression) -> DataUse | None:
+        """The use of the undeclared name, or the part of one, that an expression is."""
+        match node:
+            case ast.Variable(name=name):
+                return self._use_of(name)
+            case ast.Parenthesised(inner=inner):
+                return self._use(inner)
+            case ast.Call(name=name):
+                use = self.routines.get(name.key) if self._is_undeclared(name) else None
+                return None if use is None else use.result
+            case ast.Member(base=base, name=name):
+                use_of_base = self._use(base)
+                return None if use_of_base is None else use_of_base.member(name)
+            case ast.Subscript(base=base, indices=indices):
+                array = self._use(base)
+                if array is not None:
+                    array.indices = max(array.indices, len(indices))
+                    for place, index in enumerate(indices[:3]):
+                        if isinstance(index, ast.IntegerLiteral):
+                            array.largest[place] = max(array.largest[place], index.value)
+                    array.is_text = array.is_text or indices[-1] is None
+                return array
+        return None
+
+    def _type(self, node: ast.Expression) -> Type:
+        match node:
+            case ast.IntegerLiteral() | ast.BitLiteral():
+                return INT
+            case ast.RealLiteral():
+                return REAL
+            case ast.BoolLiteral():
+                return BOOL
+            case ast.StringLiteral(text=text):
+                return Text(len(text))
+            case ast.EnumConstant(name=name):
+                return Constant(name.text)
+            case ast.Binary(operator=operator) if operator in _RELATIONS | _LOGICAL:
+                return BOOL
+        assert self._checked is not None, "a file is looked at"
+        found = self._checked.types.get(node, UNKNOWN)
+        if found == UNKNOWN and isinstance(node, ast.Variable):
+            symbol = self._checked.resolution.found(node.name)
+            found = UNKNOWN if symbol is None else self._project.types.of(symbol)
+        return found
+
+    def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
+        """Both sides are of one type."""
+        one, other = self._type(left), self._type(right)
+        self._expect(right, one)
+        self._expect(left, other)
+
+    def _expect(self, node: ast.Expression, type_: Type) -> None:
+        """An expression is of a type."""
+        while isinstance(node, ast.Parenthesised):
+            node = node.inner
+        if isinstance(node, ast.Unary) and type_ != UNKNOWN:
+            self._expect(node.operand, type_)
+        use = self._use(node)
+        if use is None or type_ == UNKNOWN:
+            if isinstance(node, ast.Binary) and type_ in (INT, REAL) and node.operator in "+-*/":
+                self._expect(node.left, type_)
+                self._expect(node.right, type_)
+            return
+        match type_:
+            case Constant(name=name):
+                use.constants.setdefault(name.upper(), name)
+            case Text() | Array(element=Scalar(name="CHAR")):
+                use.is_text = True
+            case Array(element=element, sizes=sizes):
+                use.indices = max(use.indices, len(sizes))
+                use.types.append(element)
+            case Aggregate(structure=structure, names=names):
+                if structure is not None:
+                    use.types.append(structure)
+                for name in () if structure is not None else names:
+                    use.members.setdefault(name.upper(), DataUse())
+            case Scalar() | Structure() | Enumeration():
+                use.types.append(type_)
+
+
+_PLAIN = (Kind.VARIABLE, Kind.PARAMETER)
+
+_RULES: Mapping[type[ast.Node], Callable[[Uses, Any], object]] = {
+    ast.Assignment: Uses._assignment,
+    ast.Binary: Uses._binary,
+    ast.Call: Uses._call,
+    ast.CallStatement: Uses._statement,
+    ast.For: Uses._for,
+    ast.If: Uses._condition,
+    ast.InterruptDeclaration: Uses._condition,
+    ast.Member: Uses._use,
+    ast.Motion: Uses._motion,
+    ast.Repeat: Uses._condition,
+    ast.Return: Uses._return,
+    ast.Subscript: Uses._subscript,
+    ast.Switch: Uses._switch,
+    ast.Trigger: Uses._trigger,
+    ast.Unary: Uses._unary,
+    ast.WaitFor: Uses._wait,
+    ast.WaitSeconds: Uses._pause,
+    ast.While: Uses._while,
+}
+
+
+def _system_type(project: Project, name: str) -> Found:
+    found = project.scope(project.modules[0]).find(Space.TYPE, name)
+    assert isinstance(found, Found), "the controller has it"
+    return found

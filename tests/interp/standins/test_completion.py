@@ -1,0 +1,187 @@
+"""Stand-ins: what an incomplete project gets, and that a complete one gets nothing."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+from grammar.syntax.source import Source
+from interp.controller.profile import Profile
+from interp.program.load import CheckedProgram, load
+from interp.session import EXECUTORS, RunResult, RunSetup, run_program
+
+HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\n"
+
+
+def _program(files: Mapping[str, str]) -> CheckedProgram:
+    sources = [Source(text, path) for path, text in files.items()]
+    return load(sources, next(iter(files)), strict=False, stands_in=True)
+
+
+def _run(program: CheckedProgram, executor: str = "tree") -> RunResult:
+    return run_program(program, RunSetup(executor=executor, is_full=True, is_tolerant=True))
+
+
+def _main(body: str, *, declared: str = "") -> CheckedProgram:
+    return _program({"main.src": f"DEF main ( )\n{declared}{body}END\n"})
+
+
+def _names(program: CheckedProgram) -> list[tuple[str, str, str]]:
+    return [(one.name, one.kind, one.origin) for one in program.stand_ins]
+
+
+def _outcome(run: RunResult) -> tuple[str, str]:
+    return run.outcome.ending, str(run.outcome.error or "")
+
+
+def _planned(run: RunResult) -> list[str]:
+    return [one.fields["motion_kind"] for one in run.events if one.kind == "motion_planned"]
+
+
+def _data_list(program: CheckedProgram) -> str:
+    """The declarations that stand in."""
+    sources = (unit.source for unit in program.units.values())
+    return next(source.text for source in sources if source.path.endswith("STANDIN.dat"))
+
+
+def test_complete_project() -> None:
+    """A project that lacks nothing has the same files as without stand-ins."""
+    text = f"DEF main ( )\n{HOME}help ( )\nEND\nDEF help ( )\nEND\n"
+    program = _program({"main.src": text})
+    assert ((), ["main.src"]) == (
+        program.stand_ins,
+        [one.module.path for one in program.units.values()],
+    )
+
+
+def test_files_of_the_project_win() -> None:
+    """A routine that the project has is executed, even where the library has one."""
+    files = {
+        "main.src": f"DEF main ( )\n{HOME}BAS (#INITMOV,0 )\nEND\n",
+        "bas.src": "DEF BAS (C :IN,V :IN )\nDECL BAS_COMMAND C\nREAL V\n$OUT[7]=TRUE\nEND\n",
+    }
+    run = _run(_program(files))
+    outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
+    assert ([7], "end") == (outputs, run.outcome.ending)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_inline_forms(executor: str) -> None:
+    """The commands that inline forms write run without $config.dat and BAS."""
+    body = (
+        "BAS (#INITMOV,0 )\nPDAT_ACT=PDEFAULT\nFDAT_ACT=FHOME\nBAS (#PTP_PARAMS,50 )\nPTP XHOME\n"
+        "LDAT_ACT=LDEFAULT\nBAS (#CP_PARAMS,0.5 )\nBAS (#TOOL,1 )\nBAS (#BASE,0 )\n"
+        "BAS (#ACC_CP,50 )\nBAS (#VEL_PTP,20 )\n"
+        "GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )\n"
+        "PTP {A1 10.0} C_PTP\nLIN_REL {X 10.0}\n"
+    )
+    run = _run(_main(body), executor)
+    moved = _planned(run)
+    assert (("end", ""), ["PTP", "PTP", "LIN"]) == (_outcome(run), moved)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_trace_of_a_signature(executor: str) -> None:
+    """A call of a routine that nothing declares is in the trace like any other call."""
+    run = _run(_main(f'{HOME}OPT_Start ("job",1,2.5 )\n'), executor)
+    calls = [event.fields["name"] for event in run.events if event.kind == "call"]
+    assert (("end", ""), ["OPT_START"]) == (_outcome(run), [name.upper() for name in calls])
+
+
+def test_result_of_a_function() -> None:
+    """A function that a condition asks succeeds, and one that a WHILE asks comes to its end."""
+    body = f"{HOME}IF NOT OPT_Ok ( ) THEN\nHALT\nENDIF\nWHILE OPT_Busy ( )\nENDWHILE\n"
+    assert ("end", "") == _outcome(_run(_main(body)))
+
+
+def test_variable_passed_out() -> None:
+    """A variable that an undeclared routine may set has a value behind the call."""
+    body = f"{HOME}OPT_Read (N )\n$OV_PRO=N+50\n"
+    run = _run(_main(body, declared="INT N\n"))
+    assert ("end", "") == _outcome(run)
+
+
+def test_status_structure_of_a_package() -> None:
+    """The type of a package has the members that are used, or those that manuals document."""
+    body = (
+        f'{HOME}RET=EKI_Open ("job")\nIF NOT RET.CONNECTED THEN\nHALT\nENDIF\n'
+        "STATE=OPT_State ( )\nIF STATE.COUNT>3 THEN\nHALT\nENDIF\n"
+    )
+    program = _main(body, declared="DECL EKI_STATUS RET\nDECL OPT_STATE STATE\n")
+    assert ("end", "") == _outcome(_run(program))
+    assert ("EKI_STATUS", "type", "library") in _names(program)
+    assert ("OPT_STATE", "type", "signature") in _names(program)
+
+
+def test_points_without_a_data_list() -> None:
+    """A point that no data list has is executed: a PTP goes upright, a LIN stays."""
+    run = _run(_main("PTP XP1\nLIN XP2\nPTP {A1 5.0}\n"))
+    planned = [
+        event.fields["motion_kind"] for event in run.events if event.kind == "motion_planned"
+    ]
+    assert (("end", ""), ["PTP", "LIN", "PTP"]) == (_outcome(run), planned)
+
+
+def test_input_that_is_waited_for() -> None:
+    """A truth value that is only waited for stands in as an input, which can come."""
+    program = _main(f"{HOME}WAIT FOR PartThere\n")
+    text = next(
+        unit.source.text for unit in program.units.values() if "STANDIN" in unit.source.path
+    )
+    assert "GLOBAL SIGNAL PARTTHERE $IN[1024]" in text
+
+
+def test_same_name_elsewhere() -> None:
+    """A name that another routine has for itself is no evidence for the undeclared one."""
+    files = {
+        "main.src": f"DEF main ( )\n{HOME}IF GATE THEN\nHALT\nENDIF\nEND\n",
+        "other.src": "DEF other ( )\nREAL GATE\nGATE=2.5\nEND\n",
+    }
+    program = _program(files)
+    text = next(
+        unit.source.text for unit in program.units.values() if "STANDIN" in unit.source.path
+    )
+    assert "DECL GLOBAL BOOL GATE=FALSE" in text
+
+
+def test_skipped_motion() -> None:
+    """With stand-ins a point out of reach is skipped with a message; the next motion is made."""
+    run = _run(_main(f"OPT ( )\n{HOME}LIN {{X 9000.0}}\nPTP {{A1 5.0}}\n"))
+    skipped = [(at.line, fault.number) for at, fault in run.controller.skipped_motions]
+    assert (("end", ""), [(4, 1366)]) == (_outcome(run), skipped)
+
+
+def test_strict_run() -> None:
+    """A run that is not tolerant fails at a point out of reach, stand-ins or not."""
+    program = _main(f"OPT ( )\n{HOME}LIN {{X 9000.0}}\n")
+    run = run_program(program, RunSetup(executor="tree"))
+    assert "fault" == run.outcome.ending
+
+
+def test_used_stand_ins() -> None:
+    """Only what files reached from a routine use is listed for it."""
+    files = {
+        "main.src": f"DEF main ( )\n{HOME}part ( )\nEND\n",
+        "part.src": "DEF part ( )\nOPT_A ( )\nEND\n",
+        "other.src": "DEF other ( )\nOPT_B ( )\nEND\n",
+    }
+    program = _program(files)
+    assert ["OPT_A"] == [one.name for one in program.used_stand_ins(program.start())]
+
+
+def test_arm_of_unknown_kinematics() -> None:
+    """Machine data of an arm that is not understood is replaced, with a note that says why."""
+    machine = "DEFDAT $MACHINE PUBLIC\nDECL REAL $LENGTH_A=300.0\nINT $TRAFO_AXIS=4\nENDDAT\n"
+    program = _program({"main.src": f"DEF main ( )\n{HOME}END\n", "$machine.dat": machine})
+    run = _run(program)
+    assert "end" == run.outcome.ending
+    assert "$machine.dat: " in run.machine_note
+
+
+def test_profile_is_strict_by_default() -> None:
+    """No profile that comes along is tolerant; a tolerant one differs in that only."""
+    profile = Profile.load()
+    assert (False, replace(profile, is_tolerant=True)) == (
+        profile.is_tolerant,
+        replace(profile, is_tolerant=True),
+    )

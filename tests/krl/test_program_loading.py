@@ -1,0 +1,100 @@
+"""Which files are one project, from wherever one enters it."""
+
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+from krl.program_loading import load_program, project_root
+
+FILES = {
+    "R1/Program/main.src": "DEF main ( )\nhelp ( )\nEND\n",
+    "R1/Program/Parts/part.src": "DEF part ( )\nhelp ( )\nEND\n",
+    "R1/System/help.src": "DEF help ( )\nHALT\nEND\n",
+    "R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
+    "STEU/Mada/$custom.dat": "DEFDAT $CUSTOM PUBLIC\nENDDAT\n",
+}
+
+
+def _backup(folder: Path, names: dict[str, str] | None = None) -> Path:
+    """A backup in a folder, with other names for some of its folders."""
+    for path, text in FILES.items():
+        parts = [(names or {}).get(part, part) for part in path.split("/")]
+        file = folder.joinpath(*parts)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    return folder
+
+
+def _files(file: Path) -> list[str]:
+    program, left = load_program(file)
+    assert [] == left
+    return sorted(unit.module.path for unit in program.units.values())
+
+
+@pytest.mark.parametrize("around", ["KRC", "backup", "backup/KRC"])
+@pytest.mark.parametrize("entry", ["Program/main", "Program/Parts/part", "System/help"])
+def test_entry_by_any_file(tmp_path: Path, around: str, entry: str) -> None:
+    """A file of a backup leads to all files of its controller, however deep it lies."""
+    backup = _backup(tmp_path / around)
+    assert sorted(FILES) == _files(backup / "R1" / f"{entry}.src")
+
+
+def test_drive_of_another_name(tmp_path: Path) -> None:
+    """A drive that is not called R1 is known by the folders in it."""
+    backup = _backup(tmp_path / "KRC", {"R1": "Robot_7"})
+    renamed = sorted(path.replace("R1/", "Robot_7/") for path in FILES)
+    assert renamed == sorted(_files(backup / "Robot_7" / "Program" / "main.src"))
+
+
+@pytest.mark.parametrize("folder", ["", "R1", "R1/Program", "R1/System", "R1/Program/Parts"])
+def test_entry_by_any_folder(tmp_path: Path, folder: str) -> None:
+    """A folder on the way to a file belongs to the same project as the file."""
+    backup = _backup(tmp_path / "KRC")
+    wanted = backup if folder else tmp_path / "KRC"
+    assert wanted == project_root(backup / folder)
+
+
+def test_two_controllers(tmp_path: Path) -> None:
+    """Two controllers side by side stay two, under whatever names."""
+    for name in ("left", "right"):
+        _backup(tmp_path / name, {"R1": "Robot"})
+    files = _files(tmp_path / "left" / "Robot" / "Program" / "main.src")
+    assert len(FILES) == len(files)
+
+
+def test_cut_at_the_drive(tmp_path: Path) -> None:
+    """What lies in R1 is one project without a folder of that name."""
+    backup = _backup(tmp_path / "all")
+    (backup / "R1").rename(tmp_path / "cut")
+    files = _files(tmp_path / "cut" / "Program" / "main.src")
+    drive = sorted(path.removeprefix("R1/") for path in FILES if path.startswith("R1/"))
+    assert drive == files
+
+
+def test_cut_at_the_programs(tmp_path: Path) -> None:
+    """What lies in Program is one project, entered by a file of any depth."""
+    backup = _backup(tmp_path / "all")
+    (backup / "R1" / "Program").rename(tmp_path / "cut")
+    found = [_files(tmp_path / "cut" / name) for name in ("main.src", "Parts/part.src")]
+    assert [["Parts/part.src", "main.src"]] * 2 == found
+
+
+def test_archive(tmp_path: Path) -> None:
+    """An archive has the same project as the folder that it was made of."""
+    with ZipFile(tmp_path / "cell.zip", "w") as archive:
+        for path, text in FILES.items():
+            archive.writestr(f"KRC/{path}", text)
+    files = _files(tmp_path / "cell.zip" / "KRC" / "R1" / "Program" / "main.src")
+    assert [f"KRC/{path}" for path in sorted(FILES)] == files
+
+
+def test_unreadable_file_is_left_out(tmp_path: Path) -> None:
+    """A file that cannot be read is left out with its reason, and the program is loaded."""
+    backup = _backup(tmp_path / "KRC")
+    (backup / "R1" / "System" / "broken.src").write_text("DEF broken ( )\nIF\nEND\n", "utf-8")
+    program, left = load_program(backup / "R1" / "Program" / "main.src")
+    assert (len(FILES), ["R1/System/broken.src"]) == (
+        len(program.units),
+        [reason.partition(":")[0] for reason in left],
+    )
