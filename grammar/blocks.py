@@ -2,7 +2,7 @@
 
 This is knowledge of the language that no grammar has to have: a program that cannot be read has no
 tree, and a grammar may have no rule yet for a block. Which statements lie in a block that was read
-is told by its node (`grammar.syntax.walk.bodies`).
+follows from its node (`grammar.syntax.walk.bodies`).
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ The advance run works ahead of the robot. A statement that has to be in step wit
 [ADV-04 to ADV-07]; then the robot stops exactly at the point before, and a motion that was to be
 approximated is not. CONTINUE takes the stop of the very next line back [ADV-08].
 
-All of this is lawful, so it is told as notes, and only to those who ask.
+All of this is lawful, so it is reported as notes, and only on demand.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """How routines are entered: by an interrupt, by a call, or as the program that somebody selects.
 
 BRAKE and RESUME belong to interrupts, and the first motion of a program has to be complete. Both
-can be judged where nothing else may enter a routine: its module tells all calls of a local one, and
-a project in which nothing is missing tells those of any other. A program, and not just a routine
+can be judged where nothing else may enter a routine: its module has all calls of a local one, and
+a project in which nothing is missing has those of any other. A program, and not just a routine
 that nobody calls, is what sets up its motions: ``BAS(#INITMOV, 0)``.
 """
 

@@ -185,7 +185,7 @@ def _joined(checker: TypeChecker, node: ast.Binary) -> Type:
 def _mixed(checker: TypeChecker, node: ast.Binary) -> Type:
     """Relations bind weakest, so ``A == 1 AND B == 2`` is ``(A == (1 AND B)) == 2`` [ARI-05].
 
-    Nobody means that. As the order of operators is recollection, what comes of it is told as
+    Nobody means that. As the order of operators is recollection, what comes of it is reported as
     one warning.
     """
     before = len(checker.diagnostics)

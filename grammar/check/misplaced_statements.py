@@ -1,7 +1,7 @@
 """What stands where it must not: in submit programs, in interrupt routines, before declarations.
 
 What an interrupt calls is known in its own module only: a routine of another module may be called
-by interrupts that nobody sees from here, and is left alone.
+by interrupts that are unknown here, and is left alone.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     for placed in routine.statements:
         statement = placed.statement
         if _is_in_spline(placed):
-            continue  # the block itself is told
+            continue  # the block itself is reported
         match statement:
             case ast.Motion(kind=kind) if kind != _ASYNCHRONOUS:
                 message = f"{kind} in a submit program"

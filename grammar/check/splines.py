@@ -51,7 +51,7 @@ def _block(context: Context, block: ast.SplineBlock) -> Iterator[Diagnostic]:
 
 
 def _ranges(context: Context, block: ast.SplineBlock) -> Iterator[Diagnostic]:
-    """CONST_VEL and TIME_BLOCK exclude one another: the second kind is told, once."""
+    """CONST_VEL and TIME_BLOCK exclude one another: the second kind is reported, once."""
     ranges = [
         item for item in block.items if isinstance(item, ast.ConstantVelocity | ast.TimeBlock)
     ]

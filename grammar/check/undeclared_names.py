@@ -60,13 +60,13 @@ _WORDS = {
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Tell the names that are certain to be unknown, each once in a file."""
-    told: set[tuple[Space, str]] = set()
+    reported: set[tuple[Space, str]] = set()
     for use in context.resolution.open_uses:
         if use.space not in _SLUGS or not isinstance(use.answer, NotFound):
             continue
         key = use.space, use.name.key
-        if key not in told:
-            told.add(key)
+        if key not in reported:
+            reported.add(key)
             yield _unknown(context, use)
     if context.module.suffix != ".dat" and context.project.data_of(context.module) is None:
         yield from _data_missing(context)

@@ -69,7 +69,7 @@ _WORDS = {
     "AT_LEAST": '">="',
 }
 _LAST = ("NEWLINE", "EOF")
-# Longer lists help nobody.
+# Longer lists are of no help.
 _MOST = 8
 
 

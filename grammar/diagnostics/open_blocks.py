@@ -1,4 +1,4 @@
-"""Which blocks are open at a line, told from the words that lines begin with.
+"""Which blocks are open at a line, known from the words that lines begin with.
 
 A failing program has no tree, and what people have to know about it is often the place of a block
 that was never closed.

@@ -3,7 +3,7 @@
 The recogniser tells the first token that no program could have, and all that could have come. Here
 that becomes a sentence. The mistakes that people make again and again are known by their tokens:
 ``=`` in a condition, END IF, ELSEIF, THEN left out, operators of C, a block that is not closed. All
-others are told with what was expected.
+others are reported with what was expected.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[Diagnostic]:
     """Findings for the failures of a text; those that only follow from others are left out."""
-    told = [failure for failure in failures if not failure.follows] or list(failures)
-    shown = told[:MOST_TOLD]
+    reported = [failure for failure in failures if not failure.follows] or list(failures)
+    shown = reported[:MOST_TOLD]
     blocks = open_blocks(source, (failure.line for failure in shown))
     found = [_finding(ErrorSite(failure, source, blocks[failure.line])) for failure in shown]
-    if len(told) > len(shown):
-        message = f"{len(told) - len(shown):,} more lines that cannot be read are not told"
+    if len(reported) > len(shown):
+        message = f"{len(reported) - len(shown):,} more lines that cannot be read are not told"
         found.append(diagnose("too-large", source.path, found[-1].region, message))
     return found
 
@@ -343,7 +343,7 @@ def _is_keyword(word: str) -> bool:
     return lexer.is_keyword(kind) and lexer.names[kind] not in names()
 
 
-#: In this order: the first that knows the mistake tells it.
+#: In this order: the first that knows the mistake reports it.
 _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
     _foreign,

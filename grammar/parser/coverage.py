@@ -84,7 +84,7 @@ class _Match:
 
 
 class GrammarCoverage:
-    """What the trees added so far exercise of one grammar; ``words`` as told above."""
+    """What the trees added so far exercise of one grammar; ``words`` as above."""
 
     def __init__(self, grammar: Grammar, words: Collection[str] = ()) -> None:
         self.grammar = grammar

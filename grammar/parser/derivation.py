@@ -128,7 +128,7 @@ class _Rules:
     ) -> Iterator[_Way]:
         """Ways on from one position of a rule; ``met`` counts how often each was come to."""
         met[position] += 1
-        if met[position] > 1:  # by rules that read nothing; what they lead to is told already
+        if met[position] > 1:  # by rules that read nothing; what they lead to is known already
             return
         for move in self._moves[position]:
             if move is None:

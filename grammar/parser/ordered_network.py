@@ -48,7 +48,7 @@ class OrderedAutomaton:
     def moves(self, state: int) -> list[tuple[str, int] | None]:
         """What comes next from a state, best first: a symbol and the state after it.
 
-        ``None`` stands for the end of the rule. Each is told once, where it is best.
+        ``None`` stands for the end of the rule. Each is given once, where it is best.
         """
         found: dict[tuple[str, int] | None, None] = {}
         seen = set()

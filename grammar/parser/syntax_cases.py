@@ -16,7 +16,7 @@
 
 Bars are lines of three or more signs. ``:error`` below the title says that the source is no
 program; the expectation is then ``LINE:COLUMN`` of the first token that no program has there, and
-the token. Blank lines around the source are no part of it. How trees are written is told in
+the token. Blank lines around the source are no part of it. How trees are written is described in
 `grammar.parser.sexpr`.
 
 ``python -m grammar.parser.syntax_cases PATH…`` tells which cases of files or folders differ. With
@@ -62,7 +62,7 @@ class SyntaxCase:
 
 
 def read_cases(text: str) -> list[SyntaxCase]:
-    """The cases of a file; raises `SyntaxCaseError` where it is not built as told above."""
+    """The cases of a file; raises `SyntaxCaseError` where it is not built as above."""
     lines = text.split("\n")
     bars = [i for i, line in enumerate(lines) if _BAR.fullmatch(line.rstrip())]
     if len(bars) % 2 or "".join(lines[: bars[0] if bars else None]).strip():

@@ -1,7 +1,7 @@
 """What operators, indices and components make of their operands, by the rules of ARI and TYP.
 
 Every function returns a `Typed`: the type of the result and the verdict on the operands. Where a
-verdict is bad the type is `UNKNOWN`, so that one fault is told once.
+verdict is bad the type is `UNKNOWN`, so that one fault is reported once.
 """
 
 from __future__ import annotations

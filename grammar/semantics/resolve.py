@@ -42,7 +42,7 @@ class Resolution:
     """The answers for one file, and those of its uses that lead to no declaration in the project.
 
     ``open_uses`` are in the order of the file. Calls of routines that only EXT announces are there
-    too: their answer is `Found`, but what they do is known to nobody.
+    too: their answer is `Found`, but what they do is unknown.
     """
 
     module: Module

@@ -2,8 +2,8 @@
 
 ``system/rules.tsv`` lists them with their tiers: P a manual page or a file written by KUKA, T a
 transcription of one, F practitioners, D measured on real controller files, R recollection of a
-manual, X a page of unknown origin. What rests on R or X alone is *unconfirmed*: it may be told, but
-not as an error.
+manual, X a page of unknown origin. What rests on R or X alone is *unconfirmed*: it may be
+reported, but not as an error.
 """
 
 from __future__ import annotations

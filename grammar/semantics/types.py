@@ -6,7 +6,7 @@ assigned to. `Unknown` is the type of all that comes from packages not at hand. 
 so that a missing package makes a check weaker and never wrong.
 
 Types are equal when they say the same; letter case does not tell names apart [TYP-05]. What may be
-assigned to what is told by `grammar.semantics.assignability`, what operators make of operands by
+assigned to what is decided by `grammar.semantics.assignability`, what operators make of operands by
 `grammar.semantics.operations`. Nothing here knows of syntax trees.
 """
 
