@@ -84,7 +84,7 @@ class _Wanted:
         is_wanting = False
         for use in resolution.open_uses:
             wanted = names.get(use.space) if use.space is not None else None
-            if wanted is not None and not use.name.text.startswith("$"):
+            if wanted is not None:
                 wanted.setdefault(use.name.key, (module, use.name))
                 is_wanting = True
         for name, answer in resolution.answers.items():

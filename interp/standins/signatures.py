@@ -208,11 +208,10 @@ class Signatures:
         heads, declared, body = [], [], []
         for place, given in enumerate(use.arguments, start=1):
             parameter = f"P{place}"
-            kind, is_out = self._parameter(f"{name}_{parameter}", given)
-            brackets = "[]" if kind.is_text else ""
+            kind, is_out, brackets = self._parameter(f"{name}_{parameter}", given)
             heads.append(f"{parameter}{brackets} :{'OUT' if is_out else 'IN'}")
             declared.append(f"DECL {kind.name} {parameter}{brackets}")
-            if is_out and not kind.is_text:
+            if is_out and not brackets:
                 body += [
                     f'IF VARSTATE("{parameter}")<>#INITIALIZED THEN',
                     f"{parameter}={kind.value}",
@@ -237,21 +236,31 @@ class Signatures:
             ]
         return "\n".join(lines) + "\n"
 
-    def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool]:
+    def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool, str]:
+        """The type of a parameter, whether it is passed :OUT, and the brackets of an array."""
         use = DataUse(is_assigned=True)
+        brackets = ""
         for type_, _ in given:
             match type_:
                 case Constant(name=constant):
                     use.constants.setdefault(constant.upper(), constant)
                 case Text() | Array(element=Scalar(name="CHAR")):
                     use.is_text = True
+                    brackets = "[]"
+                case Array(element=element, sizes=sizes):
+                    use.types.append(element)
+                    brackets = f"[{',' * (len(sizes) - 1)}]"
                 case _:
                     use.types.append(type_)
         kind = self._kind(name, use) or self._number(use)
         is_out = bool(given) and all(
-            is_variable and str(type_) == kind.name for type_, is_variable in given
+            is_variable and str(_element(type_)) == kind.name for type_, is_variable in given
         )
-        return kind, is_out
+        return kind, is_out and not kind.is_text, brackets
+
+
+def _element(type_: Type) -> Type:
+    return type_.element if isinstance(type_, Array) else type_
 
 
 def default(type_: Type) -> str:

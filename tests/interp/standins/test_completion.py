@@ -113,6 +113,20 @@ def test_status_structure_of_a_package() -> None:
     assert ("OPT_STATE", "type", "signature") in _names(program)
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_array_passed_out(executor: str) -> None:
+    """A whole array can be passed to an undeclared routine."""
+    program = _main(f"{HOME}OPT_Fill (N[],R[,],2 )\n", declared="INT N[4]\nREAL R[2,2]\n")
+    assert ("end", "") == _outcome(_run(program, executor))
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_system_variable_of_a_package(executor: str) -> None:
+    """A system variable that no table has can be written and read, an array by its elements."""
+    body = f"{HOME}FOR I=1 TO 16\n$OPT_INT[I]=I\nENDFOR\nIF $OPT_INT[9]<>9 THEN\nHALT\nENDIF\n"
+    assert ("end", "") == _outcome(_run(_main(body, declared="INT I\n"), executor))
+
+
 def test_points_without_a_data_list() -> None:
     """A point that no data list has is executed: a PTP goes upright, a LIN stays."""
     run = _run(_main("PTP XP1\nLIN XP2\nPTP {A1 5.0}\n"))
