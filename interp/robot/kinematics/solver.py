@@ -14,13 +14,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from py_opw_kinematics import KinematicModel, RigidTransform, Robot
 
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 from interp.values.poses import Pose, sine_cosine
+
+if TYPE_CHECKING:
+    from py_opw_kinematics import Robot
 
 __all__ = ["BRANCHES", "Array", "Kinematics", "matrix_of"]
 
@@ -70,11 +74,18 @@ class Kinematics:
         self._senses = np.array([1.0, 1.0, 1.0, along, -sense, along]) * self._directions
         self._zeros = np.array([0.0, math.pi / 2, 0.0, along * turned, 0.0, 0.0])
         self._reverse = np.diag([along, 1.0, along])
-        forward, aside, up = machine.tx3p3.position
+        self._machine = machine
+
+    @cached_property
+    def _solver(self) -> Robot:
+        """Closed-form solutions for the main axes; made when needed, as its import is slow."""
+        from py_opw_kinematics import KinematicModel, Robot
+
+        forward, aside, up = self._machine.tx3p3.position
         model = KinematicModel(
-            a1=machine.length_a, a2=-up, b=aside, c2=machine.length_b, c3=forward
+            a1=self._machine.length_a, a2=-up, b=aside, c2=self._machine.length_b, c3=forward
         )
-        self._solver = Robot(model, degrees=False)
+        return Robot(model, degrees=False)
 
     def forward(self, axes: npt.ArrayLike) -> Array:
         """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
@@ -246,6 +257,8 @@ class Kinematics:
         return np.concatenate((main, self._wrist_axes(main, inner[:, None, :3, :3])), axis=-1)
 
     def _main_axes(self, inner: Array) -> Array:
+        from py_opw_kinematics import RigidTransform
+
         result = self._solver.reach(RigidTransform.from_matrix(inner), _NO_LIMITS)
         return np.array(result.joints[..., :3], dtype=np.float64)
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import IpoMode, Placement
@@ -22,6 +21,9 @@ from interp.robot.kinematics.targets import check_path, follow
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.robot.path.uniform_spline import Table
 from interp.values.faults import Fault
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 __all__ = [
     "BlendedAxes",

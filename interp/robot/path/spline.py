@@ -12,15 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation, RotationSpline
 
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, angle_between, turning
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine, Way
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import RotationSpline
 
 __all__ = ["Free", "Knot", "Segment", "chains_of", "pose_paths_of"]
 
@@ -111,6 +113,8 @@ class Free:
         self.way = Way(self._slopes)
         self.length = self.way.length
         grid = np.linspace(0.0, 1.0, _SAMPLES)
+        from scipy.interpolate import CubicSpline
+
         self._parameter = CubicSpline(self.way.at(grid) / self.length, grid)
 
     @property
@@ -219,6 +223,8 @@ def _run(
     points = np.array([run[0].start.position, *(segment.end.position for segment in run)])
     spans = np.array([segment.chord for segment in run])
     free = (2, np.zeros(3))
+    from scipy.interpolate import CubicSpline
+
     spline = CubicSpline(
         np.concatenate(([0.0], np.cumsum(spans))),
         points,
@@ -262,6 +268,8 @@ def _orientations(
     if is_constant or turned < 1e-12:
         return [turning(rotations[0], rotations[0])] * len(chain)
     knots = np.concatenate(([0.0], np.cumsum(lengths)))
+    from scipy.spatial.transform import Rotation, RotationSpline
+
     spline = RotationSpline(knots, Rotation.from_matrix(rotations))
     swept = []
     for start, length in zip(knots, lengths, strict=False):

@@ -9,7 +9,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from interp.robot.kinematics.solver import Array
 
@@ -28,6 +27,8 @@ class Table:
             mapped = _map(len(points)) @ points
             self._coefficients = mapped.reshape(4, self._count, points.shape[1])
         else:
+            from scipy.interpolate import CubicSpline
+
             spline = CubicSpline(np.linspace(0.0, 1.0, len(points)), points)
             self._coefficients = np.ascontiguousarray(spline.c)
 
@@ -51,6 +52,8 @@ class Table:
 @lru_cache(maxsize=8)
 def _map(count: int) -> Array:
     """From points to coefficients, ``(4 (count - 1), count)``."""
+    from scipy.interpolate import CubicSpline
+
     coefficients = CubicSpline(np.linspace(0.0, 1.0, count), np.eye(count)).c
     mapped: Array = coefficients.reshape(-1, count)
     return mapped

@@ -11,7 +11,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from interp.robot.arm import Motion, Settings, SplinePart
 from interp.robot.kinematics.machine_data import ROBOT_AXES
@@ -152,6 +151,8 @@ def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> Oth
     if len(pose_paths) == 1 or not externals.shape[1]:
         return InStep(externals[place], externals[place + 1])
     knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
+    from scipy.interpolate import CubicSpline
+
     spline = CubicSpline(knots, externals, bc_type="natural")
     return Piecewise(spline, float(knots[place]), pose_paths[place].length)
 
@@ -180,6 +181,8 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
         knots = np.cumsum([0.0, *spans[first:last]])
         spline = None
         if last - first > 1:
+            from scipy.interpolate import CubicSpline
+
             spline = CubicSpline(knots, np.array(points[first : last + 1]), bc_type="natural")
         for place in range(first, last):
             own = motion.parts[place].settings or motion.settings
