@@ -79,6 +79,10 @@ class _Stack:
             return core[core.top + where.start : core.top]
         return core[core.top + where]
 
+    def __setitem__(self, where: int, raw: Raw | None) -> None:
+        core = self._core
+        core[core.top + where] = raw
+
     def __delitem__(self, where: slice) -> None:
         core = self._core
         core.top = (core.top if where.start < 0 else core.floor) + where.start
