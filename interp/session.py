@@ -28,7 +28,7 @@ from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,
     read_machine,
-    resized,
+    with_axis_limits_of,
 )
 from interp.robot.models import default_machine, model_file
 from interp.robot.planning.planned_arm import PlannedArm
@@ -209,7 +209,7 @@ def _machine_or_other(program: CheckedProgram, profile: Profile) -> tuple[Machin
     except (DataListError, MachineDataError) as error:
         machine = default_machine()
         note = f"{error}: {machine.name} stands in"
-        return resized(machine, source.text, source.path), note
+        return with_axis_limits_of(machine, source.text, source.path), note
 
 
 def _machine_data(program: CheckedProgram) -> Source | None:

@@ -34,7 +34,7 @@ __all__ = [
     "WristLink",
     "machine_of",
     "read_machine",
-    "resized",
+    "with_axis_limits_of",
 ]
 
 ROBOT_AXES = 6
@@ -160,10 +160,10 @@ def read_machine(text: str, path: str = "") -> MachineData:
     return machine_of(read_data_list(text, path), path)
 
 
-def resized(machine: MachineData, text: str, path: str = "") -> MachineData:
+def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> MachineData:
     """A machine in place of one whose data cannot be understood, as far as that data goes.
 
-    Its axes get the limits and dynamics that the data has for rotary axes, its arm the length.
+    Its axes get the limits and dynamics that the data has for rotary axes; lengths stay.
     """
     try:
         values = read_data_list(text, path)
