@@ -6,8 +6,10 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import TypeVar, TypeVarTuple
 
 __all__ = ["LocalWorkers", "process_pool"]
@@ -20,15 +22,42 @@ def process_pool(
     count: int, prepare: Callable[[*_Ts], object] | None = None, *arguments: *_Ts
 ) -> ProcessPoolExecutor:
     """So many processes that know nothing of this one; ``prepare`` is called first in each."""
-    # 'spawn' behaves the same on every system and never copies a process with threads in it
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(count, context, _begin, (prepare, arguments))
+    return ProcessPoolExecutor(count, _Context(), _begin, (prepare, arguments))
+
+
+class _Process(SpawnProcess):
+    """A process that hears of no interrupt until it has begun: it would print a traceback."""
+
+    def start(self) -> None:
+        with _interrupts_held():
+            super().start()
+
+
+class _Context(SpawnContext):
+    """How processes are made: 'spawn' behaves the same on every system and copies no threads."""
+
+    Process = _Process
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """What is started inherits that interrupts wait; where a system has no such thing, nothing."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin(prepare: Callable[..., object] | None, arguments: tuple[object, ...]) -> None:
     """Begin a process of a pool."""
     # an interrupt reaches all processes of a terminal; the one that asked for the work reports it
     signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
     if prepare is not None:
         prepare(*arguments)

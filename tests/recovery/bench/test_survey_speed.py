@@ -104,7 +104,7 @@ def test_unchanged_files_are_not_read_again(
             return [9.0, 3.0, 2.0][len(caches) - 1]
         return function(*arguments)
 
-    monkeypatch.setattr(survey_speed, "apart", noting)
+    monkeypatch.setattr(survey_speed, "call_isolated", noting)
     record = measure([corpus], grammar, sizes=(), rounds=2)
     assert 3 == len(caches)
     assert 1 == len(set(caches))

@@ -16,9 +16,10 @@ if __name__ == "__main__":
         sys.stdin.read()
 """
 BUSY = """
-import sys, time
+import signal, sys, time
 from support.parallel.ordered_map import ordered_map
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
     try:
         for _ in ordered_map(time.sleep, [(0,), *[(300,)] * 5], jobs=2):
             print("begun", flush=True)
