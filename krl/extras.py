@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 from krl.errors import InputError
 
-__all__ = ["expected_extras", "need"]
+__all__ = ["ARM", "expected_extras", "need"]
 
 _EXTRA_OF = {
     "junitparser": "records",
@@ -22,10 +22,19 @@ _EXTRA_OF = {
 }
 
 
+#: Packages that the arm imports when it first needs them, which would be in the midst of work.
+ARM = ("py_opw_kinematics", "scipy")
+
+
 @contextmanager
-def expected_extras() -> Iterator[None]:
-    """Turn the absence of such a package into `InputError`; any other is a defect."""
+def expected_extras(*names: str) -> Iterator[None]:
+    """Turn the absence of such a package into `InputError`; any other is a defect.
+
+    ``names`` are packages that are imported later: their absence is found at once.
+    """
     try:
+        for name in names:
+            need(name)
         yield
     except ModuleNotFoundError as error:
         name = (error.name or "").partition(".")[0]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINE, InputError, as_input_errors
-from krl.extras import expected_extras
+from krl.extras import ARM, expected_extras
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
@@ -91,7 +91,7 @@ def _arm(path: Path) -> "Kinematics":
         raise InputError(f"{path}: not machine data: {source}")
     with as_input_errors(DataListError, MachineDataError):
         machine = read_machine(source.text, str(path))
-    with expected_extras():
+    with expected_extras(*ARM):
         from interp.robot.kinematics.solver import Kinematics
     try:
         return Kinematics(machine)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.extras import expected_extras
+from krl.extras import ARM, expected_extras
 from krl.output_files import check_files
 from krl.program_loading import load_program
 from krl.progress import progress_bar
@@ -210,7 +210,7 @@ def _expected_errors() -> Iterator[None]:
     from interp.values.faults import RuntimeFailure
 
     try:
-        with expected_extras():
+        with expected_extras(*ARM):
             yield
     except RuntimeFailure as error:
         raise InputError(str(error)) from error

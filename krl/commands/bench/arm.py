@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE
-from krl.extras import expected_extras
+from krl.extras import ARM, expected_extras
 from krl.options import JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -27,7 +27,7 @@ def arm(
     The program is a list of motions, with blends and without KRL. Seconds are processor time.
     """
     check_files(json_file)
-    with expected_extras():
+    with expected_extras(*ARM):
         from interp.bench.arm import STEPS, measure
     with progress_bar("measuring", STEPS) as advance:
         record = {"bench": "arm", **measure(motions, advance)}

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE, InputError, as_input_errors
-from krl.extras import expected_extras
+from krl.extras import ARM, expected_extras
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -30,7 +30,7 @@ def conform(
     all cases, with the tree interpreter and no robot, in one process.
     """
     check_files(json_file)
-    with expected_extras():
+    with expected_extras(*ARM):
         from conformance.sensitivity import measure, speed_of
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
-from krl.extras import expected_extras, need
+from krl.extras import ARM, expected_extras, need
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -111,7 +111,7 @@ def _expected_errors() -> Iterator[None]:
     """What is not installed, here or on workers, and workers that cannot do the work."""
     from support.parallel.workers import WorkersError
 
-    with as_input_errors(WorkersError), expected_extras():
+    with as_input_errors(WorkersError), expected_extras(*ARM):
         yield
 
 
