@@ -1,0 +1,144 @@
+"""What option packages bring along, as signatures: ``system/packages.tsv``.
+
+A backup that calls a package often lacks its files. `load_packages` gives its routines, types and
+data by name in upper case, with the package that each belongs to; types are written as in KRL, as
+a project may declare them itself. A run makes stand-ins of them (`interp.standins`). A check may
+take such a name as declared where the package is said to be there, or where the project calls
+another routine of the same package: ``load_packages().routines["EKI_OPEN"].package`` is ``"EKI"``,
+``parameters`` says what it takes. What rests on source R alone is unconfirmed: its name is likely,
+its parameters are not told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+__all__ = [
+    "PackageParameter",
+    "PackageRoutine",
+    "PackageType",
+    "PackageVariable",
+    "Packages",
+    "load_packages",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class PackageParameter:
+    """A parameter; ``type`` is ``?`` where it is not known.
+
+    One that ``is_optional`` can be left out of a call.
+    """
+
+    name: str
+    type: str
+    is_array: bool
+    is_out: bool
+    is_optional: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PackageRoutine:
+    """A routine; ``result`` is the name of a type, "" for a procedure.
+
+    ``default`` is the result of a stand-in, "" for that of its type. ``has_more``: what it takes is
+    not known, or further arguments of any type may follow.
+    """
+
+    package: str
+    name: str
+    result: str
+    parameters: tuple[PackageParameter, ...]
+    has_more: bool
+    default: str
+    is_unconfirmed: bool
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class PackageType:
+    """A structure or enumeration, as the text of its declaration; ``default`` is a value of it."""
+
+    package: str
+    name: str
+    declaration: str
+    default: str
+
+
+@dataclass(frozen=True, slots=True)
+class PackageVariable:
+    """A variable with the name of its type and its value."""
+
+    package: str
+    name: str
+    type: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Packages:
+    """All that packages bring along, by name in upper case."""
+
+    routines: Mapping[str, PackageRoutine]
+    types: Mapping[str, PackageType]
+    variables: Mapping[str, PackageVariable]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The packages in the order of the alphabet."""
+        parts = (*self.routines.values(), *self.types.values(), *self.variables.values())
+        return tuple(sorted({one.package for one in parts}))
+
+
+@cache
+def load_packages() -> Packages:
+    """The packages that the table knows."""
+    file = resources.files("grammar").joinpath("system", "packages.tsv")
+    columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
+    routines: dict[str, PackageRoutine] = {}
+    types: dict[str, PackageType] = {}
+    variables: dict[str, PackageVariable] = {}
+    for row in (dict(zip(columns, cells, strict=True)) for cells in rows):
+        package, name, default = row["package"], row["name"], row["default"]
+        match row["kind"]:
+            case "routine":
+                routines[name] = _routine(row)
+            case "variable":
+                variables[name] = PackageVariable(package, name, row["result"], default)
+            case kind:
+                declaration = _declaration(kind, name, row["parameters"])
+                types[name] = PackageType(package, name, declaration, default)
+    return Packages(routines, types, variables)
+
+
+def _routine(row: Mapping[str, str]) -> PackageRoutine:
+    written = [part.strip() for part in row["parameters"].split(";") if part]
+    parameters = tuple(_parameter(text) for text in written if text != "...")
+    return PackageRoutine(
+        package=row["package"],
+        name=row["name"],
+        result=row["result"],
+        parameters=parameters,
+        has_more="..." in written,
+        default=row["default"],
+        is_unconfirmed=row["source"] == "R",
+        meaning=row["meaning"],
+    )
+
+
+def _parameter(text: str) -> PackageParameter:
+    mode, type_, word = text.split()
+    name, bracket, _ = word.partition("[")
+    return PackageParameter(name, type_, bool(bracket), mode == "OUT", mode.endswith("?"))
+
+
+def _declaration(kind: str, name: str, content: str) -> str:
+    """As a line of a data list; ``INT A B; BOOL C`` becomes ``INT A,B,BOOL C``."""
+    if kind == "enum":
+        return f"GLOBAL ENUM {name} {','.join(content.split())}"
+    groups = (group.split() for group in content.split(";"))
+    members = (f"{type_} {','.join(names)}" for type_, *names in groups)
+    return f"GLOBAL STRUC {name} {','.join(members)}"
