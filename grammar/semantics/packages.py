@@ -89,7 +89,11 @@ class Packages:
     @property
     def names(self) -> tuple[str, ...]:
         """The packages in the order of the alphabet."""
-        parts = (*self.routines.values(), *self.types.values(), *self.variables.values())
+        parts: tuple[PackageRoutine | PackageType | PackageVariable, ...] = (
+            *self.routines.values(),
+            *self.types.values(),
+            *self.variables.values(),
+        )
         return tuple(sorted({one.package for one in parts}))
 
 
