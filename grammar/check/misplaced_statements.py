@@ -71,6 +71,11 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
                 yield context.finding("motion-in-submit", head(context.source, statement), message)
             case ast.EmilyMotion():
                 yield context.finding("motion-in-submit", statement, "MOVE_EMI in a submit program")
+            case ast.Assignment(target=ast.Subscript(base=ast.Variable(name=name)) as target) if (
+                name.key == "$OUT_C"
+            ):
+                message = "$OUT_C in a submit program, which has no main run to be in step with"
+                yield context.finding("out-c-not-allowed", target, message, is_unconfirmed=True)
             case ast.Trigger():
                 yield context.finding(
                     "trigger-not-allowed",

@@ -52,10 +52,15 @@ _NOTHING = Findings((), ())
 
 @dataclass(frozen=True, slots=True)
 class CheckOptions:
-    """What to look for: syntax alone, or also what stops the advance run."""
+    """What to look for: syntax alone, or also what stops the advance run.
+
+    With ``is_complete`` the files of each project are all there are; else their calls show whether
+    some are missing.
+    """
 
     syntax_only: bool = False
     stops: bool = False
+    is_complete: bool = False
 
     @property
     def wanted_codes(self) -> tuple[str, ...]:
@@ -211,7 +216,7 @@ def check_part(
     # modules are identified by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}
-    for linked in link(files).projects:
+    for linked in link(files, is_complete=options.is_complete or None).projects:
         for module in linked.modules:
             if id(module.table) in own:
                 index, tree = own[id(module.table)]

@@ -66,6 +66,10 @@ def check(
             "--stops", help="Also report what stops the advance run and which blends are lost."
         ),
     ] = False,
+    complete: Annotated[
+        bool,
+        typer.Option("--complete", help="No file is missing: what nothing declares is an error."),
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
     ] = None,
@@ -90,7 +94,7 @@ def check(
     check_files(out)
     with as_input_errors(ValueError):
         selection = Selection.of(select or (), ignore or ())
-    options = CheckOptions(syntax_only, stops or _asks_for_stops(selection))
+    options = CheckOptions(syntax_only, stops or _asks_for_stops(selection), complete)
     folder = None if no_cache else _usable(cache, _users_cache())
     with as_input_errors(IngestError), progress_bar("checking") as bar:
         found = check_paths(

@@ -1,0 +1,73 @@
+"""What a code means in full: its sentences, a program that is wrong, and the same made right.
+
+``codes.tsv`` has the sentences, as every check needs them; ``examples.toml`` the programs, which
+only an explanation needs. An example is one file or several: each begins with a line
+``-- NAME --``, which one alone may lack. A test checks every example, so that ``wrong`` has a
+finding of the code and ``right`` has none.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from grammar.diagnostics.codes import DiagnosticCode, by_code, by_slug
+
+__all__ = ["Explanation", "example_files", "explanation"]
+
+_HEAD = re.compile(r"^-- (\S+) --\n", re.MULTILINE)
+_DATA_LIST = re.compile(r"\s*DEFDAT\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """A code, and what helps to understand it.
+
+    ``wrong`` and ``right`` are programs, empty where none can show it; with ``is_whole`` their
+    files are all there are of a project. ``message`` is the number of the controller's own message,
+    ``source`` what the rules of the code do not say.
+    """
+
+    code: DiagnosticCode
+    wrong: str = ""
+    right: str = ""
+    message: int | None = None
+    source: str = ""
+    is_whole: bool = True
+
+
+def explanation(name: str) -> Explanation | None:
+    """The explanation of a code or slug in any letter case; ``None`` where there is no such one."""
+    entry = by_code().get(name.upper()) or by_slug().get(name.lower())
+    if entry is None:
+        return None
+    known = _examples().get(entry.code, {})
+    number = entry.code.removeprefix("KSS")
+    message = int(number) if number.isdecimal() else known.get("message")
+    return Explanation(
+        entry,
+        known.get("wrong", ""),
+        known.get("right", ""),
+        message,
+        known.get("source", ""),
+        not known.get("missing", False),
+    )
+
+
+def example_files(example: str) -> dict[str, str]:
+    """The files of an example by name; one without a name is ``work.src`` or ``work.dat``."""
+    first, *parts = _HEAD.split(example)
+    if not parts:
+        return {"work.dat" if _DATA_LIST.match(first) else "work.src": first}
+    return dict(zip(parts[::2], parts[1::2], strict=True))
+
+
+@cache
+def _examples() -> Mapping[str, Mapping[str, Any]]:
+    text = resources.files(__package__).joinpath("examples.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
