@@ -11,8 +11,10 @@ import numpy.typing as npt
 from interp.controller.motion_queue import PlannedPoint
 from interp.program.load import CheckedProgram
 from interp.robot.kinematics.machine_data import MachineData
+from interp.robot.simulation.links import links_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
+from interp.values.poses import Pose
 
 __all__ = ["RunRecord", "record_of"]
 
@@ -52,10 +54,63 @@ class PointRecord(TypedDict):
     blended: bool
 
 
+class ShapeRecord(TypedDict):
+    """A rod with round ends from one point of its link to another; a ball where they are one."""
+
+    start: list[float]
+    end: list[float]
+    radius: float
+    colour: list[float]
+
+
+class LinkRecord(TypedDict):
+    """A body of the arm.
+
+    ``parent`` is the index of the link that carries it, -1 for the world; ``frame`` where it stands
+    there while its axis is at zero, sixteen numbers row by row. ``joint`` is the index of its axis
+    in the columns of the path, -1 where it does not move: it turns by so many degrees about
+    ``axis`` of its own frame, or slides along it by so many mm where ``linear``.
+    """
+
+    name: str
+    parent: int
+    frame: list[float]
+    joint: int
+    axis: list[float]
+    linear: bool
+    shapes: list[ShapeRecord]
+
+
+class ToolRecord(TypedDict):
+    """From time ``t`` on: $TOOL on the flange, and $BASE in $WORLD, sixteen numbers row by row."""
+
+    t: int
+    tool: list[float]
+    base: list[float]
+
+
+class ArmRecord(TypedDict):
+    """What the arm is made of, for drawing it; mm, in $WORLD.
+
+    ``flange`` is the flange in the frame of the link ``hand``. ``tools`` are the frames in force,
+    none where no set-points were sent.
+    """
+
+    axes: list[str]
+    links: list[LinkRecord]
+    hand: int
+    flange: list[float]
+    tools: list[ToolRecord]
+
+
 class PathSamples(TypedDict):
-    """Set-points, one column a quantity; ``tool_measured`` where the robot measures."""
+    """Set-points, one column a quantity; ``tool_measured`` where the robot measures.
+
+    ``axes`` has a column an axis in degrees or mm, robot axes first.
+    """
 
     t: list[int]
+    axes: list[list[float]]
     tool: list[list[float]]
     speed: list[float]
     axis_speeds: list[list[float]]
@@ -81,6 +136,7 @@ class RunRecord(TypedDict):
     events: list[dict[str, Any]]
     files: list[FileRecord]
     limits: LimitsRecord
+    arm: ArmRecord
     points: list[PointRecord]
     path: NotRequired[PathSamples]
     deviation: NotRequired[DeviationRecord | None]
@@ -89,7 +145,7 @@ class RunRecord(TypedDict):
 def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRecord:
     """Outcome, trace, sources, path, limits and programmed points of a run.
 
-    Times are µs, lengths mm in front of the robot's foot, speeds of axes deg/s or mm/s, that of the
+    Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, that of the
     tool m/s.
     """
     outcome = run.outcome
@@ -112,12 +168,13 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
             program, {event["at"].rpartition(":")[0] for event in events if event["at"]}
         ),
         "limits": _limits(run.machine),
+        "arm": _arm(run.machine, run.path),
         "points": [
             {
                 "motion": point.number,
                 "kind": point.kind,
                 "at": f"{point.at.file}:{point.at.line}",
-                "place": _tip(point),
+                "place": _tip(point, run.machine),
                 "blended": point.number in blended,
             }
             for point in run.controller.points
@@ -142,11 +199,49 @@ def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:
     ]
 
 
-def _tip(point: PlannedPoint) -> list[float]:
-    """The end point of the tool, in front of the robot's foot; empty where it is unknown."""
+def _tip(point: PlannedPoint, machine: MachineData) -> list[float]:
+    """The end point of the tool; empty where it is unknown."""
     if point.position is None:
         return []
-    return [round(value, 4) for value in (point.position.flange @ point.tool).position]
+    tip = machine.robroot @ point.position.flange @ point.tool
+    return [round(value, 4) for value in tip.position]
+
+
+def _arm(machine: MachineData, path: PathRecord | None) -> ArmRecord:
+    frames = () if path is None else path.placements
+    return {
+        "axes": [axis.name for axis in (*machine.axes, *machine.externals)],
+        "links": [
+            {
+                "name": link.name,
+                "parent": -1 if link.parent is None else link.parent,
+                "frame": _numbers(link.frame),
+                "joint": -1 if link.joint is None else link.joint,
+                "axis": list(link.axis),
+                "linear": link.is_linear,
+                "shapes": [
+                    {
+                        "start": [round(value, 2) for value in shape.start],
+                        "end": [round(value, 2) for value in shape.end],
+                        "radius": round(shape.radius, 2),
+                        "colour": [float(part) for part in shape.colour.split()],
+                    }
+                    for shape in link.shapes
+                ],
+            }
+            for link in links_of(machine)
+        ],
+        "hand": len(machine.axes),
+        "flange": _numbers(machine.chain.end),
+        "tools": [
+            {"t": time, "tool": _numbers(placement.tool), "base": _numbers(placement.base)}
+            for time, placement in frames
+        ],
+    }
+
+
+def _numbers(pose: Pose) -> list[float]:
+    return [round(value, 9) + 0.0 for row in pose.matrix for value in row]
 
 
 def _limits(machine: MachineData) -> LimitsRecord:
@@ -165,6 +260,7 @@ def _path(path: PathRecord) -> PathSamples:
         tip_speed = np.linalg.norm(steps, axis=1) / 1000
     record: PathSamples = {
         "t": path.times.tolist(),
+        "axes": [column.round(4).tolist() for column in path.axes.T],
         "tool": path.tips.round(4).tolist(),
         "speed": tip_speed.round(6).tolist(),
         "axis_speeds": [column.round(4).tolist() for column in speeds.T],

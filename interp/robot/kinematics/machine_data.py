@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
+from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.data_list import DataListError, Key, Value, read_data_list
 from interp.values.poses import IDENTITY, Pose
 
@@ -93,6 +94,11 @@ class WristLink:
     d: float
     alpha: float
 
+    @property
+    def pose(self) -> Pose:
+        """The step behind the turn about Z."""
+        return Pose.of(z=self.d) @ Pose.of(x=self.a, c=self.alpha)
+
 
 @dataclass(frozen=True, slots=True)
 class CartesianLimits:
@@ -139,6 +145,23 @@ class MachineData:
         every = (*self.axes, *self.externals)
         rest = (min(max(0.0, axis.lower), axis.upper) for axis in every[len(axes) :])
         return (*(float(value) for value in axes[: len(every)]), *rest)
+
+    @property
+    def chain(self) -> Chain:
+        """The joints of the robot axes from the foot, $ROBROOT, to the flange."""
+        frames = (
+            (self.tiroro, (0.0, 0.0, 1.0)),
+            (Pose.of(x=self.length_a), (0.0, 1.0, 0.0)),
+            (Pose.of(x=self.length_b), (0.0, 1.0, 0.0)),
+            (self.tx3p3, (0.0, 0.0, 1.0)),
+            (self.dh_4.pose, (0.0, 0.0, 1.0)),
+            (self.dh_5.pose, (0.0, 0.0, 1.0)),
+        )
+        joints = (
+            Joint(axis.name, frame, (x, y * axis.direction, z * axis.direction))
+            for axis, (frame, (x, y, z)) in zip(self.axes, frames, strict=True)
+        )
+        return Chain(tuple(joints), self.tflwp)
 
     @property
     def elbow(self) -> float:

@@ -1,12 +1,9 @@
 """An arm's machine data as a model for MuJoCo (MJCF), of primitive shapes only.
 
 The chain of bodies is that of `interp.robot.kinematics.machine_data`, number by number, so the
-flange of the model stands where the kinematics have it. What machine data does not say is assumed,
-and scaled by the arm's reach from an arm of the size of a KR 6 R900:
+flange of the model stands where the kinematics have it. Masses and shapes are
+those of `interp.robot.simulation.links`. What else machine data does not say is assumed:
 
-- masses: 52 kg in all for a reach of 901.5 mm, as published; by the cube of the reach for others.
-  How they are shared among the links is a guess, and so are the shapes, which are filled evenly.
-- rotors: they add inertia to an axis, and friction that grows with its speed.
 - the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
   touches, since the data does not say what the arm stands on. What else there is are boxes.
 - there is no load on the flange.
@@ -23,23 +20,18 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from interp.robot.kinematics.machine_data import Axis, AxisKind, MachineData, WristLink
+from interp.robot.kinematics.chain import Point
+from interp.robot.kinematics.machine_data import MachineData
+from interp.robot.simulation.links import DARK, Capsule, Link, links_of, reach_of
 from interp.values.poses import IDENTITY, Pose
 
-__all__ = ["FLANGE", "TOUCH", "Box", "mjcf_of", "reach_of"]
+__all__ = ["FLANGE", "TOUCH", "Box", "mjcf_of"]
 
 #: The site of the flange, and the sensor that counts contacts.
 FLANGE: Final = "flange"
 TOUCH: Final = "touch"
 
-_KNOWN_MASS = 52.0  # kg, of an arm with this reach:
-_KNOWN_REACH = 901.5  # mm
-_ORANGE, _DARK = "1 0.45 0.1 1", "0.25 0.26 0.28 1"
-_EXTERNAL_MASS = 20.0  # kg, for an arm of the known reach
 _FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia
-
-Point = tuple[float, float, float]
-_ORIGIN: Point = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,38 +43,6 @@ class Box:
     edges: Point
 
 
-@dataclass(frozen=True, slots=True)
-class _Shape:
-    """A capsule from one point to another in the frame of its link; mm."""
-
-    start: Point
-    end: Point
-    #: As a share of the arm's reach.
-    radius: float
-    #: As a share of the arm's mass.
-    mass: float
-    colour: str
-
-
-@dataclass(frozen=True, slots=True)
-class _Body:
-    """A link that turns about ``axis`` of its own frame, which stands at ``pose`` in the last."""
-
-    name: str
-    pose: Pose
-    joint: str
-    axis: Point
-    #: Rotor inertia as a share of the arm's mass times the square of its reach.
-    rotor: float
-    shapes: tuple[_Shape, ...]
-
-
-def reach_of(machine: MachineData) -> float:
-    """From axis 1 to the wrist centre of the stretched arm, in mm."""
-    forward, aside, up = machine.tx3p3.position
-    return abs(machine.length_a) + machine.length_b + math.hypot(forward, aside, up)
-
-
 def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
     """The text of the model; joints are called as the axes are, and so are their actuators.
 
@@ -91,8 +51,8 @@ def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
     (`interp.robot.simulation.mujoco`).
     """
     reach = reach_of(machine)
-    bodies = _chain(machine)
-    names = ["foot", *(body.name for body in bodies)]
+    links = links_of(machine)
+    names = [link.name for link in links[: len(machine.axes) + 1]]
     axes = (*machine.axes, *machine.externals)
     lines = [
         f'<mujoco model="{_escaped(machine.name) or "arm"}">',
@@ -117,11 +77,7 @@ def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
         f'pos="0 0 {_number((machine.robroot.position[2] - reach) / 1000.0)}"/>',
         _pedestal(machine),
         *(_box(box) for box in boxes),
-        f'    <body name="foot" {_placed(machine.robroot)}>',
-        *(f"      {_geom(shape, machine)}" for shape in _foot(machine)),
-        *_nested(bodies, machine, "      "),
-        "    </body>",
-        *_externals(machine),
+        *_nested(links, None, machine, "    "),
         "  </worldbody>",
         "  <contact>",
         *(
@@ -147,99 +103,38 @@ def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
 # ---------------------------------------------------------------------------------------- the arm
 
 
-def _foot(machine: MachineData) -> tuple[_Shape, ...]:
-    middle = _scaled(machine.tiroro.position, 0.5)
-    return (_Shape(_ORIGIN, middle, 0.105, 0.22, _DARK),)
+def _nested(
+    links: Sequence[Link], parent: int | None, machine: MachineData, indent: str
+) -> list[str]:
+    """The bodies that a link carries, with all on it; the flange is on the last."""
+    lines: list[str] = []
+    for place, link in enumerate(links):
+        if link.parent == parent:
+            lines += (
+                f'{indent}<body name="{link.name}" {_placed(link.frame)}>',
+                *_joint(link, machine, f"{indent}  "),
+                *(f"{indent}  {_geom(shape, place <= len(machine.axes))}" for shape in link.shapes),
+                *_nested(links, place, machine, f"{indent}  "),
+            )
+            if place == len(machine.axes):
+                lines.append(
+                    f'{indent}  <site name="{FLANGE}" size="0.005" {_placed(machine.chain.end)}/>'
+                )
+            lines.append(f"{indent}</body>")
+    return lines
 
 
-def _chain(machine: MachineData) -> tuple[_Body, ...]:
-    forward, aside, up = machine.tx3p3.position
-    inner = machine.tiroro.inverse()
-    elbow = (0.0, aside, up)
-    half = (forward / 2.0, aside, up)
-    back = _point(machine.tx3p3.inverse(), half)
-    hand = machine.tflwp.position
-    links = (
-        (machine.tiroro, (0.0, 0.0, 1.0), 0.012),
-        (Pose.of(x=machine.length_a), (0.0, 1.0, 0.0), 0.012),
-        (Pose.of(x=machine.length_b), (0.0, 1.0, 0.0), 0.008),
-        (machine.tx3p3, (0.0, 0.0, 1.0), 0.001),
-        (_twisted(machine.dh_4), (0.0, 0.0, 1.0), 0.001),
-        (_twisted(machine.dh_5), (0.0, 0.0, 1.0), 0.0006),
-    )
-    middle = _point(inner, _scaled(machine.tiroro.position, 0.6))
-    shapes: tuple[tuple[_Shape, ...], ...] = (
-        (
-            _Shape(middle, _ORIGIN, 0.095, 0.18, _ORANGE),
-            _Shape(_ORIGIN, (machine.length_a, 0.0, 0.0), 0.085, 0.06, _ORANGE),
-        ),
-        (_Shape(_ORIGIN, (machine.length_b, 0.0, 0.0), 0.068, 0.24, _ORANGE),),
-        (
-            _Shape(_ORIGIN, elbow, 0.064, 0.08, _ORANGE),
-            _Shape(elbow, half, 0.056, 0.08, _ORANGE),
-        ),
-        (_Shape(back, _ORIGIN, 0.045, 0.09, _ORANGE),),
-        (_Shape(_ORIGIN, _scaled(hand, 0.3), 0.042, 0.035, _DARK),),
-        (_Shape(_scaled(hand, 0.5), _scaled(hand, 0.75), 0.03, 0.015, _DARK),),
-    )
-    return tuple(
-        _Body(
-            f"link_{number}",
-            pose,
-            axis.name,
-            _scaled(direction, float(axis.direction)),
-            rotor,
-            shape,
+def _joint(link: Link, machine: MachineData, indent: str) -> list[str]:
+    if link.joint is None:
+        return []
+    axis = (*machine.axes, *machine.externals)[link.joint]
+    kind = 'type="slide" ' if link.is_linear else ""
+    drive = ""
+    if link.rotor:
+        drive = (
+            f' armature="{_number(link.rotor, 6)}" damping="{_number(_FRICTION * link.rotor, 6)}"'
         )
-        for number, (axis, (pose, direction, rotor), shape) in enumerate(
-            zip(machine.axes, links, shapes, strict=True), start=1
-        )
-    )
-
-
-def _twisted(link: WristLink) -> Pose:
-    """A Denavit-Hartenberg step behind its turn about Z."""
-    return Pose.of(z=link.d) @ Pose.of(x=link.a, c=link.alpha)
-
-
-def _nested(bodies: Sequence[_Body], machine: MachineData, indent: str) -> list[str]:
-    """The bodies, each within the one before it; the flange is in the last."""
-    if not bodies:
-        return [f'{indent}<site name="{FLANGE}" size="0.005" {_placed(machine.tflwp)}/>']
-    body = bodies[0]
-    inertia = body.rotor * _mass(machine) * (reach_of(machine) / 1000.0) ** 2
-    return [
-        f'{indent}<body name="{body.name}" {_placed(body.pose)}>',
-        f'{indent}  <joint name="{body.joint}" axis="{_numbers(body.axis)}" '
-        f'armature="{_number(inertia, 6)}" damping="{_number(_FRICTION * inertia, 6)}"/>',
-        *(f"{indent}  {_geom(shape, machine)}" for shape in body.shapes),
-        *_nested(bodies[1:], machine, f"{indent}  "),
-        f"{indent}</body>",
-    ]
-
-
-def _externals(machine: MachineData) -> Iterable[str]:
-    reach = reach_of(machine)
-    for number, axis in enumerate(machine.externals, start=1):
-        pose = machine.robroot @ Pose.of(y=-1.2 * reach * number)
-        edge = 0.12 * reach / 1000.0
-        yield (
-            f'    <body name="{axis.name}" {_placed(pose)}><joint name="{axis.name}" '
-            f'{_moved(axis)}/><geom type="box" size="{_numbers((edge, edge, edge))}" '
-            f'mass="{_number(_EXTERNAL_MASS * (reach / _KNOWN_REACH) ** 3, 6)}" '
-            f'contype="0" conaffinity="0" rgba="{_DARK}"/></body>'
-        )
-
-
-def _moved(axis: Axis) -> str:
-    if axis.kind is AxisKind.LINEAR:
-        return f'type="slide" axis="{_numbers((float(axis.direction), 0.0, 0.0))}"'
-    return f'type="hinge" axis="{_numbers((0.0, 0.0, float(axis.direction)))}"'
-
-
-def _mass(machine: MachineData) -> float:
-    """Of the whole arm, in kg."""
-    return _KNOWN_MASS * (reach_of(machine) / _KNOWN_REACH) ** 3
+    return [f'{indent}<joint name="{axis.name}" {kind}axis="{_numbers(link.axis)}"{drive}/>']
 
 
 def _middle(machine: MachineData, reach: float) -> Point:
@@ -250,14 +145,15 @@ def _middle(machine: MachineData, reach: float) -> Point:
 # --------------------------------------------------------------------------------------- the words
 
 
-def _geom(shape: _Shape, machine: MachineData) -> str:
-    radius = _number(shape.radius * reach_of(machine) / 1000.0, 6)
-    mass = _number(shape.mass * _mass(machine), 6)
+def _geom(shape: Capsule, touches: bool) -> str:
+    radius = _number(shape.radius / 1000.0, 6)
     if math.dist(shape.start, shape.end) < 1.0:  # mm; too short for a capsule
         form = f'type="sphere" pos="{_metres(shape.start)}"'
     else:
         form = f'type="capsule" fromto="{_metres(shape.start)} {_metres(shape.end)}"'
-    return f'<geom {form} size="{radius}" mass="{mass}" rgba="{shape.colour}"/>'
+    contact = "" if touches else ' contype="0" conaffinity="0"'
+    mass = _number(shape.mass, 6)
+    return f'<geom {form} size="{radius}" mass="{mass}"{contact} rgba="{shape.colour}"/>'
 
 
 def _pedestal(machine: MachineData) -> str:
@@ -265,12 +161,12 @@ def _pedestal(machine: MachineData) -> str:
     reach = reach_of(machine)
     return (
         f'    <geom type="cylinder" fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
-        f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{_DARK}"/>'
+        f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{DARK}"/>'
     )
 
 
 def _box(box: Box) -> str:
-    halves = _metres(_scaled(box.edges, 0.5))
+    halves = _metres([edge / 2.0 for edge in box.edges])
     return (
         f'    <geom name="{_escaped(box.name)}" type="box" size="{halves}" {_placed(box.pose)} '
         'rgba="0.45 0.55 0.65 1"/>'
@@ -283,15 +179,6 @@ def _placed(pose: Pose) -> str:
         return 'pos="0 0 0"'
     columns = [tuple(row[column] for row in pose.rows) for column in (0, 1)]
     return f'pos="{_metres(pose.position)}" xyaxes="{_numbers((*columns[0], *columns[1]))}"'
-
-
-def _point(pose: Pose, point: Point) -> Point:
-    return (pose @ Pose.of(*point)).position
-
-
-def _scaled(point: Sequence[float], factor: float) -> Point:
-    x, y, z = point
-    return x * factor, y * factor, z * factor
 
 
 def _metres(point: Sequence[float]) -> str:

@@ -30,8 +30,9 @@ class PathRecord:
 
     ``times`` (n,) in µs; ``axes`` (n, axes) in degrees or mm; ``points`` (n, 6) are X, Y, Z in mm
     and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
-    (n, 3) are X, Y, Z of the tool in front of the robot's foot, whatever the base. The measured
-    ones are ``None`` where the robot measures nothing.
+    (n, 3) are X, Y, Z of the tool in $WORLD, whatever the base. The measured
+    ones are ``None`` where the robot measures nothing. ``placements`` are the frames in force, each
+    with the time in µs from which on.
     """
 
     times: npt.NDArray[np.int64]
@@ -41,6 +42,7 @@ class PathRecord:
     axes_measured: Array | None
     points_measured: Array | None
     tips_measured: Array | None
+    placements: tuple[tuple[int, Placement], ...] = ()
 
     def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
         """The columns of a path file: t, q1…q6, e1…, x…c, and measured ones with ``_meas``."""
@@ -112,11 +114,13 @@ class Tracking:
         """All rows so far."""
         times, axes = np.concatenate(self._times), np.concatenate(self._axes)
         points, tips = self._points(times, axes)
+        frames = tuple(zip(self._place_times, self._placements, strict=True))
         rows = [axes[:1] if row is None else row for row in self._measured]
         if self._last is None:
-            return PathRecord(times, axes, points, tips, None, None, None)
+            return PathRecord(times, axes, points, tips, None, None, None, frames)
         measured = np.concatenate(rows)
-        return PathRecord(times, axes, points, tips, measured, *self._points(times, measured))
+        found = self._points(times, measured)
+        return PathRecord(times, axes, points, tips, measured, *found, frames)
 
     def _send(self, until: int) -> None:
         step = self._robot.step
@@ -152,7 +156,7 @@ class Tracking:
             poses = before @ standing
             points[rows, :3] = poses[:, :3, 3]
             points[rows, 3:] = _angles(poses)
-            tips[rows] = standing[:, :3, 3]
+            tips[rows] = (matrix_of(placement.robroot) @ standing)[:, :3, 3]
         return points, tips
 
     def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:

@@ -10,7 +10,8 @@ from interp.robot.kinematics.machine_data import MachineData, read_machine
 from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
-from interp.robot.simulation.mujoco_model import FLANGE, Box, mjcf_of, reach_of
+from interp.robot.simulation.links import reach_of
+from interp.robot.simulation.mujoco_model import FLANGE, Box, mjcf_of
 from interp.values.poses import Pose
 
 mujoco = pytest.importorskip("mujoco")

@@ -1,0 +1,156 @@
+"""The bodies of an arm: links along its kinematic chain, with shapes and masses.
+
+What machine data does not say is assumed, and scaled by the arm's reach from an arm of the size of
+a KR 6 R900:
+
+- masses: 52 kg in all for a reach of 901.5 mm, as published; by the cube of the reach for others.
+  How they are shared among the links is a guess, and so are the shapes, which are filled evenly.
+- rotors: they add inertia to an axis, and friction that grows with its speed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from interp.robot.kinematics.chain import Point
+from interp.robot.kinematics.machine_data import AxisKind, MachineData
+from interp.values.poses import Pose
+
+__all__ = ["DARK", "ORANGE", "Capsule", "Link", "links_of", "reach_of"]
+
+_KNOWN_MASS: Final = 52.0  # kg, of an arm with this reach:
+_KNOWN_REACH: Final = 901.5  # mm
+ORANGE, DARK = "1 0.45 0.1 1", "0.25 0.26 0.28 1"
+_EXTERNAL_MASS = 20.0  # kg, for an arm of the known reach
+_ORIGIN: Point = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Capsule:
+    """A rod with round ends from one point to another in the frame of its link; mm, kg."""
+
+    start: Point
+    end: Point
+    radius: float
+    mass: float
+    colour: str = ORANGE
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A body that an axis moves.
+
+    ``parent`` is the index of the link that carries it, ``None`` for what stands in the world, and
+    ``frame`` where it stands there while its axis is at zero. ``joint`` is the index of its axis
+    among all axes, robot axes first; ``None`` where it does not move. The axis turns it about
+    ``axis`` of its own frame, or shifts it along where ``is_linear``. ``rotor`` is the inertia that
+    the drive adds, in kg m² (kg where it is linear).
+    """
+
+    name: str
+    parent: int | None
+    frame: Pose
+    joint: int | None = None
+    axis: Point = (0.0, 0.0, 1.0)
+    is_linear: bool = False
+    rotor: float = 0.0
+    shapes: tuple[Capsule, ...] = ()
+
+
+def links_of(machine: MachineData) -> tuple[Link, ...]:
+    """The bodies of an arm and its external axes, each behind the one that carries it.
+
+    The first is the foot; those of the robot axes follow in order, the last of them with the
+    flange. External axes stand beside the arm: machine data does not say what they carry.
+    """
+    scale = reach_of(machine) / _KNOWN_REACH
+    mass = _KNOWN_MASS * scale**3
+    inertia = mass * (reach_of(machine) / 1000.0) ** 2
+    links = [Link("foot", None, machine.robroot, shapes=_foot(machine, mass))]
+    joints = zip(machine.chain.joints, _ROTORS, _shapes(machine, mass), strict=True)
+    for place, (joint, rotor, shapes) in enumerate(joints):
+        links.append(
+            Link(
+                f"link_{place + 1}",
+                place,
+                joint.frame,
+                place,
+                joint.axis,
+                joint.is_linear,
+                rotor * inertia,
+                shapes,
+            )
+        )
+    return (*links, *_externals(machine, scale))
+
+
+def reach_of(machine: MachineData) -> float:
+    """From axis 1 to the wrist centre of the stretched arm, in mm."""
+    forward, aside, up = machine.tx3p3.position
+    return abs(machine.length_a) + machine.length_b + math.hypot(forward, aside, up)
+
+
+_ROTORS = (0.012, 0.012, 0.008, 0.001, 0.001, 0.0006)
+"""Rotor inertia as a share of the arm's mass times the square of its reach."""
+
+
+def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:
+    middle = _scaled(machine.tiroro.position, 0.5)
+    return (Capsule(_ORIGIN, middle, 0.105 * reach_of(machine), 0.22 * mass, DARK),)
+
+
+def _shapes(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
+    """The shapes of the links; radii as shares of the reach, masses of that of the arm."""
+    forward, aside, up = machine.tx3p3.position
+    elbow = (0.0, aside, up)
+    half = (forward / 2.0, aside, up)
+    back = _point(machine.tx3p3.inverse(), half)
+    hand = machine.tflwp.position
+    middle = _point(machine.tiroro.inverse(), _scaled(machine.tiroro.position, 0.6))
+    shares: tuple[tuple[tuple[Point, Point, float, float, str], ...], ...] = (
+        (
+            (middle, _ORIGIN, 0.095, 0.18, ORANGE),
+            (_ORIGIN, (machine.length_a, 0.0, 0.0), 0.085, 0.06, ORANGE),
+        ),
+        ((_ORIGIN, (machine.length_b, 0.0, 0.0), 0.068, 0.24, ORANGE),),
+        ((_ORIGIN, elbow, 0.064, 0.08, ORANGE), (elbow, half, 0.056, 0.08, ORANGE)),
+        ((back, _ORIGIN, 0.045, 0.09, ORANGE),),
+        ((_ORIGIN, _scaled(hand, 0.3), 0.042, 0.035, DARK),),
+        ((_scaled(hand, 0.5), _scaled(hand, 0.75), 0.03, 0.015, DARK),),
+    )
+    reach = reach_of(machine)
+    return tuple(
+        tuple(
+            Capsule(start, end, radius * reach, share * mass, colour)
+            for start, end, radius, share, colour in link
+        )
+        for link in shares
+    )
+
+
+def _externals(machine: MachineData, scale: float) -> Iterable[Link]:
+    reach = reach_of(machine)
+    for number, axis in enumerate(machine.externals, start=1):
+        is_linear = axis.kind is AxisKind.LINEAR
+        direction = (1.0, 0.0, 0.0) if is_linear else (0.0, 0.0, 1.0)
+        yield Link(
+            axis.name,
+            None,
+            machine.robroot @ Pose.of(y=-1.2 * reach * number),
+            len(machine.axes) + number - 1,
+            _scaled(direction, float(axis.direction)),
+            is_linear,
+            shapes=(Capsule(_ORIGIN, _ORIGIN, 0.12 * reach, _EXTERNAL_MASS * scale**3, DARK),),
+        )
+
+
+def _point(pose: Pose, point: Point) -> Point:
+    return (pose @ Pose.of(*point)).position
+
+
+def _scaled(point: Sequence[float], factor: float) -> Point:
+    x, y, z = point
+    return x * factor, y * factor, z * factor

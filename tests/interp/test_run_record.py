@@ -1,0 +1,50 @@
+"""The record of a run: the arm can be drawn from it."""
+
+import numpy as np
+import numpy.typing as npt
+
+from grammar.syntax.source import Source
+from interp.program.load import load
+from interp.run_record import record_of
+from interp.session import RunSetup, run_program
+
+Array = npt.NDArray[np.float64]
+
+_PROGRAM = """DEF CELL()
+$TOOL = {X 10, Y 0, Z 100, A 0, B 90, C 0}
+PTP {A1 10, A2 -80, A3 95, A4 20, A5 40, A6 30}
+PTP_REL {A1 20, A5 -30}
+END
+"""
+
+
+def test_links_lead_from_the_foot_to_the_tool() -> None:
+    """At every sample the chain of links ends where the path has the tool, within 10 µm."""
+    program = load([Source(_PROGRAM, "cell.src")], "cell.src")
+    setup = RunSetup(robot="kinematic")
+    record = record_of(run_program(program, setup), program, setup)
+    arm, path = record["arm"], record["path"]
+    axes, tools = np.array(path["axes"]).T, np.array(path["tool"])
+    assert len(axes) > 20
+    for time, row, tool in zip(path["t"], axes, tools, strict=True):
+        poses: list[Array] = []
+        for link in arm["links"]:
+            parent = poses[link["parent"]] if link["parent"] >= 0 else np.eye(4)
+            pose = parent @ np.array(link["frame"]).reshape(4, 4)
+            if link["joint"] >= 0:
+                pose = pose @ _moved(link["axis"], row[link["joint"]])
+            poses.append(pose)
+        last = [frames["tool"] for frames in arm["tools"] if frames["t"] <= time][-1]
+        flange = poses[arm["hand"]] @ np.array(arm["flange"]).reshape(4, 4)
+        tip = flange @ np.array(last).reshape(4, 4)
+        np.testing.assert_allclose(tip[:3, 3], tool, atol=1e-2)
+
+
+def _moved(axis: list[float], degrees: float) -> Array:
+    """A turn about an axis, by Rodrigues."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = np.radians(degrees)
+    turn = np.eye(4)
+    turn[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return turn
