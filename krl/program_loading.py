@@ -1,5 +1,6 @@
 """The program that a file on the command line means: with all files of its project."""
 
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from support.files.discovery import Found
 
-__all__ = ["load_program", "project_root", "read_sources", "sources_below"]
+__all__ = ["load_program", "project_paths", "project_root", "read_sources", "sources_below"]
 
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
@@ -151,7 +152,7 @@ def project_root(path: Path) -> Path:
     without such a layout around it is a project itself; the files of one that lies in a folder with
     KRL of its own, Program for instance, belong to that.
     """
-    from grammar.semantics.link import is_drive
+    from support.files.discovery import is_drive
 
     path = path.resolve()
     folder = path if path.is_dir() else path.parent
@@ -166,6 +167,32 @@ def project_root(path: Path) -> Path:
     while _has_krl(folder.parent):
         folder = folder.parent
     return folder
+
+
+def project_paths(path: Path) -> list[Path]:
+    """What to read for all that a file or folder sees: its controller, or the files beside it.
+
+    A folder or an archive without a controller around it is all there is.
+    """
+    from support.files.discovery import is_drive
+
+    archive, _ = _in_archive(path)
+    if archive is not None or not path.exists():
+        return [archive or path]
+    root = project_root(path)
+    names = _folders_in(root)
+    if is_drive(names) or not _PARTS.isdisjoint(map(str.upper, names)):
+        return [_as_given(root, path)]
+    if not path.is_file() or path.suffix.lower() not in _ENDINGS:
+        return [path]
+    return [one for one in path.parent.iterdir() if one.suffix.lower() in _ENDINGS]
+
+
+def _as_given(root: Path, path: Path) -> Path:
+    """A folder around a path, relative where that is."""
+    if root == path.resolve() or path.is_absolute():
+        return path if root == path.resolve() else root
+    return Path(os.path.relpath(root))
 
 
 def _folders_in(folder: Path) -> list[str]:

@@ -14,7 +14,7 @@ import os
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grammar.check.framework import check_project
@@ -67,6 +67,7 @@ def check_paths(
     roots: Sequence[Path],
     options: CheckOptions,
     *,
+    around: Sequence[Path] = (),
     jobs: int | None = None,
     cache: Path | None = None,
     on_found: Progress = no_progress,
@@ -74,6 +75,8 @@ def check_paths(
 ) -> CheckReport:
     """Check everything below ``roots``.
 
+    ``around`` are the folders and archives of the projects that these belong to, if they are more:
+    what is there is read, and not reported.
     ``jobs`` is the number of processes, by default one a core, or one where there is little to do.
     ``cache`` is the folder where findings are kept for the next time; without one nothing is kept.
     ``on_found`` is given the number of candidates once it is known, ``on_done`` how many
@@ -81,19 +84,42 @@ def check_paths(
 
     Raises `support.files.discovery.IngestError` where there is nothing to check.
     """
-    candidates = list(discover(roots))
-    on_found(len(candidates))
-    found = [candidate for candidate in candidates if isinstance(candidate, Found)]
-    skipped = [candidate for candidate in candidates if isinstance(candidate, Skipped)]
+    asked = list(discover(roots))
+    skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
+    wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
+    found = [one for one in (discover(around) if around else asked) if isinstance(one, Found)]
+    names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
+    projects = [some for some in _projects(found) if any(one.path in names for one in some)]
+    on_found(sum(map(len, projects)) + len(skipped))
     on_done(len(skipped))
-    size = sum(candidate.size for candidate in found)
-    wanted = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
+    size = sum(candidate.size for project in projects for candidate in project)
+    processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
-    with ResultStore(cache, "check") as store, StickyPool(wanted) as pool:
-        for result in _run(_projects(found), pool, store, options):
-            results.append(result)
+    with ResultStore(cache, "check") as store, StickyPool(processes) as pool:
+        for result in _run(iter(projects), pool, store, options):
             on_done(result.files + len(result.skipped))
+            results.append(_reported(result, names))
     return _together(results, skipped)
+
+
+def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
+    """What is to be said of a project: that of the files with a name, under that."""
+    return replace(
+        result,
+        diagnostics=tuple(
+            replace(one, path=names[one.path]) for one in result.diagnostics if one.path in names
+        ),
+        lines={(names[at], n): line for (at, n), line in result.lines.items() if at in names},
+        skipped=tuple(
+            replace(one, path=names[one.path]) for one in result.skipped if one.path in names
+        ),
+        sizes={names[path]: size for path, size in result.sizes.items() if path in names},
+    )
+
+
+def _place(found: Found) -> tuple[Path, str | None]:
+    """Where a file lies, however it was come by."""
+    return found.file, found.member
 
 
 def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
@@ -122,7 +148,7 @@ def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> C
         lines,
         tuple(sorted(left_out, key=lambda one: one.path)),
         sum(result.files for result in results),
-        sum(result.bytes for result in results),
+        sum(sum(result.sizes.values()) for result in results),
         len(results),
         sum(result.files for result in results if result.is_kept),
     )
@@ -206,17 +232,16 @@ class _Project:
         found = list(self.unread)
         lines: dict[tuple[str, int], str] = {}
         skipped = []
-        size = 0
+        sizes = {one.path: 0 for one in self.unread}
         for content, one in zip(self.contents, looked, strict=True):
             if one.skipped is not None:
                 skipped.append(Skipped(content.path, one.skipped, content.origin))
                 continue
-            size += len(content.data)
+            sizes[content.path] = len(content.data)
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
             found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
-        files = len(self.contents) + len(self.unread) - len(skipped)
-        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), files, size, False)
+        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, False)
 
 
 def _run(

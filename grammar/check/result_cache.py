@@ -24,15 +24,20 @@ __all__ = ["ProjectResult", "read_result", "result_record", "state_of"]
 class ProjectResult:
     """What was found in a project, in order, with source lines by path and number.
 
-    ``files`` were checked, of ``bytes`` in all; ``is_kept``: it was known from before.
+    ``sizes`` are the bytes of the files that were checked, by path; ``is_kept``: it was known from
+    before.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     lines: Mapping[tuple[str, int], str]
     skipped: tuple[Skipped, ...]
-    files: int
-    bytes: int
+    sizes: Mapping[str, int]
     is_kept: bool
+
+    @property
+    def files(self) -> int:
+        """How many files were checked."""
+        return len(self.sizes)
 
 
 def state_of(contents: Sequence[Content], options: CheckOptions) -> str:
@@ -51,8 +56,7 @@ def result_record(result: ProjectResult, state: str) -> dict[str, object]:
         "diagnostics": [_written(one) for one in result.diagnostics],
         "lines": [[path, number, line] for (path, number), line in result.lines.items()],
         "skipped": [[one.path, one.reason, one.origin] for one in result.skipped],
-        "files": result.files,
-        "bytes": result.bytes,
+        "sizes": dict(result.sizes),
     }
 
 
@@ -65,11 +69,10 @@ def read_result(record: Mapping[str, Any], state: str) -> ProjectResult | None:
             tuple(_read(values) for values in record["diagnostics"]),
             {(path, number): line for path, number, line in record["lines"]},
             tuple(Skipped(*values) for values in record["skipped"]),
-            record["files"],
-            record["bytes"],
+            {str(path): int(size) for path, size in record["sizes"].items()},
             True,
         )
-    except (KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError):
         return None
 
 

@@ -45,8 +45,9 @@ from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, RoutineTable, Symbol
 from grammar.syntax import ast
 from grammar.syntax.references import Space
+from support.files.discovery import DRIVE_FOLDERS, is_drive
 
-__all__ = ["Clash", "File", "Project", "Workspace", "extended", "is_drive", "link", "words_of"]
+__all__ = ["Clash", "File", "Project", "Workspace", "extended", "link", "words_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,8 +320,6 @@ def _has_all(modules: Sequence[Module]) -> bool:
 # ------------------------------------------------------------------------------------ projects
 
 _DRIVES = {"r1", "steu"}
-#: What lies in these: a folder called R1 alone may be somebody's name for a robot.
-_PARTS = {"program", "system", "mada", "tp", "folgen"}
 _CONFIG = "$config.dat"
 
 _Folder = tuple[str, ...]
@@ -375,17 +374,8 @@ def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
     for depth, name in enumerate(folders):
         if name in _DRIVES:
             is_below_krc = depth > 0 and folders[depth - 1] == "krc"
-            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in _PARTS):
+            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in DRIVE_FOLDERS):
                 yield folders[:depth]
-
-
-def is_drive(names: Iterable[str]) -> bool:
-    """Whether a folder that holds folders of these names is the drive of a controller.
-
-    As R1 does, whatever it is called: Program, TP or others beside System or Mada.
-    """
-    parts = _PARTS & {name.casefold() for name in names}
-    return len(parts) > 1 and not parts.isdisjoint({"system", "mada"})
 
 
 def _renamed_drives(files: Iterable[_Placed]) -> dict[_Folder, _Folder]:

@@ -89,6 +89,7 @@ def check(
     """
     from grammar.check.batch import CheckOptions, check_paths
     from grammar.diagnostics.suppression import Selection
+    from krl.program_loading import project_paths
     from support.files.discovery import IngestError
 
     check_files(out)
@@ -98,7 +99,13 @@ def check(
     folder = None if no_cache else _usable(cache, _users_cache())
     with as_input_errors(IngestError), progress_bar("checking") as bar:
         found = check_paths(
-            paths, options, jobs=jobs, cache=folder, on_found=bar.expect, on_done=bar
+            paths,
+            options,
+            around=[one for path in paths for one in project_paths(path)],
+            jobs=jobs,
+            cache=folder,
+            on_found=bar.expect,
+            on_done=bar,
         )
     if not found.files:
         first = found.skipped[0]

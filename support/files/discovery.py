@@ -19,10 +19,13 @@ from support.files.archives import ArchiveError, is_archive
 from support.files.untrusted import open_file
 
 __all__ = [
+    "DRIVE_FOLDERS",
     "Found",
     "IngestError",
     "Skipped",
     "discover",
+    "is_drive",
+    "printable",
     "read",
 ]
 
@@ -31,6 +34,9 @@ SUFFIXES = (".src", ".dat", ".sub")
 
 IGNORED_FOLDERS = {"node_modules", "__pycache__", "__macosx"}
 """Folders, in lower case, that hold nobody's programs. Hidden ones, `.git` too, are ignored."""
+
+DRIVE_FOLDERS = {"program", "system", "mada", "tp", "folgen"}
+"""Folders, in lower case, that lie in R1: one called R1 may be somebody's name for a robot."""
 
 _BACKUP_SIGNS = {".git", "krc", "r1", "steu"}  # a folder that holds one of these is one origin
 _CORPUS_SIGN = "sources.toml"
@@ -69,7 +75,7 @@ class Skipped:
 
 
 def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
-    """Find the candidates below `roots`: files, folders, `.zip` archives.
+    """Find the candidates below `roots`: files, folders, `.zip` archives, places inside these.
 
     Roots are looked at before anything is returned. A file below two roots belongs to the nearer
     one. Links are not followed, except for the roots themselves.
@@ -78,6 +84,15 @@ def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
     there was nothing to survey.
     """
     return _survey(_resolved(roots))
+
+
+def is_drive(names: Iterable[str]) -> bool:
+    """Whether a folder that holds folders of these names is the drive of a controller.
+
+    As R1 does, whatever it is called: Program, TP or others beside System or Mada.
+    """
+    parts = DRIVE_FOLDERS & {name.casefold() for name in names}
+    return len(parts) > 1 and not parts.isdisjoint({"system", "mada"})
 
 
 def read(found: Found) -> bytes | Skipped:
@@ -111,20 +126,26 @@ def _escaped(code: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Root:
-    """A root as it was given, and where it really lies."""
+    """A root as it was given, and where it really lies; ``inside`` is a place in an archive."""
 
     shown: str
     real: Path
     folder: bool
+    inside: str = ""
+
+    def holds(self, item: Found | Skipped) -> bool:
+        """Whether what was found in the root's file is meant."""
+        return not self.inside or f"{item.path}/".startswith(printable(f"{self.inside}/"))
 
 
 def _resolved(roots: Sequence[Path]) -> list[_Root]:
     """Check the roots; return them sorted, each place once."""
     if not roots:
         raise IngestError("no file or folder was named")
-    found: dict[Path, _Root] = {}
-    for root in sorted(map(Path, roots), key=lambda root: _order(root.as_posix())):
-        shown = root.as_posix()
+    found: dict[tuple[Path, str], _Root] = {}
+    for given in sorted(map(Path, roots), key=lambda root: _order(root.as_posix())):
+        root = _archive_around(given) or given
+        shown, inside = root.as_posix(), "" if root == given else given.as_posix()
         try:
             mode = root.stat().st_mode
             real = root.resolve()
@@ -139,8 +160,16 @@ def _resolved(roots: Sequence[Path]) -> list[_Root]:
         except (OSError, RuntimeError, ValueError) as error:
             reason = archives.why(error) if isinstance(error, OSError) else str(error)
             raise IngestError(printable(f"{shown}: cannot be read: {reason}")) from error
-        found.setdefault(real, _Root(shown, real, stat.S_ISDIR(mode)))
+        found.setdefault((real, inside), _Root(shown, real, stat.S_ISDIR(mode), inside))
     return list(found.values())
+
+
+def _archive_around(path: Path) -> Path | None:
+    """The archive that a path leads into, if it does."""
+    try:
+        return next((one for one in path.parents if is_archive(one.name) and one.is_file()), None)
+    except (OSError, ValueError):
+        return None
 
 
 def _order(name: str) -> tuple[str, str]:
@@ -232,7 +261,11 @@ def _is_backup(listed: list[os.DirEntry[str]]) -> bool:
     """Tell whether a folder that holds `listed` is one repository or one controller's backup."""
     names = {entry.name.casefold() for entry in listed}
     drives = [Path(entry.path) for entry in listed if entry.name.casefold() == "c"]
-    return not names.isdisjoint(_BACKUP_SIGNS) or any((c / "KRC").is_dir() for c in drives)
+    return (
+        not names.isdisjoint(_BACKUP_SIGNS)
+        or is_drive(names)
+        or any((c / "KRC").is_dir() for c in drives)
+    )
 
 
 def _is_corpus(listed: list[os.DirEntry[str]]) -> bool:
@@ -276,7 +309,7 @@ def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
     first: Skipped | None = None
     for root in roots:
         for place in _walk(root, places - {root.real}):
-            for item in _items(place, names):
+            for item in filter(root.holds, _items(place, names)):
                 if isinstance(item, Found):
                     found += 1
                 else:
@@ -288,7 +321,7 @@ def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
     if lone and first and not lone.folder:
         raise IngestError(f"{first.path}: {first.reason}")
     if not first:
-        where = printable(lone.shown) if lone else f"{len(roots)} places"
+        where = printable(lone.inside or lone.shown) if lone else f"{len(roots)} places"
         raise IngestError(f"{where}: no .src, .dat or .sub file in {'it' if lone else 'any'}")
 
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import pytest
 
@@ -235,3 +236,55 @@ def test_as_a_process() -> None:
     )
     assert (1, "") == (done.returncode, done.stderr.partition("1 file checked: 1 warning")[0])
     assert "KRL401" in done.stdout
+
+
+BACKUP = {
+    "KRC/R1/Program/work.src": "DEF WORK()\nOPEN(1, 2)\nSHUT(1)\nEND\n",
+    "KRC/R1/TP/tools.src": "DEF TOOLS()\nEND\nGLOBAL DEF OPEN(N :IN)\nDECL INT N\nEND\n",
+    "KRC/R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
+    "KRC/STEU/Mada/$custom.dat": "DEFDAT $CUSTOM PUBLIC\nENDDAT\n",
+}
+#: What the checker says of the program, which only the other files can tell.
+OF_WORK = [("work.src", 2, "KRL301", "error"), ("work.src", 3, "KRL701", "note")]
+
+
+@pytest.fixture
+def backup(elsewhere: Path) -> Path:
+    """A backup as a folder and as an archive, beside one another."""
+    with ZipFile(elsewhere / "backup.zip", "w") as archive:
+        for name, text in BACKUP.items():
+            archive.writestr(name, text)
+            file = elsewhere / "backup" / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+    return elsewhere
+
+
+@pytest.mark.usefixtures("backup")
+@pytest.mark.parametrize("kind", ["backup", "backup.zip"])
+@pytest.mark.parametrize(
+    "entry", ["", "KRC", "KRC/R1", "KRC/R1/Program", "KRC/R1/Program/work.src"]
+)
+def test_one_project_from_any_entry(
+    capsys: pytest.CaptureFixture[str], kind: str, entry: str
+) -> None:
+    """A file is checked as part of its controller, however much of that is named."""
+    found = records(capsys, "--no-cache", f"{kind}/{entry}".rstrip("/"))
+    shown = [(one["path"], one["line"], one["code"], one["severity"]) for one in found]
+    whole = f"{kind}/KRC/R1/Program/work.src"
+    assert [(whole, *rest) for _, *rest in OF_WORK] == shown
+
+
+def test_entry_from_inside(
+    capsys: pytest.CaptureFixture[str], backup: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Paths are those of the folder that one stands in, whatever the project is."""
+    monkeypatch.chdir(backup / "backup/KRC/R1/Program")
+    found = records(capsys, "--no-cache", "work.src")
+    assert OF_WORK == [(one["path"], one["line"], one["code"], one["severity"]) for one in found]
+
+
+def test_nothing_is_missing(capsys: pytest.CaptureFixture[str], backup: Path) -> None:
+    """With --complete a routine that no file has is an error."""
+    found = records(capsys, "--no-cache", "--complete", str(backup / "backup"))
+    assert ["KRL301", "KRL102"] == [one["code"] for one in found if one["severity"] == "error"]
