@@ -25,7 +25,7 @@ from grammar.semantics.types import (
     Verdict,
 )
 from grammar.syntax import ast
-from grammar.syntax.walk import without_parentheses
+from grammar.syntax.walk import children, without_parentheses
 
 __all__ = ["check"]
 
@@ -36,9 +36,8 @@ def check(context: Context) -> Iterator[Diagnostic]:
     for routine in context.routines:
         rules = _Routine(checker, routine)
         for placed in routine.statements:
-            rule = _RULES.get(type(placed.statement))
-            if rule is not None:
-                rule(rules, placed.statement)
+            rule = _RULES.get(type(placed.statement), _Routine.parts)
+            rule(rules, placed.statement)
     yield from checker.diagnostics
 
 
@@ -95,6 +94,11 @@ class _Routine:
         for node in nodes:
             if node is not None:
                 self.checker.infer(node)
+
+    def parts(self, node: ast.Statement) -> None:
+        """A statement without a rule of its own: its expressions may be anything."""
+        if not isinstance(node, ast.Definition):
+            self.types(*(one for one in children(node) if isinstance(one, ast.Expression)))
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
         """What a trigger or an interrupt does."""
@@ -235,13 +239,10 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Repeat: lambda routine, node: routine.condition(node.condition),
     ast.Switch: _Routine.switch,
     ast.Return: _Routine.returned,
-    ast.Confirm: lambda routine, node: routine.types(node.number),
     ast.WaitFor: lambda routine, node: routine.condition(node.condition),
     ast.WaitSeconds: lambda routine, node: routine.numbers(node.duration),
     ast.SignalOn: _Routine.signal_on,
-    ast.SignalOff: lambda routine, node: routine.types(node.variable),
     ast.Motion: _Routine.motion,
-    ast.EmilyMotion: lambda routine, node: routine.types(node.device, node.action, node.number),
     ast.SplineBlock: lambda routine, node: routine.values(node.values),
     ast.ConstantVelocity: lambda routine, node: routine.numbers(node.place),
     ast.TimeBlock: lambda routine, node: routine.numbers(node.value),

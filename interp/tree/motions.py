@@ -7,13 +7,11 @@ from __future__ import annotations
 
 from grammar.syntax import ast
 from interp.port.requests import (
-    BrakeArm,
     DeclareInterrupt,
     Move,
     MoveEmily,
     MoveSpline,
     Path,
-    Resume,
     SetTrigger,
     SplineItem,
     SplineRange,
@@ -145,14 +143,6 @@ class Motions(Calls):
         """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
         number = None if node.number is None else (yield from self.integer(node.number))
         yield SwitchInterrupt(self.at(), node.action, number)
-
-    def brake(self, node: ast.Brake) -> Steps[None]:
-        """BRAKE [INT-09]."""
-        yield BrakeArm(self.at(), node.mode)
-
-    def resume(self, _node: ast.Resume) -> Steps[None]:
-        """RESUME: the controller answers by unwinding [INT-10]."""
-        yield Resume(self.at())
 
     # ----------------------------------------------------------------------- cyclic signals
 

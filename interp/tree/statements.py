@@ -14,14 +14,15 @@ from typing import Any
 from grammar.semantics.types import INT, Array
 from grammar.syntax import ast
 from interp.port import requests
-from interp.port.requests import Poll, Wait, Write
+from interp.port.requests import Poll, Write
+from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.program.variables import is_complete
 from interp.tree.motions import Motions
 from interp.tree.places import SystemPlace, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.operators import apply
-from interp.values.values import Value, known
+from interp.values.values import Value, converted, known
 
 __all__ = ["Resumed", "Selected", "Statements"]
 
@@ -270,28 +271,27 @@ class Statements(Motions):
     def _call(self, node: ast.CallStatement) -> Steps[None]:
         yield from self.call(node.call, is_value=False)
 
-    def _halt(self, _node: ast.Halt) -> Steps[None]:
-        yield requests.Halt(self.at())
-
-    def _continue(self, _node: ast.Continue) -> Steps[None]:
-        yield requests.Continue(self.at())
+    def _request(self, node: ast.Statement) -> Steps[None]:
+        """A statement that only makes a request."""
+        made = STATEMENT_REQUESTS[type(node)]
+        parts: list[Any] = []
+        for part in made.parts:
+            value = getattr(node, part.field)
+            if part.type is not None:
+                value = converted((yield from self.value(value, part.type)), part.type)
+            parts.append(value)
+        yield made.request(self.at(), *parts)
 
     def _proceed(self, _node: ast.OnErrorProceed) -> Steps[None]:
         self.run.guard = Guard.NEXT
         return
         yield
 
-    def _confirm(self, node: ast.Confirm) -> Steps[None]:
-        yield requests.Confirm(self.at(), (yield from self.integer(node.number)))
-
     def _wait_for(self, node: ast.WaitFor) -> Steps[None]:
         """Asked before each look at the condition, so that time passes between two [CTL-12]."""
         yield Poll(self.at(), is_first=True)
         while not (yield from self.truth(node.condition)):
             yield Poll(self.at(), is_first=False)
-
-    def _wait_seconds(self, node: ast.WaitSeconds) -> Steps[None]:
-        yield Wait(self.at(), (yield from self.real(node.duration)))
 
 
 def _place_of(label: str, body: tuple[ast.Statement, ...]) -> int:
@@ -315,20 +315,15 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Exit: Statements._exit,
     ast.Goto: Statements._goto,
     ast.Return: Statements._return,
-    ast.Halt: Statements._halt,
-    ast.Continue: Statements._continue,
     ast.OnErrorProceed: Statements._proceed,
-    ast.Confirm: Statements._confirm,
     ast.WaitFor: Statements._wait_for,
-    ast.WaitSeconds: Statements._wait_seconds,
     ast.SignalOn: Statements.signal_on,
     ast.SignalOff: Statements.signal_off,
     ast.Motion: Statements.motion,
     ast.EmilyMotion: Statements.emily_motion,
     ast.SplineBlock: Statements.spline_block,
-    ast.Brake: Statements.brake,
-    ast.Resume: Statements.resume,
     ast.InterruptDeclaration: Statements.interrupt_declaration,
     ast.InterruptSwitch: Statements.interrupt_switch,
     ast.Trigger: Statements.trigger,
+    **dict.fromkeys(STATEMENT_REQUESTS, Statements._request),
 }

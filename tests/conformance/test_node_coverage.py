@@ -9,7 +9,7 @@ from typing import Any, get_args, get_type_hints
 
 import pytest
 
-from grammar.check import declarations, expressions, statements
+from grammar.check import expressions
 from grammar.generation.closed.programs import seeded
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
@@ -88,11 +88,6 @@ def generated() -> Kinds:
     }
 
 
-def typed() -> Kinds:
-    """All statements whose expressions the type checker types."""
-    return {*statements._RULES, *declarations._DEFINITIONS}
-
-
 #: What needs a rule in a table, and what has one.
 TABLES: dict[str, tuple[Kinds, Callable[[], Kinds]]] = {
     "the unions and fields of grammar.syntax.ast": (NODES, reached),
@@ -102,10 +97,6 @@ TABLES: dict[str, tuple[Kinds, Callable[[], Kinds]]] = {
         lambda: {*ast.TEMPLATES, *unparse._PRINTERS},
     ),
     "grammar.check.expressions": (EXPRESSIONS, lambda: {*expressions._RULES}),
-    "grammar.check.statements": (
-        {kind for kind in EXECUTED if fields_of(kind) & EXPRESSIONS},
-        typed,
-    ),
     "interp.tree.statements": (EXECUTED, lambda: {*tree_statements._RULES}),
     "interp.tree.expressions": (EXPRESSIONS, lambda: {*tree_expressions._VALUES, *PLACES}),
     "interp.bytecode.compiler.statements": (EXECUTED, lambda: {*compiled_statements._RULES}),

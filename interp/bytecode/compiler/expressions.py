@@ -97,13 +97,17 @@ class Expressions:
         else:
             self._emit(Op.JUMP_UNLESS, label)
 
+    def number(self, node: ast.Expression, type_: Type) -> None:
+        """A number as INT or REAL."""
+        self._memory.convert(self.value(node, type_), type_)
+
     def integer(self, node: ast.Expression) -> None:
         """A number as INT."""
-        self._memory.convert(self.value(node, INT), INT)
+        self.number(node, INT)
 
     def real(self, node: ast.Expression) -> None:
         """A number as REAL."""
-        self._memory.convert(self.value(node, REAL), REAL)
+        self.number(node, REAL)
 
     def _integer(self, node: ast.IntegerLiteral | ast.BitLiteral, _wanted: Type) -> Value:
         number = node.value

@@ -307,10 +307,6 @@ class Motions:
         number = self._optional_integer(node.number)
         self._emitter.ask("SwitchInterrupt", Constant(node.action), number)
 
-    def brake(self, node: ast.Brake) -> None:
-        """BRAKE [INT-09]."""
-        self._emitter.ask("BrakeArm", Constant(node.mode))
-
     # ----------------------------------------------------------------------- cyclic signals
 
     def signal_on(self, node: ast.SignalOn) -> None:

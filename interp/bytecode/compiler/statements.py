@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
-from grammar.semantics.types import INT, REAL
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.calls import Calls
@@ -26,7 +25,8 @@ from interp.bytecode.compiler.locations import (
     SystemVariable,
 )
 from interp.bytecode.compiler.motions import Motions
-from interp.bytecode.program import CodeKind, Constant, Input, Mode
+from interp.bytecode.program import Argument, CodeKind, Constant, Input, Mode
+from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.values.faults import FAULTS
 
 __all__ = ["Statements"]
@@ -119,10 +119,6 @@ class Statements:
     def _proceed(self, _node: ast.OnErrorProceed, _end: Label) -> None:
         self._emit(Op.PROCEED)
 
-    def _confirm(self, node: ast.Confirm, _end: Label) -> None:
-        self._expressions.integer(node.number)
-        self._emitter.ask("Confirm", Input(Mode.IN, self._emitter.number(INT)))
-
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
         """Asked before each look at the condition, so that time passes between two [CTL-12]."""
         test, again = Label(), Label()
@@ -134,16 +130,21 @@ class Statements:
         self._emitter.ask("Poll", Constant(False))
         self._emit(Op.JUMP, test)
 
-    def _wait_seconds(self, node: ast.WaitSeconds, _end: Label) -> None:
-        self._expressions.real(node.duration)
-        self._emitter.ask("Wait", Input(Mode.IN, self._emitter.number(REAL)))
+    def _request(self, node: ast.Statement, _end: Label) -> None:
+        """A statement that only makes a request."""
+        made = STATEMENT_REQUESTS[type(node)]
+        parts: list[Argument] = []
+        for part in made.parts:
+            value = getattr(node, part.field)
+            if part.type is None:
+                parts.append(Constant(value))
+            else:
+                self._expressions.number(value, part.type)
+                parts.append(Input(Mode.IN, self._emitter.number(part.type)))
+        self._emitter.ask(made.request.__name__, *parts)
 
 
 _Rule = Callable[[Statements, Any, Label], None]
-
-
-def _plain(request: str) -> _Rule:
-    return lambda self, _node, _end: self._emitter.ask(request)
 
 
 def _flow(rule: Callable[[ControlFlow, Any, Label], None]) -> _Rule:
@@ -170,20 +171,15 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Exit: _flow(ControlFlow.exit_loop),
     ast.Goto: _flow(ControlFlow.goto),
     ast.Return: _flow(ControlFlow.return_statement),
-    ast.Halt: _plain("Halt"),
-    ast.Continue: _plain("Continue"),
-    ast.Resume: _plain("Resume"),
     ast.OnErrorProceed: Statements._proceed,
-    ast.Confirm: Statements._confirm,
     ast.WaitFor: Statements._wait_for,
-    ast.WaitSeconds: Statements._wait_seconds,
     ast.SignalOn: _motion(Motions.signal_on),
     ast.SignalOff: _motion(Motions.signal_off),
     ast.Motion: _motion(Motions.motion),
     ast.EmilyMotion: _motion(Motions.emily_motion),
     ast.SplineBlock: _spline_block,
-    ast.Brake: _motion(Motions.brake),
     ast.InterruptDeclaration: _motion(Motions.interrupt_declaration),
     ast.InterruptSwitch: _motion(Motions.interrupt_switch),
     ast.Trigger: _motion(Motions.trigger),
+    **dict.fromkeys(STATEMENT_REQUESTS, Statements._request),
 }
