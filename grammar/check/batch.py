@@ -2,14 +2,13 @@
 
 Files are grouped to projects by where they lie, before any is read (`grammar.semantics.link`).
 Projects are checked one after the other in parallel processes, a large one by all of them
-(`support.parallel.sticky_pool`). The findings come in order, whatever process they are from. A
-project in which nothing has changed is not checked again: a finding in one file may follow from any
-other, so what was found is kept by the digests of all its files and of our own code and tables.
+(`support.parallel.sticky_pool`). The findings come in order, whatever process they are from. What
+was found is kept: of a project in which nothing has changed, all of it, and of any other the
+results of those files that need not be checked again (`grammar.check.project_check`).
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,15 +21,26 @@ from grammar.check.project_check import (
     CheckOptions,
     Content,
     FileResult,
+    KnownFile,
     check_part,
-    check_whole,
+    completed,
+    needs,
     read_part,
+    recheck,
 )
-from grammar.check.result_cache import ProjectResult, read_result, result_record, state_of
+from grammar.check.result_cache import (
+    ProjectResult,
+    known_files,
+    known_records,
+    read_result,
+    result_record,
+    state_of,
+)
 from grammar.check.suppression_comments import apply_suppressions
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.link import File, link
 from support.files import archives
+from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
@@ -114,6 +124,7 @@ def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
             replace(one, path=names[one.path]) for one in result.skipped if one.path in names
         ),
         sizes={names[path]: size for path, size in result.sizes.items() if path in names},
+        kept=frozenset(names[path] for path in result.kept if path in names),
     )
 
 
@@ -150,7 +161,7 @@ def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> C
         sum(result.files for result in results),
         sum(sum(result.sizes.values()) for result in results),
         len(results),
-        sum(result.files for result in results if result.is_kept),
+        sum(len(result.kept & result.sizes.keys()) for result in results),
     )
 
 
@@ -167,6 +178,7 @@ class _Project:
     def __init__(self, members: Sequence[Found], options: CheckOptions) -> None:
         self.options = options
         self.contents: list[Content] = []
+        self.places: list[str] = []
         self.unread: list[Diagnostic] = []
         for found in members:
             data = read(found)
@@ -175,56 +187,54 @@ class _Project:
                 self.unread.append(diagnose("unreadable", found.path, region, data.reason))
             else:
                 self.contents.append(Content(found.path, found.origin, data))
-        self.place = hashlib.sha256(
-            "\n".join(f"{found.file} {found.member}" for found in members).encode(
-                "utf-8", "surrogatepass"
-            )
-        ).hexdigest()
+                self.places.append(_address(found))
+        self.place = digest("\n".join(map(_address, members)).encode())
         self.size = sum(len(content.data) for content in self.contents)
         self.state = state_of(self.contents, options)
-        self._whole: Future[list[FileResult]] | None = None
+        self._known: Mapping[int, KnownFile] = {}
+        self._whole: Future[list[KnownFile]] | None = None
         self._parts: list[Future[dict[int, FileResult]]] = []
 
-    def start(self, number: int, pool: StickyPool) -> None:
+    def start(self, number: int, pool: StickyPool, store: ResultStore) -> None:
         """Have the project checked; with several processes this waits until it has been read."""
-        if pool.count == 1 or self.size < _LARGE:
-            process = pool.least_loaded(self.size)
-            self._whole = pool.submit(process, check_whole, self.contents, self.options)
+        known = self._known = known_files(store, self.places, self.contents, self.options)
+        new = {index: one for index, one in enumerate(self.contents) if index not in known}
+        size = sum(len(content.data) for content in new.values())
+        if pool.count == 1 or size < _LARGE:
+            process = pool.least_loaded(size)
+            self._whole = pool.submit(process, recheck, self.contents, self.options, known)
             return
         reading = [
             pool.submit(process, read_part, number, share, self.options)
-            for process, share in enumerate(self._shares(pool.count))
+            for process, share in enumerate(_shares(new, pool.count))
         ]
-        looked: dict[int, FileResult] = {}
+        looked = {index: one.read for index, one in known.items()}
         for part in reading:
             looked |= part.result()
-        places = [(content.path, content.origin) for content in self.contents]
         self._read = looked
+        self._needs = needs(self.contents, looked)
+        stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
+        places = [(content.path, content.origin) for content in self.contents]
         self._parts = [
-            pool.submit(process, check_part, number, places, looked, self.options)
-            for process in range(pool.count)
+            pool.submit(process, check_part, number, places, looked, again, self.options)
+            for process, again in enumerate(_shares(stale, pool.count))
         ]
 
-    def _shares(self, count: int) -> list[dict[int, Content]]:
-        """The files in shares of about the same size."""
-        shares: list[dict[int, Content]] = [{} for _ in range(count)]
-        sizes = [0] * count
-        by_size = sorted(enumerate(self.contents), key=lambda item: -len(item[1].data))
-        for index, content in by_size:
-            smallest = sizes.index(min(sizes))
-            sizes[smallest] += len(content.data)
-            shares[smallest][index] = content
-        return [dict(sorted(share.items())) for share in shares]
+    def keep(self, result: ProjectResult, store: ResultStore) -> None:
+        """Keep what was found, and what is now known of files."""
+        store.put(known_records(self.places, self._files, self._known, self.options))
+        store.put([(self.place, result_record(result, self.state))])
 
     def result(self) -> ProjectResult:
         """What was found; waits for it."""
         if self._whole is not None:
-            looked = self._whole.result()
+            self._files = self._whole.result()
         else:
-            checked = dict(self._read)
+            checked: dict[int, FileResult] = {}
             for part in self._parts:
                 checked |= part.result()
-            looked = [checked[index] for index in range(len(self.contents))]
+            self._files = completed(self.contents, self._read, self._known, checked, self._needs)
+        looked = [known.checked for known in self._files]
         diagnostics = check_project(one.findings for one in looked)
         by_path: dict[str, list[Diagnostic]] = {content.path: [] for content in self.contents}
         for diagnostic in diagnostics:
@@ -241,7 +251,29 @@ class _Project:
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
             found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
-        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, False)
+        kept = frozenset(
+            content.path
+            for index, content in enumerate(self.contents)
+            if self._files[index] is self._known.get(index)
+        )
+        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, kept)
+
+
+def _address(found: Found) -> str:
+    """What tells a file, and how it was named, from all others."""
+    place = f"{found.file}\n{found.member}\n{found.path}\n{found.origin}"
+    return digest(place.encode("utf-8", "surrogatepass"))
+
+
+def _shares(contents: Mapping[int, Content], count: int) -> list[dict[int, Content]]:
+    """Files in shares of about the same size."""
+    shares: list[dict[int, Content]] = [{} for _ in range(count)]
+    sizes = [0] * count
+    for index, content in sorted(contents.items(), key=lambda item: -len(item[1].data)):
+        smallest = sizes.index(min(sizes))
+        sizes[smallest] += len(content.data)
+        shares[smallest][index] = content
+    return [dict(sorted(share.items())) for share in shares]
 
 
 def _run(
@@ -261,7 +293,7 @@ def _run(
             return project
         size -= project.size
         result = project.result()
-        store.put([(project.place, result_record(result, project.state))])
+        project.keep(result, store)
         return result
 
     for number, members in enumerate(projects):
@@ -271,7 +303,7 @@ def _run(
         if known is not None:
             waiting.append(known)
         else:
-            project.start(number, pool)
+            project.start(number, pool, store)
             waiting.append(project)
             size += project.size
         while waiting and (size > _MOST_WAITING or isinstance(waiting[0], ProjectResult)):

@@ -2,7 +2,8 @@
 
 A file is checked against the tables of all files of its project, and against no trees but its own.
 So files can be shared by processes: each reads its share and keeps the trees, the tables are sent
-to all, and each checks its share.
+to all, and each checks its share. For the same reason a file whose text is known need not be read
+again, and is checked again only where what it rests on has changed (`grammar.check.dependencies`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass, replace
 
 from grammar.check import advance_stops
 from grammar.check.context import Context
+from grammar.check.dependencies import Contribution, Needs, contribution, needs_of
 from grammar.check.framework import Findings, check_module
 from grammar.check.suppression_comments import SuppressionComment, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
@@ -25,7 +27,7 @@ from grammar.semantics.symbols import ModuleTable
 from grammar.syntax import ast
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
-from support.files.decode import decode
+from support.files.decode import decode, digest
 from support.parallel.gc_pause import gc_paused
 
 __all__ = [
@@ -33,11 +35,15 @@ __all__ = [
     "CheckOptions",
     "Content",
     "FileResult",
+    "KnownFile",
     "Reading",
     "check_part",
     "check_whole",
+    "completed",
+    "needs",
     "read_part",
     "read_source",
+    "recheck",
 ]
 
 #: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
@@ -85,6 +91,7 @@ class FileResult:
 
     ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
     by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
+    ``contribution`` is what it tells others; ``is_open``: it uses a name that nothing declares.
     """
 
     findings: Findings = _NOTHING
@@ -93,6 +100,28 @@ class FileResult:
     lines: Mapping[int, str] | None = None
     comments: tuple[SuppressionComment, ...] = ()
     words: frozenset[str] | None = None
+    contribution: Contribution | None = None
+    is_open: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class KnownFile:
+    """A file that was checked before: what reading it gave, and checking it while it needed that.
+
+    ``digest`` is that of its content.
+    """
+
+    digest: str
+    read: FileResult
+    checked: FileResult
+    needs: Needs
+
+    def stands(self, needs: Needs) -> bool:
+        """Whether its findings are what another check would find."""
+        if self.read.table is None:  # its findings are those of its text alone
+            return True
+        is_named = self.needs.names == needs.names or not self.checked.is_open
+        return self.needs.facts == needs.facts != "" and is_named
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,18 +172,70 @@ _KEPT: dict[int, dict[int, _Tree]] = {}
 
 def check_whole(contents: Sequence[Content], options: CheckOptions) -> list[FileResult]:
     """Check all files of a project in this process."""
+    return [one.checked for one in recheck(contents, options, {})]
+
+
+def recheck(
+    contents: Sequence[Content], options: CheckOptions, known: Mapping[int, KnownFile]
+) -> list[KnownFile]:
+    """Check a project in this process, but for what stands of its ``known`` files."""
     project = -1
-    looked = read_part(project, dict(enumerate(contents)), options)
-    checked = check_part(project, [(c.path, c.origin) for c in contents], looked, options)
-    return [checked.get(index) or looked[index] for index in range(len(contents))]
+    new = {index: one for index, one in enumerate(contents) if index not in known}
+    looked = {index: one.read for index, one in known.items()}
+    looked |= read_part(project, new, options)
+    needed = needs(contents, looked)
+    stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
+    places = [(content.path, content.origin) for content in contents]
+    checked = check_part(project, places, looked, stale, options)
+    return completed(contents, looked, known, checked, needed)
+
+
+def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list[Needs]:
+    """What the findings of each file of a project rest on, from what reading all of them gave."""
+    places = [(content.path, content.origin) for content in contents]
+    found = [Needs("", "")] * len(contents)
+    by_path = {path: index for index, (path, _) in enumerate(places)}
+    for project in link(_files(places, looked, {})).projects:
+        members = [by_path[module.path] for module in project.modules]
+        given = [looked[index].contribution for index in members]
+        for index, needed in zip(members, needs_of(project, given), strict=True):
+            found[index] = needed
+    return found
+
+
+def completed(
+    contents: Sequence[Content],
+    looked: Mapping[int, FileResult],
+    known: Mapping[int, KnownFile],
+    checked: Mapping[int, FileResult],
+    needed: Sequence[Needs],
+) -> list[KnownFile]:
+    """All files of a project as they are known now."""
+    found = []
+    for index, content in enumerate(contents):
+        before = known.get(index)
+        result = checked.get(index) or (before.checked if before else looked[index])
+        key = before.digest if before else digest(content.data)
+        if before is not None and result is before.checked and before.stands(needed[index]):
+            found.append(before)
+        else:
+            found.append(KnownFile(key, looked[index], result, needed[index]))
+    return found
 
 
 def read_part(
     project: int, part: Mapping[int, Content], options: CheckOptions
 ) -> dict[int, FileResult]:
     """Read a share of the files of a project, and keep their trees for `check_part`."""
-    kept = _KEPT[project] = {}
-    looked = {}
+    looked, _KEPT[project] = _read_all(part, options)
+    return looked
+
+
+def _read_all(
+    part: Mapping[int, Content], options: CheckOptions
+) -> tuple[dict[int, FileResult], dict[int, _Tree]]:
+    """What reading some files gave, and what is kept of them."""
+    looked, kept = {}, {}
     size = 0
     for index, content in part.items():
         with gc_paused(len(content.data)):
@@ -164,7 +245,7 @@ def read_part(
             if size > _MOST_KEPT:
                 tree = replace(tree, reading=replace(tree.reading, syntax=None))
             kept[index] = tree
-    return looked
+    return looked, kept
 
 
 def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
@@ -184,12 +265,12 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     comments = suppression_comments(source)
     if options.syntax_only or tree is None:
         lines = _lines(source, (one.region.line for one in found))
-        looked = FileResult(
-            Findings(found, ()), lines=lines, comments=comments, words=reading.words
-        )
+        given = contribution(path, source.text, None, reading.words)
+        looked = FileResult(Findings(found, ()), None, None, lines, comments, reading.words, given)
         return looked, None
     table = table_of(tree)
-    looked = FileResult(Findings(found, ()), table=table, comments=comments, words=reading.words)
+    given = contribution(path, source.text, table, reading.words)
+    looked = FileResult(Findings(found, ()), None, table, None, comments, reading.words, given)
     return looked, _Tree(table, source, comments, reading)
 
 
@@ -197,22 +278,19 @@ def check_part(
     project: int,
     places: Sequence[tuple[str, str]],
     looked: Mapping[int, FileResult],
+    again: Mapping[int, Content],
     options: CheckOptions,
 ) -> dict[int, FileResult]:
-    """Check those files of a project that `read_part` kept here.
+    """Check those files of a project that `read_part` kept here, and some that were known.
 
     ``places`` are path and origin of all its files, in order, and ``looked`` what reading them
-    gave, here or elsewhere: files that are no KRL belong to no project.
+    gave, here or elsewhere: files that are no KRL belong to no project. ``again`` are files whose
+    text was known, so that none of them was read now.
     """
-    kept = _KEPT.pop(project, {})
+    kept = _KEPT.pop(project, {}) | _read_all(again, options)[1]
     if not kept:
         return {}
-    files = []
-    for index, (path, origin) in enumerate(places):
-        known, tree = looked[index], kept.get(index)
-        if known.skipped is None:
-            table = tree.table if tree else known.table
-            files.append(File(path, None, origin, table, known.words))
+    files = _files(places, looked, kept)
     # modules are identified by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}
@@ -223,8 +301,23 @@ def check_part(
                 syntax = tree.reading.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
                 with gc_paused(len(tree.source.text)):
-                    checked[index] = _looked(_checked(linked, whole, tree.source, options), tree)
+                    checked[index] = _checked(linked, whole, tree, options)
     return checked
+
+
+def _files(
+    places: Sequence[tuple[str, str]],
+    looked: Mapping[int, FileResult],
+    kept: Mapping[int, _Tree],
+) -> list[File]:
+    """The files of a project to link: those that are KRL."""
+    files = []
+    for index, (path, origin) in enumerate(places):
+        known, tree = looked[index], kept.get(index)
+        if known.skipped is None:
+            table = tree.table if tree else known.table
+            files.append(File(path, None, origin, table, known.words))
+    return files
 
 
 def _again(source: Source) -> ast.Module:
@@ -234,29 +327,28 @@ def _again(source: Source) -> ast.Module:
     return syntax
 
 
-def _checked(project: Project, module: Module, source: Source, options: CheckOptions) -> Findings:
-    done = check_module(project, module, source)
-    if not options.stops:
-        return done.findings
-    context = Context(
-        project,
-        module,
-        source,
-        done.resolution,
-        System.load(),
-        dict(done.types),
-        dict(done.enumerations),
-        dict(done.values),
-    )
-    found = in_order([*done.findings.diagnostics, *advance_stops.check(context)])
-    return Findings(tuple(found), done.findings.references)
-
-
-def _looked(findings: Findings, tree: _Tree) -> FileResult:
+def _checked(project: Project, module: Module, tree: _Tree, options: CheckOptions) -> FileResult:
+    done = check_module(project, module, tree.source)
+    findings = done.findings
+    if options.stops:
+        context = Context(
+            project,
+            module,
+            tree.source,
+            done.resolution,
+            System.load(),
+            dict(done.types),
+            dict(done.enumerations),
+            dict(done.values),
+        )
+        found = in_order([*findings.diagnostics, *advance_stops.check(context)])
+        findings = Findings(tuple(found), findings.references)
     findings = tree.reading.completed(findings)
     numbers = {one.region.line for one in findings.diagnostics}
     numbers |= {one.region.line for one in findings.references}
-    return FileResult(findings, lines=_lines(tree.source, numbers), comments=tree.comments)
+    lines = _lines(tree.source, numbers)
+    is_open = bool(done.resolution.open_uses)
+    return FileResult(findings, lines=lines, comments=tree.comments, is_open=is_open)
 
 
 def _lines(source: Source, numbers: Iterable[int]) -> dict[int, str]:

@@ -22,7 +22,7 @@ _DAMAGE = (sqlite3.Error, UnicodeDecodeError)
 
 
 class ResultStore:
-    """JSON values by digest, below one key; a context manager.
+    """JSON values, or bytes, by digest, below one key; a context manager.
 
     The key says what all of them depend on besides what the digest is of: code, tables, a grammar.
     What another key holds is not seen. Without a folder nothing is kept; a store that cannot be
@@ -71,16 +71,24 @@ class ResultStore:
 
     def get(self, digest: str) -> object:
         """The value kept under a digest; ``None`` where there is none that can be read."""
+        body = self.get_bytes(digest)
+        try:
+            value: object = None if body is None else json.loads(body)
+        except (ValueError, RecursionError):
+            return None
+        return value
+
+    def get_bytes(self, digest: str) -> bytes | None:
+        """The bytes kept under a digest; ``None`` where there are none that can be read."""
         if self._base is None:
             return None
         try:
             row = self._base.execute(
                 "SELECT body FROM result WHERE key = ? AND digest = ?", (self._key, digest)
             ).fetchone()
-            value: object = None if row is None else json.loads(zlib.decompress(row[0]))
-        except (*_DAMAGE, zlib.error, ValueError, TypeError, RecursionError):
+            return None if row is None else zlib.decompress(row[0])
+        except (*_DAMAGE, zlib.error, TypeError):
             return None
-        return value
 
     def get_record(self, digest: str) -> dict[str, Any] | None:
         """The value kept under a digest where it is an object of JSON, else ``None``."""
@@ -88,7 +96,7 @@ class ResultStore:
         return record if isinstance(record, dict) else None
 
     def put(self, values: Iterable[tuple[str, object]]) -> None:
-        """Keep values under their digests in place of what lay there: all of them, or none."""
+        """Keep values or bytes under their digests in place of what lay there: all, or none."""
         if self._base is None:
             return
         with contextlib.suppress(*_DAMAGE), self._base:
@@ -99,4 +107,5 @@ class ResultStore:
 
 
 def _packed(value: object) -> bytes:
-    return zlib.compress(json.dumps(value, separators=(",", ":")).encode(), 1)
+    body = value if isinstance(value, bytes) else json.dumps(value, separators=(",", ":")).encode()
+    return zlib.compress(body, 1)

@@ -1,5 +1,8 @@
 """Checks of whole folders: files of projects checked in processes, kept, and left out."""
 
+import random
+import re
+import shutil
 import zipfile
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from grammar.check.project_check import CheckOptions
 from grammar.diagnostics.diagnostic import Diagnostic
 from support.files.discovery import IngestError
 
+CELL = Path(__file__).parents[3] / "corpus" / "programs" / "search_demo"
 CALLER = "DEF CALLER()\nSHIFT(5)\nEXIT\nEND\n"
 CALLED = "GLOBAL DEF SHIFT(N:IN)\nDECL INT N\n$OUT[N] = TRUE\nEND\n"
 CONFIG = "DEFDAT $CONFIG\nENDDAT\n"
@@ -92,13 +96,59 @@ def test_unchanged_projects_are_not_checked_again(
     root = lay(tmp_path / "root", CALLER__src="DEF CALLER()\nN == 1\nEND\n", SHIFT__src=CALLED)
     first = check(root, cache=tmp_path / "cache")
     with monkeypatch.context() as broken:
-        broken.setattr(module, "check_whole", None)
+        broken.setattr(module, "recheck", None)
         again = check(root, cache=tmp_path / "cache")
     assert (first.diagnostics, first.lines) == (again.diagnostics, again.lines)
     assert (0, 2) == (first.unchanged, again.unchanged)
     lay(root, SHIFT__src=CALLED.replace("END", "EXIT\nEND"))
-    assert 0 == (changed := check(root, cache=tmp_path / "cache")).unchanged
+    assert 1 == (changed := check(root, cache=tmp_path / "cache")).unchanged
     assert ("SHIFT.src", 4, "KRL401") in codes(changed)
+
+
+def test_a_declaration_that_changes_reaches_those_who_use_it(tmp_path: Path) -> None:
+    """A caller is checked again when the parameters of what it calls change, others are not."""
+    root = lay(tmp_path / "root", CALLER__src=CALLER, SHIFT__src=CALLED, A__src="DEF A()\nEND\n")
+    check(root, cache=tmp_path)
+    lay(root, SHIFT__src=CALLED.replace("N:IN", ""))
+    changed = check(root, cache=tmp_path)
+    assert ("CALLER.src", 2, "KRL301") in codes(changed)
+    assert 1 == changed.unchanged
+
+
+@pytest.mark.parametrize(("seed", "jobs"), [(0, 1), (1, 1), (2, 1), (3, 2)])
+def test_what_is_kept_is_what_would_be_found(
+    tmp_path: Path, seed: int, jobs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After any edits the findings with kept results are those of a check of everything."""
+    monkeypatch.setattr(module, "_LARGE", 0 if jobs > 1 else 10**9)
+    chance = random.Random(seed)
+    root = tmp_path / "cell"
+    shutil.copytree(CELL, root)
+    files = sorted(root.rglob("*.[sd][rua][cbt]"))
+    check(root, cache=tmp_path)
+    for _ in range(1 if jobs > 1 else 6):
+        edit(chance.choice(files), chance)
+        found, fresh = check(root, cache=tmp_path, jobs=jobs), check(root)
+        assert (fresh.diagnostics, fresh.lines) == (found.diagnostics, found.lines)
+
+
+def edit(file: Path, chance: random.Random) -> None:
+    """Remove a file, or a line, double one, or rename a word of the file throughout."""
+    text = file.read_text(encoding="latin-1") if file.exists() else "DEF NEW()\nEND\n"
+    lines = text.split("\n")
+    at = chance.randrange(len(lines))
+    match chance.randrange(6):
+        case 0:
+            file.unlink(missing_ok=True)
+            return
+        case 1:
+            del lines[at]
+        case 2:
+            lines.insert(at, chance.choice(lines))
+        case _:
+            word = chance.choice(re.findall(r"[A-Za-z]\w+", text))
+            lines = text.replace(word, f"{word}X").split("\n")
+    file.write_text("\n".join(lines), encoding="latin-1", newline="")
 
 
 def test_other_wishes_are_other_findings(tmp_path: Path) -> None:
