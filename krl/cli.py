@@ -1,57 +1,64 @@
 """The `krl` command: which commands there are. Each is in `krl.commands`."""
 
+import sys
 from collections.abc import Sequence
-from importlib import metadata
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Final
 
 import typer
 
 from krl import errors
-from krl.commands import corpus, growth, recover, robot
-from krl.commands.bench import app as bench
-from krl.commands.bytecode import assemble_file, compile_file, disassemble_image
-from krl.commands.check import check
-from krl.commands.conform.command import conform
-from krl.commands.construct import app as construct
-from krl.commands.format import format_programs
-from krl.commands.fuzz import fuzz
-from krl.commands.lsp import lsp
-from krl.commands.nightly import nightly
-from krl.commands.run import run
 
 __all__ = ["app", "main"]
 
-app = typer.Typer(
-    add_completion=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-app.command("recover")(recover.recover)
-app.add_typer(construct.app, name="construct")
-app.command("check")(check)
-app.command("format")(format_programs)
-app.command("conform")(conform)
-app.command("fuzz")(fuzz)
-app.command("growth")(growth.growth)
-app.add_typer(corpus.app, name="corpus")
-app.add_typer(bench.app, name="bench")
-app.command("compile")(compile_file)
-app.command("asm")(assemble_file)
-app.command("disasm")(disassemble_image)
-app.add_typer(robot.app, name="robot")
-app.command("run")(run)
-app.command("lsp")(lsp)
-app.command("nightly")(nightly)
+#: Where each command is, in the order of the help: a function, or an app with commands of its own.
+_COMMANDS: Final = {
+    "recover": "krl.commands.recover:recover",
+    "construct": "krl.commands.construct.app:app",
+    "check": "krl.commands.check:check",
+    "format": "krl.commands.format:format_programs",
+    "conform": "krl.commands.conform.command:conform",
+    "fuzz": "krl.commands.fuzz:fuzz",
+    "growth": "krl.commands.growth:growth",
+    "corpus": "krl.commands.corpus:app",
+    "bench": "krl.commands.bench.app:app",
+    "compile": "krl.commands.bytecode:compile_file",
+    "asm": "krl.commands.bytecode:assemble_file",
+    "disasm": "krl.commands.bytecode:disassemble_image",
+    "robot": "krl.commands.robot:app",
+    "run": "krl.commands.run:run",
+    "lsp": "krl.commands.lsp:lsp",
+    "nightly": "krl.commands.nightly:nightly",
+}
+
+
+def app(*words: str) -> typer.Typer:
+    """The command line. Where its first word is a command, no other is loaded: that takes time."""
+    made = typer.Typer(
+        add_completion=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    made.callback(invoke_without_command=True)(_krl)
+    for name in words[:1] if words and words[0] in _COMMANDS else _COMMANDS:
+        module, _, attribute = _COMMANDS[name].partition(":")
+        command = getattr(import_module(module), attribute)
+        if isinstance(command, typer.Typer):
+            made.add_typer(command, name=name)
+        else:
+            made.command(name)(command)
+    return made
 
 
 def _print_version(wanted: bool) -> None:
     if wanted:
+        from importlib import metadata
+
         typer.echo(f"krl {metadata.version('krl-workbench')}")
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True)
 def _krl(
     context: typer.Context,
     _version: Annotated[
@@ -69,4 +76,5 @@ def _krl(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
-    return errors.run(app, arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    return errors.run(app(*given), given)

@@ -31,7 +31,7 @@ def reference() -> str:
     """The page, from the commands as they are."""
     from krl.cli import app
 
-    command = typer.main.get_command(app)
+    command = typer.main.get_command(app())
     return _HEAD + "".join(_command("krl", command))
 
 

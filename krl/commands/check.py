@@ -6,7 +6,6 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -172,6 +171,8 @@ def _write(
 def _written(
     kept: "list[Diagnostic]", lines: Mapping[tuple[str, int], str], format_: Format
 ) -> Iterator[str]:
+    from importlib import metadata
+
     from grammar.diagnostics.diagnostic import records
     from grammar.diagnostics.rendering import rendered
     from grammar.diagnostics.sarif import sarif
