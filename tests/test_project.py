@@ -123,7 +123,7 @@ def test_documents_name_what_there_is(document: Path) -> None:
         re.findall(r"```.*?\n(.*?)```", text, re.DOTALL) + re.findall(r"`(.+?)`", text)
     )
     assert set() == set(re.findall(r"^make ([a-z]+)", code, re.MULTILINE)) - _make_targets()
-    commands = set(typer.main.get_command(app).commands)  # type: ignore[attr-defined]
+    commands = set(typer.main.get_command(app()).commands)  # type: ignore[attr-defined]
     assert set() == set(re.findall(r"^(?:\S+\\)?krl ([a-z]+)", code, re.MULTILINE)) - commands
     links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
     assert set() == {link for link in links if not (document.parent / link).exists()}
