@@ -22,6 +22,7 @@ from interp.port.requests import Value
 from interp.program.load import CheckedProgram, Limits
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import DataListError
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
@@ -205,11 +206,21 @@ def _machine_or_other(program: CheckedProgram, profile: Profile) -> tuple[Machin
         machine = machine_of_program(program, profile)
         return machine, f"no machine data of an arm: {machine.name} stands in"
     try:
-        return read_machine(source.text, source.path), ""
+        return _understood(source), ""
     except (DataListError, MachineDataError) as error:
         machine = default_machine()
         note = f"{error}: {machine.name} stands in"
         return with_axis_limits_of(machine, source.text, source.path), note
+
+
+def _understood(source: Source) -> MachineData:
+    """The arm of machine data, whose kinematics can be solved."""
+    machine = read_machine(source.text, source.path)
+    try:
+        kinematics_of(machine)
+    except MachineDataError as error:
+        raise MachineDataError(f"{source.path}: {error}") from error
+    return machine
 
 
 def _machine_data(program: CheckedProgram) -> Source | None:
@@ -229,7 +240,7 @@ def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData
     source = _machine_data(program)
     if source is not None:
         try:
-            return read_machine(source.text, source.path)
+            return _understood(source)
         except (DataListError, MachineDataError) as error:
             raise LinkError(str(error)) from error
     if profile.machine == default_machine().name.lower():

@@ -16,8 +16,8 @@ from conformance.sensitivity.planted_fault import (
     several,
 )
 from interp.controller.motions import MotionBuilder
+from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.path import targets_in_force
 from interp.robot.path.axis_path import JointLine
 from interp.robot.path.pose_path import Blend, StraightLine
@@ -283,7 +283,7 @@ _TARGETS: Final = (
     ("the Turn of a target counts nothing", _ptp_target(turn=None)),
     (
         "bit 2 of the Status is the wrong way round",
-        on(Kinematics, "status", lambda right: lambda self, axes: right(self, axes) ^ 4),
+        on(CentralWrist, "status", lambda right: lambda self, axes: right(self, axes) ^ 4),
     ),
     (
         "$BASE counts nothing",

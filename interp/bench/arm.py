@@ -16,8 +16,8 @@ from interp.robot.api.batch import BatchCore
 from interp.robot.api.commands import MotionCommand, Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Approximation, Motion, Settings, Target
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import ROBOTS, RobotName, make_robot
@@ -156,7 +156,7 @@ def _robot(name: RobotName, program: Sequence[Motion]) -> dict[str, Any]:
 def _inverse() -> tuple[int, float]:
     """So many poses solved for all their ways, a thousand at once, and the seconds it took."""
     machine = default_machine()
-    arm = Kinematics(machine)
+    arm = kinematics_of(machine)
     lower = [axis.lower for axis in machine.axes]
     upper = [axis.upper for axis in machine.axes]
     poses = arm.forward(np.random.default_rng(1).uniform(lower, upper, (_POSES, 6)))

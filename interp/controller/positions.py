@@ -18,9 +18,9 @@ from interp.controller.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import turn_of
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import fault
@@ -118,7 +118,7 @@ class Positions:
         self._arm = core.arm
         self._frames = frames
         self._tracking = tracking
-        self._kinematics = None if state.machine is None else Kinematics(state.machine)
+        self._kinematics = None if state.machine is None else kinematics_of(state.machine)
         self._kept: dict[str, Position] = {}
         shown: Mapping[str, tuple[str, str, Callable[[], Position]]] = {
             "actual": ("$AXIS_ACT", "$POS_ACT", self.actual),

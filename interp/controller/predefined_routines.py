@@ -20,6 +20,7 @@ from interp.controller.positions import FramesInForce, axes_value, pose_value
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path, Value
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import solve, turn_of
@@ -272,7 +273,7 @@ class PredefinedRoutines:
     def _kinematics(self) -> tuple[Kinematics, Placement]:
         if self._state.machine is None:
             raise own_fault("unsupported")
-        return Kinematics(self._state.machine), self._frames.advance_run()
+        return kinematics_of(self._state.machine), self._frames.advance_run()
 
     # ---------------------------------------------------------------------------------- others
 

@@ -92,9 +92,9 @@ def _arm(path: Path) -> "Kinematics":
     with as_input_errors(DataListError, MachineDataError):
         machine = read_machine(source.text, str(path))
     with expected_extras(*ARM):
-        from interp.robot.kinematics.solver import Kinematics
+        from interp.robot.kinematics.arms import kinematics_of
     try:
-        return Kinematics(machine)
+        return kinematics_of(machine)
     except MachineDataError as error:
         raise InputError(f"{path}: {error}") from error
 

@@ -179,7 +179,10 @@ def test_points_that_are_none(ask: Ask, text: str, said: str) -> None:
         ("DEF A()\nEND\n", "a program, not a data list"),
         ("DEFDAT $MACHINE PUBLIC\nINT A=1\nENDDAT\n", "no machine data of an arm"),
         (MACHINE.replace("$TFLWP", "$T"), "$TFLWP is missing"),
-        (MACHINE.replace("B 90.0", "B 80.0"), "$machine.dat: the wrist is askew"),
+        (
+            MACHINE.replace("ENDDAT", "BOOL $DEF_A4FIX=TRUE\nFRAME $TFLWP={X 9.0,Z 80.0}\nENDDAT"),
+            "$machine.dat: the flange of a palletiser does not lie in the plane of the arm",
+        ),
         (MACHINE.replace("ENDDAT", ""), "it ends early"),
     ],
 )
@@ -210,7 +213,8 @@ def test_points_that_are_not_there(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_without_the_extra(ask: Ask, monkeypatch: pytest.MonkeyPatch, package: str) -> None:
     """Where the packages for the arm are not installed, one line says how to get them."""
     monkeypatch.setitem(sys.modules, package, None)
-    monkeypatch.delitem(sys.modules, "interp.robot.kinematics.solver", raising=False)
+    for name in [name for name in sys.modules if name.startswith("interp.robot.kinematics.")]:
+        monkeypatch.delitem(sys.modules, name)
     status, _, err = ask([])
     assert 2 == status
     assert f"needs {package}" in err

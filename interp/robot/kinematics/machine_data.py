@@ -15,6 +15,7 @@ $MAMES tells where the axes are mastered and has no part in the chain.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -32,8 +33,8 @@ __all__ = [
     "Dynamics",
     "MachineData",
     "MachineDataError",
+    "Palletising",
     "WristLink",
-    "machine_of",
     "read_machine",
     "with_axis_limits_of",
 ]
@@ -44,6 +45,8 @@ _MOST_EXTERNAL = 6
 _UNKNOWN_JERK = 1e18  # what the files say where there is no limit
 _RUN_UP_TIME = 0.4
 """Seconds to full speed where the data says nothing; an assumption, of the size of other arms'."""
+_TOLERANCE = 1e-9  # mm, or of a cosine
+_ANGLE = 1e-6  # degrees
 _FILTER_TIME = 0.1  # seconds over which acceleration builds up, likewise
 
 
@@ -86,6 +89,13 @@ class Axis:
     approximation: float
 
 
+class Palletising(Enum):
+    """What holds the wrist of a palletiser: $DEF_A4FIX alone, or $DEF_A5LINK too."""
+
+    FIXED_A4 = "A4"
+    LINKED_A5 = "A5"
+
+
 @dataclass(frozen=True, slots=True)
 class WristLink:
     """Denavit-Hartenberg parameters between two wrist axes: mm and degrees."""
@@ -115,7 +125,9 @@ class MachineData:
 
     ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
     motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
-    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07].
+    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``palletising`` is ``None``
+    for an arm whose axes are all free. ``own_chain`` is that of an arm which was described joint by
+    joint; lengths and frames of the wrist mean nothing then.
     """
 
     name: str
@@ -136,6 +148,8 @@ class MachineData:
     acceleration: CartesianLimits
     t1_speed: float
     t1_reduction: float
+    palletising: Palletising | None = None
+    own_chain: Chain | None = None
 
     def standing(self, axes: Sequence[float]) -> tuple[float, ...]:
         """All axes, where those that are given stand: others at 0, or the limit nearest to it.
@@ -149,6 +163,8 @@ class MachineData:
     @property
     def chain(self) -> Chain:
         """The joints of the robot axes from the foot, $ROBROOT, to the flange."""
+        if self.own_chain is not None:
+            return self.own_chain
         frames = (
             (self.tiroro, (0.0, 0.0, 1.0)),
             (Pose.of(x=self.length_a), (0.0, 1.0, 0.0)),
@@ -162,6 +178,15 @@ class MachineData:
             for axis, (frame, (x, y, z)) in zip(self.axes, frames, strict=True)
         )
         return Chain(tuple(joints), self.tflwp)
+
+    @property
+    def is_wrist_central(self) -> bool:
+        """Whether the wrist axes meet in one point, at right angles, axis 4 along the forearm."""
+        links = self.dh_4, self.dh_5
+        if any(abs(link.a) > _TOLERANCE or abs(link.d) > _TOLERANCE for link in links):
+            return False
+        twist = abs(abs(self.dh_4.alpha) - 90.0), abs(self.dh_4.alpha + self.dh_5.alpha)
+        return max(twist) < _ANGLE and abs(abs(self.tx3p3.rows[0][2]) - 1.0) < _TOLERANCE
 
     @property
     def elbow(self) -> float:
@@ -180,7 +205,7 @@ def read_machine(text: str, path: str = "") -> MachineData:
     Raises `MachineDataError`, and `interp.robot.kinematics.data_list.DataListError` for no data
     list.
     """
-    return machine_of(read_data_list(text, path), path)
+    return _Reader(read_data_list(text, path), path, text).machine()
 
 
 def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> MachineData:
@@ -197,17 +222,13 @@ def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> Mach
     return replace(machine, axes=axes)
 
 
-def machine_of(values: Mapping[Key, Value], path: str = "") -> MachineData:
-    """The machine of the values of a $machine.dat; see `read_machine`."""
-    return _Reader(values, path).machine()
-
-
 class _Reader:
     """Takes values by name, with a clear word for what is missing or of the wrong kind."""
 
-    def __init__(self, values: Mapping[Key, Value], path: str) -> None:
+    def __init__(self, values: Mapping[Key, Value], path: str, text: str = "") -> None:
         self._values = values
         self._path = path
+        self._text_of_file = text
 
     def machine(self) -> MachineData:
         if ("$LENGTH_A",) not in self._values:
@@ -215,16 +236,18 @@ class _Reader:
                 "no machine data of an arm, which has $LENGTH_A; it lies in R1/Mada, not in STEU"
             )
         self._expect("$MAIN_AXIS", "#NR", "an articulated arm (#NR)")
-        self._expect("$WRIST_AXIS", "#ZEH", "a central wrist (#ZEH)")
-        self._expect("$TRAFO_AXIS", ROBOT_AXES, "an arm of six axes")
-        self._expect("$DEF_A4FIX", False, "an axis 4 that turns")
-        self._expect("$DEF_A5LINK", False, "an axis 5 with a drive of its own")
-        if any(self._integer(f"$AXIS_SEQ[{i}]", default=i) != i for i in _numbers(ROBOT_AXES)):
-            raise self._error("$AXIS_SEQ exchanges axes, which is not supported")
+        palletising = self._palletising()
+        if palletising is None:
+            self._expect("$TRAFO_AXIS", ROBOT_AXES, "an arm of six axes, or a palletiser,")
+        for i in _numbers(ROBOT_AXES):
+            if self._integer(f"$AXIS_SEQ[{i}]", default=i) != i:
+                raise self._error(f"$AXIS_SEQ[{i}] exchanges axes, which is not supported")
         axes = tuple(self._axis(i) for i in _numbers(ROBOT_AXES))
-        for axis in axes:
+        if palletising is not None:
+            axes = _held(axes, palletising)
+        for i, axis in enumerate(axes, start=1):
             if axis.kind is AxisKind.LINEAR:
-                raise self._error(f"{axis.name} is linear; an arm of six rotary axes is needed")
+                raise self._error(f"$AXIS_TYPE[{i}] is 1; an arm of six rotary axes is needed")
         count = min(max(self._integer("$EX_AX_NUM", default=0), 0), _MOST_EXTERNAL)
         return MachineData(
             name=self._text("$TRAFONAME").removeprefix("#"),
@@ -245,9 +268,15 @@ class _Reader:
             acceleration=self._cartesian("$ACC_MA", CartesianLimits(10.0, 1000.0, 1000.0)),
             t1_speed=self._number("$VEL_CP_T1", default=0.25),
             t1_reduction=self._number("$RED_T1", default=7.0) / 100.0,
+            palletising=palletising,
         )
 
     # ---------------------------------------------------------------------------------- parts
+
+    def _palletising(self) -> Palletising | None:
+        if self._values.get(("$DEF_A5LINK",)) is True:
+            return Palletising.LINKED_A5
+        return Palletising.FIXED_A4 if self._values.get(("$DEF_A4FIX",)) is True else None
 
     def axis_or(self, other: Axis, number: int) -> Axis:
         """The limits and dynamics of a rotary axis, with the direction of another machine's."""
@@ -266,9 +295,10 @@ class _Reader:
         if kind is AxisKind.ENDLESS or lower >= upper:
             lower, upper = -math.inf, math.inf
         is_robot = number <= ROBOT_AXES
+        is_held = number == 4 and self._palletising() is not None
         direction = self._integer(f"$AXIS_DIR[{number}]", default=None if is_robot else 1)
         if abs(direction) != 1:
-            if is_robot:
+            if is_robot and not is_held:
                 raise self._error(f"$AXIS_DIR[{number}] is {direction}, not 1 or -1")
             direction = 1
         return Axis(
@@ -392,7 +422,28 @@ class _Reader:
             raise self._error(f"{name} is {shown}; only {what} is supported")
 
     def _error(self, what: str) -> MachineDataError:
-        return MachineDataError(f"{self._path}: {what}" if self._path else what)
+        """An error whose text begins with the name of a datum, which stands in a line maybe."""
+        name = re.escape(re.split(r"[ .]", what, maxsplit=1)[0])
+        lines = self._text_of_file.splitlines()
+        places = (
+            number
+            for number in range(len(lines), 0, -1)
+            if re.match(rf"(?i)\s*(\w+\s+){{0,3}}{name}\s*(\[\]\s*)?=", lines[number - 1])
+        )
+        place = next(places, None)
+        where = self._path if place is None else f"{self._path}:{place}"
+        return MachineDataError(f"{where}: {what}" if self._path else what)
+
+
+def _held(axes: tuple[Axis, ...], palletising: Palletising) -> tuple[Axis, ...]:
+    """The axes of a palletiser: those that the mechanics hold are where they have to be."""
+    held = (4, 5) if palletising is Palletising.LINKED_A5 else (4,)
+    return tuple(
+        replace(axis, kind=AxisKind.ROTARY, lower=-math.inf, upper=math.inf)
+        if number in held
+        else axis
+        for number, axis in enumerate(axes, start=1)
+    )
 
 
 def _numbers(count: int) -> range:

@@ -1,377 +1,88 @@
-"""From axes to poses and back, for an arm of six axes with a central wrist.
+"""What is asked of the kinematics of an arm, whatever its shape.
 
-Forward kinematics is the chain of `interp.robot.kinematics.machine_data`, step by step. Inverse
-kinematics is that of py-opw-kinematics (Brandstötter, Angerer, Hofbaur 2014), whose angles are
-those of an arm that is upright at zero; `Kinematics` works out from the machine data how its
-angles follow from the axes.
-
-Arrays are of float64: ``(..., 6)`` for axes in degrees, ``(..., 4, 4)`` for homogeneous matrices
-with positions in mm. A pose is that of the flange in the frame of the robot's foot, $ROBROOT;
-`interp.robot.kinematics.placement` gets it from the programmed point.
+Arrays are of float64: ``(..., 6)`` for axes in degrees (mm for linear ones), ``(..., 4, 4)`` for
+homogeneous matrices with positions in mm. A pose is that of the flange in the frame of the robot's
+foot, $ROBROOT; `interp.robot.kinematics.placement` gets it from the programmed point.
+`interp.robot.kinematics.arms.kinematics_of` chooses for a machine.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
-from interp.values.poses import Pose, sine_cosine
+from interp.robot.kinematics.machine_data import MachineData
+from interp.values.poses import Pose
 
-if TYPE_CHECKING:
-    from py_opw_kinematics import Robot
-
-__all__ = ["BRANCHES", "Array", "Kinematics", "matrix_of"]
+__all__ = ["Array", "Kinematics", "matrix_of"]
 
 Array = npt.NDArray[np.float64]
 
-BRANCHES = 8
-"""Ways to reach a pose: shoulder in front or behind, elbow up or down, wrist turned over or not."""
 
-_OVER = np.repeat((1.0, -1.0), BRANCHES // 2)  # the sign of the fifth angle in each of them
-_SHOULDER = np.array([0, 0, 1, 1, 0, 0, 1, 1])  # in front of axis 1, or behind it
+class Kinematics(Protocol):
+    """From axes to poses and back."""
 
-_NO_LIMITS = [(math.inf, -math.inf)] * ROBOT_AXES
-"""No way lies within them, which spares a measure of conditioning that is not asked for."""
+    @property
+    def machine(self) -> MachineData:
+        """The machine whose kinematics they are."""
+        ...
 
-_STRAIGHT = 1e-12
-"""Sine of A5 below which axes 4 and 6 turn about the same line."""
-_UNDETERMINED = 2e-9
-"""Sine of A5 below which A4 is free to stay where it is: 1e-7 degrees."""
-_BENT = 1e-3
-"""Sine of A5 above which the wrist is plainly bent."""
-_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
-_MARGIN = 1e-7
-"""mm that rounding may take away: of reach, and of the distance from axis 1."""
-_FAR = 1e9
-"""mm beyond which no pose is looked at, nor where it is no number."""
-_TOLERANCE = 1e-9  # degrees, or of a cosine
+    @property
+    def elbow(self) -> float:
+        """The angle of A3 in degrees at which the arm is stretched, where bit 1 of S changes."""
+        ...
 
+    @property
+    def has_wrist_singularity(self) -> bool:
+        """Whether A4 is undetermined where A5 is 0."""
+        ...
 
-class Kinematics:
-    """The kinematics of one machine.
-
-    Raises `MachineDataError` for a wrist that is not central or whose axes are not square.
-    """
-
-    def __init__(self, machine: MachineData) -> None:
-        self.machine = machine
-        self._before = matrix_of(machine.tiroro)
-        self._after = matrix_of(machine.tflwp)
-        self._to_inner = matrix_of(machine.tiroro.inverse())
-        self._to_wrist = matrix_of(machine.tflwp.inverse())
-        self._directions = np.array([axis.direction for axis in machine.axes], dtype=np.float64)
-        self._forearm = np.array(machine.tx3p3.position)
-        self._mount = matrix_of(machine.tx3p3)[:3, :3]
-        self._twists = [_about_x(link.alpha) for link in (machine.dh_4, machine.dh_5)]
-        along, turned = self._wrist()
-        sense = self._twists[0][2, 1]  # 1 where $DH_4 twists by 90 degrees, -1 by -90
-        self._senses = np.array([1.0, 1.0, 1.0, along, -sense, along]) * self._directions
-        self._zeros = np.array([0.0, math.pi / 2, 0.0, along * turned, 0.0, 0.0])
-        self._reverse = np.diag([along, 1.0, along])
-        self._machine = machine
-
-    @cached_property
-    def _solver(self) -> Robot:
-        """Closed-form solutions for the main axes; made when needed, as its import is slow."""
-        from py_opw_kinematics import KinematicModel, Robot
-
-        forward, aside, up = self._machine.tx3p3.position
-        model = KinematicModel(
-            a1=self._machine.length_a, a2=-up, b=aside, c2=self._machine.length_b, c3=forward
-        )
-        return Robot(model, degrees=False)
+    def coupled(self, axes: npt.ArrayLike) -> Array:
+        """Axes ``(..., 6)`` with those that the mechanics set set: of a palletiser A4 and A5."""
+        ...
 
     def forward(self, axes: npt.ArrayLike) -> Array:
         """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
-        given = np.asarray(axes, dtype=np.float64)
-        theta = np.radians(given) * self._directions
-        main = _about_z(theta[..., 0]) @ _about_y(theta[..., 1] + theta[..., 2])
-        wrist = (
-            _about_z(theta[..., 3])
-            @ self._twists[0]
-            @ _about_z(theta[..., 4])
-            @ self._twists[1]
-            @ _about_z(theta[..., 5])
-        )
-        pose = np.zeros((*theta.shape[:-1], 4, 4))
-        pose[..., :3, :3] = main @ self._mount @ wrist
-        pose[..., :3, 3] = self._wrist_centre(theta)
-        pose[..., 3, 3] = 1.0
-        moved: Array = self._before @ pose @ self._after
-        return moved
+        ...
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """All ways to reach poses ``(..., 4, 4)``: axes ``(..., 8, 6)``, NaN where there is none.
+        """Ways to reach poses ``(..., 4, 4)``: axes ``(..., ways, 6)``, NaN where there is none.
 
-        Angles lie above -180 and up to 180 degrees, whatever the software limits. The first four
-        ways differ in shoulder and elbow, the others turn the wrist over. Where the wrist is
-        straight, A4 is 0.
+        Angles lie above -180 and up to 180 degrees, whatever the software limits.
         """
-        given = np.asarray(poses, dtype=np.float64)
-        shape = given.shape[:-2]
-        given = given.reshape(-1, 4, 4)
-        found = np.full((len(given), BRANCHES, ROBOT_AXES), math.nan)
-        sound = (np.abs(given) < _FAR).all(axis=(1, 2))
-        if sound.any():
-            inner = self._to_inner @ given[sound] @ self._to_wrist
-            inner[:, :3, :3] = inner[:, :3, :3] @ self._reverse
-            inner[np.hypot(inner[:, 0, 3], inner[:, 1, 3]) < _MARGIN, :2, 3] = 0.0
-            found[sound] = self._solve(inner)
-        degrees = np.degrees((found - self._zeros) * self._senses)
-        degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
-        ways: Array = (degrees + 0.0).reshape(*shape, BRANCHES, ROBOT_AXES)
-        return ways
+        ...
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """For each pose the way that a reference stands in: axes ``(n, 6)``, NaN where none is.
 
-        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes beside the solution: they name
-        the shoulder, the elbow and the turn of each axis. The wrist is turned over or not, as lies
-        nearer; where it is straight, A4 is that of the reference.
+        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes beside the solution.
         """
-        theta = np.radians(references) * self._directions
-        main, wrist = self._main_and_wrist(poses, theta)
-        own = theta[:, 3] * self._senses[3] * self._directions[3] + self._zeros[3]
-        bent = theta[:, 4] * self._senses[4] * self._directions[4]
-        sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
-        a4 = np.arctan2(wrist[:, 1, 2], wrist[:, 0, 2])
-        a5 = np.arctan2(sine, wrist[:, 2, 2])
-        there = np.abs(np.sin((a4 - own) / 2.0)) + np.abs(a5 - bent)
-        over = np.abs(np.cos((a4 - own) / 2.0)) + np.abs(a5 + bent)
-        sign = np.where(over < there, -1.0, 1.0)
-        a4 = np.where(over < there, a4 + math.pi, a4)
-        a4 = np.where(sine < _UNDETERMINED, own, a4)
-        found = self._degrees(main, a4, sign * a5, wrist)
-        near: Array = found + 360.0 * np.round((references - found) / 360.0)
-        return near
+        ...
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
         """Axes ``(n, 6)`` along a path of poses in the way that ``start`` stands in, unbroken.
 
-        ``None`` where that is not plain: the wrist is or becomes straight, the path leaves the way,
-        or its samples are too far apart.
+        ``None`` where that is not plain; then it has to be followed way by way. Raises
+        `interp.values.faults.Fault` 1366 where it cannot be followed at all.
         """
-        references = np.array(start, dtype=np.float64)
-        theta = np.radians(references) * self._directions
-        main, wrist = self._main_and_wrist(poses, np.broadcast_to(theta, (len(poses), 6)))
-        sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
-        sign = math.copysign(1.0, references[4] * self._senses[4])
-        if not (sine > _BENT).all():
-            return None
-        a4 = np.arctan2(sign * wrist[:, 1, 2], sign * wrist[:, 0, 2])
-        found = self._degrees(main, a4, sign * np.arctan2(sine, wrist[:, 2, 2]), wrist)
-        path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
-        steps = np.abs(np.diff(path, axis=0))
-        return path[1:] if bool((steps < _SAME_WAY).all()) else None
-
-    def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
-        """Main axes of the upright arm, and the rotation that is left for its wrist."""
-        inner = self._to_inner @ poses @ self._to_wrist
-        main = self._main_axes_near(inner[:, :3, 3], theta) + self._zeros[:3]
-        upper = _about_z(main[:, 0]) @ _about_y(main[:, 1] + main[:, 2])
-        wrist = np.swapaxes(upper, -1, -2) @ inner[:, :3, :3] @ self._reverse
-        return main, wrist
-
-    def _degrees(self, main: Array, a4: Array, a5: Array, wrist: Array) -> Array:
-        """Axes in degrees; A6 is what A4 leaves over of the wrist's rotation."""
-        s4, c4 = np.sin(a4), np.cos(a4)
-        angles = np.empty((len(main), 6))
-        angles[:, :3], angles[:, 3], angles[:, 4] = main, a4, a5
-        angles[:, 5] = np.arctan2(
-            c4 * wrist[:, 1, 0] - s4 * wrist[:, 0, 0], c4 * wrist[:, 1, 1] - s4 * wrist[:, 0, 1]
-        )
-        degrees: Array = np.degrees((angles - self._zeros) * self._senses)
-        return degrees
-
-    def _main_axes_near(self, places: Array, theta: Array) -> Array:
-        """Main axes in radians ``(n, 3)`` for wrist centres, with shoulder and elbow of others."""
-        forward, aside, up = self._forearm
-        upper, lower = self.machine.length_b, math.hypot(forward, up)
-        x, y, height = places.T
-        beyond = x**2 + y**2 - aside**2
-        beyond = np.where((beyond < 0.0) & (beyond > -_MARGIN), 0.0, beyond)
-        with np.errstate(invalid="ignore"):
-            ahead = np.copysign(np.sqrt(beyond), self._ahead(theta))
-            a1 = np.arctan2(y, x) - np.arctan2(aside, ahead)
-            out = ahead - self.machine.length_a
-            distance = np.hypot(out, height)
-            within = np.clip(distance, abs(upper - lower), upper + lower)
-            within = np.where(np.abs(within - distance) < _MARGIN, within, math.nan)
-            cosine = (within**2 - upper**2 - lower**2) / (2.0 * upper * lower)
-            bend = math.atan2(up, forward)
-            bent = bend - theta[:, 2]
-            elbow = np.copysign(np.arccos(np.clip(cosine, -1.0, 1.0)), np.sin(bent))
-        a2 = np.arctan2(lower * np.sin(elbow), upper + lower * np.cos(elbow))
-        return np.stack((a1, a2 - np.arctan2(height, out), bend - elbow), axis=-1)
+        ...
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05].
-
-        1 where the wrist centre lies behind axis 1, 2 where A3 is not below `MachineData.elbow`, 4
-        where A5 is negative.
-        """
-        given = np.asarray(axes, dtype=np.float64)
-        theta = np.radians(given) * self._directions
-        behind = self._ahead(theta) < -_MARGIN
-        bent = given[..., 2] >= self.machine.elbow - _TOLERANCE
-        status: npt.NDArray[np.int64] = behind + 2 * bent + 4 * (given[..., 4] < -_TOLERANCE)
-        return status
+        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05]."""
+        ...
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """How far the wrist centre is from axis 1, in mm, for axes ``(..., 6)``."""
-        theta = np.radians(np.asarray(axes, dtype=np.float64)) * self._directions
-        distance: Array = np.hypot(self._ahead(theta), self._forearm[1])
-        return distance
+        """How far the wrist is from axis 1, in mm, for axes ``(..., 6)``."""
+        ...
 
     def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
         """Poses carried along when axis 1 turns by an angle."""
-        turn = np.eye(4)
-        turn[:3, :3] = _about_z(np.radians(np.array(degrees)) * self._directions[0])
-        carried: Array = self._before @ turn @ self._to_inner @ np.asarray(poses)
-        return carried
-
-    # ------------------------------------------------------------------------------- the solution
-
-    def _solve(self, inner: Array) -> Array:
-        """Angles of the upright arm in radians for poses of the wrist in front of $TIRORO.
-
-        The solver gives the main axes. It loses a way where rounding puts a stretched arm out of
-        reach or the cosine of a straight wrist above 1; there it is asked again for a pose beside
-        it, which has the same main axes.
-        """
-        main = self._main_axes(inner)
-        reachable, drawn_in = self._reach(inner[:, :3, 3])
-        lost = np.isnan(main[..., 0]) & reachable[:, _SHOULDER]
-        if lost.any():
-            place, branch = np.nonzero(lost)
-            beside = inner[place]
-            beside[:, :3, 3] = drawn_in[place, _SHOULDER[branch]]
-            beside[:, :3, :3] = beside[:, :3, :3] @ _about_y(np.array(0.1))
-            main[place, branch] = self._main_axes(beside)[np.arange(len(place)), branch]
-        return np.concatenate((main, self._wrist_axes(main, inner[:, None, :3, :3])), axis=-1)
-
-    def _main_axes(self, inner: Array) -> Array:
-        from py_opw_kinematics import RigidTransform
-
-        result = self._solver.reach(RigidTransform.from_matrix(inner), _NO_LIMITS)
-        return np.array(result.joints[..., :3], dtype=np.float64)
-
-    def _wrist_axes(self, main: Array, rotation: Array) -> Array:
-        """The other three angles; A6 is what A4 leaves over, so that rounding is made good."""
-        upper = _about_z(main[..., 0]) @ _about_y(main[..., 1] + main[..., 2])
-        wrist = np.swapaxes(upper, -1, -2) @ rotation
-        sine = np.hypot(wrist[..., 0, 2], wrist[..., 1, 2])
-        a4 = np.arctan2(_OVER * wrist[..., 1, 2], _OVER * wrist[..., 0, 2])
-        straight = (sine < _STRAIGHT) & (wrist[..., 2, 2] > 0.0)
-        a4 = np.where(straight, self._zeros[3], a4)
-        a5 = np.where(straight, 0.0, _OVER * np.arctan2(sine, wrist[..., 2, 2]))
-        s4, c4 = np.sin(a4), np.cos(a4)
-        a6 = np.arctan2(
-            c4 * wrist[..., 1, 0] - s4 * wrist[..., 0, 0],
-            c4 * wrist[..., 1, 1] - s4 * wrist[..., 0, 1],
-        )
-        return np.stack((a4, a5, a6), axis=-1)
-
-    def _reach(self, places: Array) -> tuple[npt.NDArray[np.bool_], Array]:
-        """For wrist centres ``(n, 3)`` and both shoulders: within reach?, and a place well within.
-
-        Shapes ``(n, 2)`` and ``(n, 2, 3)``. The place differs from the wrist centre by `_MARGIN` at
-        most, and only where the arm is stretched or folded.
-        """
-        forward, aside, up = self._forearm
-        upper, lower = self.machine.length_b, math.hypot(forward, up)
-        beyond = places[:, 0] ** 2 + places[:, 1] ** 2 - aside**2
-        ahead = np.sqrt(np.maximum(beyond, 0.0))[:, None] * np.array([1.0, -1.0])
-        height = places[:, 2:]
-        distance = np.hypot(ahead - self.machine.length_a, height)
-        shortest, longest = abs(upper - lower), upper + lower
-        is_within = (distance > shortest - _MARGIN) & (distance < longest + _MARGIN)
-        is_within &= beyond[:, None] > -_MARGIN
-        wanted = np.clip(distance, shortest + _MARGIN, longest - _MARGIN)
-        scale = wanted / np.maximum(distance, _MARGIN)
-        drawn = self.machine.length_a + (ahead - self.machine.length_a) * scale
-        wider = np.hypot(drawn, aside) / np.maximum(np.hypot(ahead, aside), _MARGIN)
-        drawn_in = np.stack(
-            (places[:, :1] * wider, places[:, 1:2] * wider, height * scale), axis=-1
-        )
-        return is_within, drawn_in
-
-    # ------------------------------------------------------------------------------- the geometry
-
-    def _ahead(self, theta: Array) -> Array:
-        """How far the wrist centre lies in front of axis 1, in mm, along the turned X axis."""
-        lean, both = theta[..., 1], theta[..., 1] + theta[..., 2]
-        forward, _, up = self._forearm
-        ahead: Array = (
-            self.machine.length_a
-            + self.machine.length_b * np.cos(lean)
-            + forward * np.cos(both)
-            + up * np.sin(both)
-        )
-        return ahead
-
-    def _wrist_centre(self, theta: Array) -> Array:
-        """The wrist centre in front of $TIRORO, in mm."""
-        lean, both = theta[..., 1], theta[..., 1] + theta[..., 2]
-        forward, aside, up = self._forearm
-        ahead = self._ahead(theta)
-        sine, cosine = np.sin(theta[..., 0]), np.cos(theta[..., 0])
-        height = -self.machine.length_b * np.sin(lean) - forward * np.sin(both) + up * np.cos(both)
-        return np.stack(
-            (ahead * cosine - aside * sine, ahead * sine + aside * cosine, height), axis=-1
-        )
-
-    def _wrist(self) -> tuple[float, float]:
-        """Whether axis 4 points along the forearm (1) or against it (-1), and where it is at zero.
-
-        The second is the angle of the first wrist axis about axis 4, in radians.
-        """
-        name = "the wrist"
-        for link in (self.machine.dh_4, self.machine.dh_5):
-            if abs(link.a) > _TOLERANCE or abs(link.d) > _TOLERANCE:
-                raise MachineDataError(f"{name} is not central: $DH_4 or $DH_5 has a length")
-        first, second = self._twists
-        square = abs(abs(first[2, 1]) - 1.0) < _TOLERANCE
-        if not square or not np.allclose(first @ second, np.eye(3), atol=_TOLERANCE):
-            raise MachineDataError(f"{name} is not square: $DH_4 and $DH_5 are no 90 and -90")
-        upright = _about_y(np.array(-math.pi / 2)) @ self._mount
-        along = float(upright[2, 2])
-        if abs(abs(along) - 1.0) > _TOLERANCE:
-            raise MachineDataError(f"{name} is askew: $TX3P3 does not put axis 4 along the forearm")
-        along = math.copysign(1.0, along)
-        turned = np.diag([along, 1.0, along]) @ upright
-        return along, math.atan2(turned[1, 0], turned[0, 0])
+        ...
 
 
 def matrix_of(pose: Pose) -> Array:
     """A pose as an array of four by four."""
     return np.array(pose.matrix, dtype=np.float64)
-
-
-def _about_x(degrees: float) -> Array:
-    sine, cosine = sine_cosine(degrees)
-    return np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]])
-
-
-def _about_y(radians: Array) -> Array:
-    turn = np.zeros((*radians.shape, 3, 3))
-    turn[..., 0, 0] = turn[..., 2, 2] = np.cos(radians)
-    turn[..., 0, 2] = np.sin(radians)
-    turn[..., 2, 0] = -turn[..., 0, 2]
-    turn[..., 1, 1] = 1.0
-    return turn
-
-
-def _about_z(radians: Array) -> Array:
-    turn = np.zeros((*radians.shape, 3, 3))
-    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(radians)
-    turn[..., 1, 0] = np.sin(radians)
-    turn[..., 0, 1] = -turn[..., 1, 0]
-    turn[..., 2, 2] = 1.0
-    return turn

@@ -81,8 +81,8 @@ def singularities(arm: Kinematics, axes: Sequence[float]) -> tuple[Singularity, 
     """The singularities that six axes lie in [POS-08]."""
     found = {
         Singularity.OVERHEAD: float(arm.distance_to_axis_1(axes)) <= _OVERHEAD,
-        Singularity.EXTENDED: abs(axes[2] - arm.machine.elbow) <= _ELBOW,
-        Singularity.WRIST: abs(axes[4]) <= _WRIST,
+        Singularity.EXTENDED: abs(axes[2] - arm.elbow) <= _ELBOW,
+        Singularity.WRIST: arm.has_wrist_singularity and abs(axes[4]) <= _WRIST,
     }
     return tuple(kind for kind, holds in found.items() if holds)
 
@@ -220,7 +220,7 @@ def _choose(
 def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bool_]:
     """Which ways ``(n, 6)`` have a Status; in a singularity its bit says nothing."""
     free = 1 * (arm.distance_to_axis_1(ways) <= _OVERHEAD)
-    free |= 2 * (np.abs(ways[:, 2] - arm.machine.elbow) <= _ZERO)
+    free |= 2 * (np.abs(ways[:, 2] - arm.elbow) <= _ZERO)
     free |= 4 * (np.abs(ways[:, 4]) <= _ZERO)
     have: npt.NDArray[np.bool_] = (arm.status(ways) ^ status) & _ALL_BITS & ~free == 0
     return have

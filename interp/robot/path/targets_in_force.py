@@ -143,6 +143,7 @@ class Programmed:
         for place, name in enumerate(_AXES):
             if name in target:
                 axes[place] = target[name] + (axes[place] if is_relative else 0.0)
+        axes[:ROBOT_AXES] = self.arm.coupled(axes[:ROBOT_AXES])
         check_limits(self.arm.machine.axes, axes[:ROBOT_AXES].tolist())
         axes[ROBOT_AXES:] = self.externals(target, is_relative)
         return axes

@@ -78,6 +78,7 @@ class PlannedArm:
     ) -> None:
         self._tracks = Tracks(machine)
         axes = np.array(machine.standing(start))
+        axes[:ROBOT_AXES] = self._tracks.arm.coupled(axes[:ROBOT_AXES])
         check_limits((*machine.axes, *machine.externals), axes.tolist())
         self._plan = _Plan(Programmed(self._tracks.arm, axes))
         #: For each brake what it interrupted, once other motions were planned behind it [INT-09].

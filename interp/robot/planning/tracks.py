@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Settings, Target
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
+from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.path.axis_path import (
     Curve,
     InStep,
@@ -99,7 +100,7 @@ class Tracks:
 
     def __init__(self, machine: MachineData) -> None:
         self.machine = machine
-        self.arm = Kinematics(machine)
+        self.arm = kinematics_of(machine)
         self.limits = axis_limits(machine)
         self.every = (*machine.axes, *machine.externals)
 

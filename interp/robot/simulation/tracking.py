@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Arm
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics, matrix_of
+from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.robot import Robot, RobotFault
 
 __all__ = ["PathRecord", "Tracking"]
@@ -65,10 +66,12 @@ class Tracking:
     ) -> None:
         if robot.step and cycle % robot.step:
             raise ValueError(f"a cycle of {cycle} µs is no multiple of {robot.step} µs")
-        stands = machine.standing(start)
         self._arm = arm
         self._robot = robot
-        self._kinematics = Kinematics(machine)
+        self._kinematics = kinematics_of(machine)
+        stands = machine.standing(start)
+        coupled = self._kinematics.coupled(stands[:ROBOT_AXES])
+        stands = (*coupled.tolist(), *stands[ROBOT_AXES:])
         self._cycle = cycle
         self._sent = 0
         self._place_times = [0]

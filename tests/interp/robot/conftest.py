@@ -10,6 +10,7 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData, read_machine
 from interp.robot.kinematics.solver import Kinematics
 from interp.robot.planning.planned_arm import PlannedArm
@@ -18,7 +19,7 @@ LIMITS = ((-170, 170), (-190, 45), (-120, 156), (-350, 350), (-125, 125), (-350,
 DIRECTIONS = (-1, 1, 1, -1, -1, -1)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def machine_text() -> Callable[..., str]:
     """The text of machine data, with lines of one's own behind the others."""
 
@@ -41,13 +42,13 @@ def machine_text() -> Callable[..., str]:
     return write
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_arm(machine_text: Callable[..., str]) -> Callable[..., Kinematics]:
     """An arm of the machine data with lines of one's own."""
-    return lambda *lines: Kinematics(read_machine(machine_text(*lines)))
+    return lambda *lines: kinematics_of(read_machine(machine_text(*lines)))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def arm(make_arm: Callable[..., Kinematics]) -> Kinematics:
     """An arm of the size of a KR 6 R900, whose dimensions are published."""
     return make_arm()

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
 from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import solve
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -32,7 +32,9 @@ def values(path: Path) -> dict[Key, Value]:
 def test_turns_of_a_cell(cell: str) -> None:
     """Status selects the branch, and its axes have the Turn that was taught."""
     folder = PROGRAMS / cell / "KRC" / "R1"
-    arm = Kinematics(read_machine((folder / "Mada" / "$machine.dat").read_bytes().decode("cp1252")))
+    arm = kinematics_of(
+        read_machine((folder / "Mada" / "$machine.dat").read_bytes().decode("cp1252"))
+    )
     frames = values(folder / "System" / "$config.dat")
     agree = []
     for path in sorted(folder.rglob("*.dat")):

@@ -117,23 +117,24 @@ def test_the_stretched_elbow(machine_text: Callable[..., str], up: float, elbow:
     [
         ("$AXIS_DIR[3]=0", "$AXIS_DIR[3] is 0, not 1 or -1"),
         ("$AXIS_TYPE[2]=7", "$AXIS_TYPE[2] is 7, not 1, 3 or 5"),
-        ("$AXIS_TYPE[2]=1", "A2 is linear"),
+        ("$AXIS_TYPE[2]=1", "$AXIS_TYPE[2] is 1"),
         ("$LENGTH_B=TRUE", "$LENGTH_B is no number"),
         ("$LENGTH_B=1E999", "$LENGTH_B is too large a number"),
         ("$LENGTH_B=" + "9" * 400, "$LENGTH_B is too large a number"),
         ("$TX3P3=1.0", "$TX3P3 is no aggregate"),
         ("$TX3P3={X #A}", "$TX3P3.X is no number"),
         ("DECL MAIN_AXIS $MAIN_AXIS=#SS", "$MAIN_AXIS is #SS; only an articulated arm"),
-        ("BOOL $DEF_A5LINK=TRUE", "$DEF_A5LINK is TRUE; only an axis 5"),
         ("INT $TRAFO_AXIS=4", "$TRAFO_AXIS is 4; only an arm of six axes"),
-        ("$AXIS_SEQ[2]=3", "$AXIS_SEQ exchanges axes"),
+        ("$AXIS_SEQ[2]=3", "$AXIS_SEQ[2] exchanges axes"),
     ],
 )
 def test_what_is_no_arm(machine_text: Callable[..., str], line: str, said: str) -> None:
-    """One line names the datum and what is wrong with it."""
+    """One line names the file, the line, the datum and what is wrong with it."""
+    text = machine_text(line)
     with pytest.raises(MachineDataError) as caught:
-        read_machine(machine_text(line), "m.dat")
-    assert str(caught.value).startswith(f"m.dat: {said}")
+        read_machine(text, "m.dat")
+    number = text.splitlines().index(line) + 1
+    assert str(caught.value).startswith(f"m.dat:{number}: {said}")
 
 
 def test_data_of_the_cabinet() -> None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import follow
 from interp.robot.path.axis_path import InStep, JointLine, PosePathCurve
 from interp.robot.path.orientation import turning
@@ -29,7 +29,7 @@ def line(
     machine: MachineData, shift: tuple[float, float, float], start: Array = START
 ) -> PosePathCurve:
     """A straight line from axes on."""
-    arm = Kinematics(machine)
+    arm = kinematics_of(machine)
     pose = arm.forward(start[:6])
     still = turning(pose[:3, :3], pose[:3, :3])
     pose_path = StraightLine(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
@@ -56,7 +56,7 @@ def test_percentages(machine: MachineData, percent: float, share: float) -> None
 def test_a_straight_line_of_axes(machine: MachineData) -> None:
     """The leading axis sets speed and acceleration of a PTP [MOT-01]."""
     curve = JointLine(
-        Kinematics(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100])
+        kinematics_of(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100])
     )
     limits = axis_limits(machine)
     (stretch,) = ceiling_of(curve, limits, limits, ()).stretches
@@ -120,7 +120,7 @@ def test_axes_along_a_pose_path_are_exact(machine: MachineData) -> None:
     u = np.random.default_rng(2).uniform(0, 1, 300)
     assert curve.pose_path is not None
     poses = poses_of(curve.pose_path, u)
-    assert np.allclose(Kinematics(machine).forward(curve.axes(u)[:, :6]), poses, atol=1e-9)
+    assert np.allclose(kinematics_of(machine).forward(curve.axes(u)[:, :6]), poses, atol=1e-9)
     rising = np.linspace(0, 1, 50)
     followed = follow(curve.arm, poses_of(curve.pose_path, rising), START[:6].tolist())
     assert np.allclose(followed, curve.axes(rising)[:, :6], atol=1e-9)

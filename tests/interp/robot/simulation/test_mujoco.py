@@ -10,9 +10,9 @@ from interp.robot.api.commands import Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Samples, Settings
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine
 from interp.robot.simulation.factory import make_robot
@@ -46,7 +46,7 @@ def smooth(count: int) -> Array:
 
 def line(along: float, milliseconds: int) -> tuple[tuple[float, ...], Array, Array]:
     """Start, axes and flanges of a straight line of so many mm along Y, with HOME in its middle."""
-    arm = Kinematics(default_machine())
+    arm = kinematics_of(default_machine())
     poses = np.repeat(arm.forward(np.array(HOME))[None], milliseconds, axis=0)
     first = poses[0].copy()
     first[1, 3] -= along / 2
@@ -65,7 +65,7 @@ def test_a_straight_line_at_a_metre_a_second() -> None:
     measured = np.concatenate(
         [robot.follow(samples_of(axes[at : at + 120], 1_000 * at)) for at in range(0, 900, 120)]
     )
-    flanges = Kinematics(default_machine()).forward(measured)
+    flanges = kinematics_of(default_machine()).forward(measured)
     off = np.linalg.norm(flanges[:, :3, 3] - poses[:, :3, 3], axis=1)
     assert 1e-4 < off.max() < 0.05
 

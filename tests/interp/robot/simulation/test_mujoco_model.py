@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData, read_machine
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.links import reach_of
@@ -70,7 +70,7 @@ def test_the_flange_stands_where_the_kinematics_have_it(
     machine = read_machine(machine_text(*lines))
     model, data = loaded(machine)
     axes = np.random.default_rng(7).uniform(-180.0, 180.0, (200, 6))
-    flanges = np.array(machine.robroot.matrix) @ Kinematics(machine).forward(axes)
+    flanges = np.array(machine.robroot.matrix) @ kinematics_of(machine).forward(axes)
     for row, expected in zip(axes, flanges, strict=True):
         data.qpos[:] = np.radians(row)
         mujoco.mj_kinematics(model, data)
@@ -103,7 +103,7 @@ def test_what_an_arm_touches() -> None:
     """Its hand touches its own foot, and a box that stands in its way."""
     machine = default_machine()
     assert 0 < touching(machine, (0.0, 0.0, 144.0, 0.0, 0.0, 0.0))
-    flange = Kinematics(machine).forward(np.array(HOME))
+    flange = kinematics_of(machine).forward(np.array(HOME))
     box = Box("box", Pose.from_matrix(flange.tolist()), (50.0, 50.0, 50.0))
     assert 0 < touching(machine, HOME, box)
 

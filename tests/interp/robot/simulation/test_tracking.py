@@ -8,9 +8,9 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import Motion, Position, Samples, Settings
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import make_robot
@@ -67,7 +67,7 @@ def test_a_row_each_cycle(arm: Any) -> None:
     record = tracking.record()
     assert [0, 12_000, 24_000, 36_000] == record.times.tolist()
     assert [0.0, 12.0, 24.0, 36.0] == record.axes[:, 0].tolist()
-    flange = Pose.from_matrix(Kinematics(default_machine()).forward((36.0, *START[1:])).tolist())
+    flange = Pose.from_matrix(kinematics_of(default_machine()).forward((36.0, *START[1:])).tolist())
     assert flange.components == pytest.approx(record.points[-1], abs=1e-9)
     assert record.axes_measured is None
     assert "t q1 q2 q3 q4 q5 q6 x y z a b c".split() == list(record.columns())
@@ -103,7 +103,7 @@ def test_points_in_the_frames_in_force(arm: Any) -> None:
     tracking.placed(18_000, placement)
     tracking.settle(36_000)
     points = tracking.record().points
-    flanges = Kinematics(default_machine()).forward(tracking.record().axes)
+    flanges = kinematics_of(default_machine()).forward(tracking.record().axes)
     assert Pose.from_matrix(flanges[1]).components == pytest.approx(points[1], abs=1e-9)
     expected = placement.point(Pose.from_matrix(flanges[2])).components
     assert expected == pytest.approx(points[2], abs=1e-9)

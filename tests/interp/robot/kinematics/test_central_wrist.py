@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.machine_data import MachineData, MachineDataError
+from interp.robot.kinematics.central_wrist import CentralWrist
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError, read_machine
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.poses import IDENTITY, Pose
 
@@ -249,7 +250,11 @@ def test_status_of_an_elbow_without_offset(make_arm: MakeArm) -> None:
         ("$TX3P3={X 420.0,B 80.0}", "askew"),
     ],
 )
-def test_wrists_that_are_not_supported(make_arm: MakeArm, line: str, said: str) -> None:
+def test_wrists_that_are_not_central(
+    machine_text: Callable[..., str], line: str, said: str
+) -> None:
     """A wrist of another kind is refused rather than solved wrongly."""
+    machine = read_machine(machine_text(line))
+    assert not machine.is_wrist_central
     with pytest.raises(MachineDataError, match=said):
-        make_arm(line)
+        CentralWrist(machine)

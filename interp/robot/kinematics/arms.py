@@ -1,0 +1,24 @@
+"""Which kinematics fit a machine."""
+
+from __future__ import annotations
+
+from interp.robot.kinematics.central_wrist import CentralWrist
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError, Palletising
+from interp.robot.kinematics.numeric import NumericKinematics
+from interp.robot.kinematics.palletiser import Palletiser
+from interp.robot.kinematics.solver import Kinematics
+
+__all__ = ["kinematics_of"]
+
+
+def kinematics_of(machine: MachineData) -> Kinematics:
+    """Closed forms for a central wrist and for palletisers that have one, else numbers.
+
+    Raises `interp.robot.kinematics.machine_data.MachineDataError` for what none of them solves.
+    """
+    if machine.own_chain is not None or not machine.is_wrist_central:
+        if machine.palletising is Palletising.LINKED_A5:
+            raise MachineDataError("an axis 5 that is guided by a parallelogram, in an odd wrist")
+        return NumericKinematics(machine)
+    arm = CentralWrist(machine)
+    return Palletiser(arm) if machine.palletising is not None else arm

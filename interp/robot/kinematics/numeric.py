@@ -1,0 +1,328 @@
+"""Kinematics of a chain of up to six joints, solved by numbers.
+
+For arms without a central wrist, and for those that were described joint by joint. Inverse
+kinematics is the Levenberg-Marquardt method with the damping of Sugihara (2011), from many starts
+at once; lengths count as shares of the arm's size. An arm of fewer than six joints reaches a pose
+where it can be met; what keeps it from that may turn the flange by `_OFF` at most.
+
+Status and Turn are told apart as for other arms, with axis 5 for the wrist; no source says how
+such arms count (unconfirmed).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
+from interp.robot.kinematics.solver import Array, matrix_of
+from interp.values.faults import Fault
+
+__all__ = ["NumericKinematics"]
+
+_STARTS = 96
+_WAYS = 16
+_ROUNDS = 60
+_NEAR_ROUNDS = 25
+_HOPEFUL = 20, 0.05
+"""Rounds after which a start is given up unless its error is below the second figure."""
+_MET = 1e-11
+"""Length of the error, in shares of the arm's size and radians, at which a pose is met."""
+_LEAST_DAMPING = 1e-10
+_OFF = 0.002  # radians that an arm of fewer joints may be off
+_SAME = 1e-4  # degrees between axes that count as one way
+_TURN = 1e-9  # radians of rounding
+_NEAR = 30.0  # degrees or mm from a reference to what is still the same way
+_COARSE = 32
+_FAR = 1e9  # mm
+
+
+class NumericKinematics:
+    """The kinematics of one machine: a `interp.robot.kinematics.solver.Kinematics`.
+
+    Raises `MachineDataError` for a chain of no joints, or more than six.
+    """
+
+    has_wrist_singularity = False
+
+    def __init__(self, machine: MachineData) -> None:
+        chain = machine.chain
+        if not 0 < len(chain.joints) <= ROBOT_AXES:
+            raise MachineDataError(f"a chain of {len(chain.joints)} joints; 1 to 6 can be moved")
+        self.machine = machine
+        self._frames = [matrix_of(joint.frame) for joint in chain.joints]
+        self._end = matrix_of(chain.end)
+        self._directions = np.array([joint.axis for joint in chain.joints])
+        linear = [joint.is_linear for joint in chain.joints]
+        self._linear = np.array(linear)
+        self._units = np.where(self._linear, 1.0, math.pi / 180.0)
+        self._skews = [_skew(axis) for axis in self._directions]
+        fixed = [False] * len(linear)
+        if machine.palletising is not None:
+            fixed[3] = True
+        self._free = np.flatnonzero(~np.array(fixed))
+        self._size = max(sum(float(np.linalg.norm(f[:3, 3])) for f in self._frames), 1.0)
+        self._scale = np.where(self._linear, self._size, 1.0)[self._free]
+        self.elbow = self._stretched()
+
+    @property
+    def _count(self) -> int:
+        return len(self._frames)
+
+    def coupled(self, axes: npt.ArrayLike) -> Array:
+        """Axes that the chain does not have stay at 0, and so does an axis 4 that is fixed."""
+        found = np.zeros_like(np.asarray(axes, dtype=np.float64))
+        found[..., self._free] = np.asarray(axes, dtype=np.float64)[..., self._free]
+        return found
+
+    def forward(self, axes: npt.ArrayLike) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.forward`."""
+        given = self.coupled(axes)
+        pose, _ = self._poses(given[..., : self._count] * self._units)
+        return pose
+
+    def inverse(self, poses: npt.ArrayLike) -> Array:
+        """Ways that were found from starts spread over the range of the axes, 16 at most."""
+        given = np.asarray(poses, dtype=np.float64)
+        shape = given.shape[:-2]
+        given = given.reshape(-1, 4, 4)
+        found = np.full((len(given), _WAYS, ROBOT_AXES), math.nan)
+        starts = self._starts()
+        for place, pose in enumerate(given):
+            if (np.abs(pose) < _FAR).all():
+                ends = self._solve(np.tile(pose, (len(starts), 1, 1)), starts, _ROUNDS)
+                ways = _distinct(self._wrapped(self._degrees(ends)))
+                found[place, : len(ways)] = ways[:_WAYS]
+        return found.reshape(*shape, _WAYS, ROBOT_AXES)
+
+    def inverse_near(self, poses: Array, references: Array) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.inverse_near`."""
+        starts = self._held(references[:, : self._count]) * self._units
+        found = self._degrees(self._solve(poses, starts, _NEAR_ROUNDS))
+        lost = (np.abs(found - self.coupled(references)) > _NEAR).any(axis=1)
+        found[lost] = math.nan
+        return found
+
+    def inverse_along(self, poses: Array, start: Sequence[float]) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.inverse_along`.
+
+        A few samples one after the other, then all others between them at once.
+        """
+        places = np.unique(np.linspace(0, len(poses) - 1, _COARSE + 1).astype(int))
+        before = np.array(start, dtype=np.float64)[None]
+        known = np.empty((len(places), ROBOT_AXES))
+        for row, place in enumerate(places):
+            known[row] = before = self.inverse_near(poses[place : place + 1], before)
+        between = np.arange(len(poses))
+        references = np.stack([np.interp(between, places, c) for c in known.T], axis=-1)
+        path = self.inverse_near(poses, references)
+        if np.isnan(path).any():
+            raise Fault("unreachable", "the path cannot be followed", number=1366)
+        return path
+
+    def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
+        """See `interp.robot.kinematics.solver.Kinematics.status`."""
+        given = self.coupled(axes)
+        behind = self._wrist(given)[..., 0] < -1e-7
+        bent = given[..., 2] >= self.elbow - _TURN
+        found: npt.NDArray[np.int64] = behind + 2 * bent + 4 * (given[..., 4] < -_TURN)
+        return found
+
+    def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.distance_to_axis_1`."""
+        distance: Array = np.hypot(*np.moveaxis(self._wrist(self.coupled(axes)), -1, 0)[:2])
+        return distance if not self._linear[0] else np.full_like(distance, math.inf)
+
+    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.turned_about_axis_1`."""
+        turn = np.eye(4)
+        turn[:3, :3] = self._turn(0, np.array(math.radians(degrees)))
+        first = self._frames[0]
+        carried: Array = first @ turn @ np.linalg.inv(first) @ np.asarray(poses)
+        return carried
+
+    # ------------------------------------------------------------------------------- the solution
+
+    def _solve(self, poses: Array, starts: Array, rounds: int) -> Array:
+        """Joints ``(n, joints)`` in radians or mm that reach poses, from starts; NaN where none."""
+        theta = starts.copy()
+        busy = np.arange(len(theta))
+        error = np.full(len(theta), math.inf)
+        for turn in range(rounds):
+            pose, slopes = self._poses(theta[busy])
+            missing = self._missing(poses[busy], pose)
+            error[busy] = np.linalg.norm(missing, axis=1)
+            is_left = error[busy] > _MET
+            if turn >= _HOPEFUL[0]:
+                is_left &= error[busy] < _HOPEFUL[1]
+            busy, missing, slopes = busy[is_left], missing[is_left], slopes[is_left]
+            if not len(busy):
+                break
+            damping = 0.5 * (missing**2).sum(axis=1) + _LEAST_DAMPING
+            normal = np.swapaxes(slopes, 1, 2) @ slopes
+            normal += damping[:, None, None] * np.eye(len(self._free))
+            push = np.swapaxes(slopes, 1, 2) @ missing[:, :, None]
+            step = np.linalg.solve(normal, push)[:, :, 0] * self._scale
+            theta[np.ix_(busy, self._free)] += step
+        theta[~self._is_met(poses, theta, error)] = math.nan
+        return theta
+
+    def _is_met(self, poses: Array, theta: Array, error: Array) -> npt.NDArray[np.bool_]:
+        """Whether joints reach their poses, as far as an arm of so few of them can."""
+        if len(self._free) == ROBOT_AXES:
+            return error < 1e3 * _MET
+        missing = self._missing(poses, self._poses(theta)[0])
+        near = np.linalg.norm(missing[:, :3], axis=1) < _OFF * 1e-2
+        met: npt.NDArray[np.bool_] = near & (np.linalg.norm(missing[:, 3:], axis=1) < _OFF)
+        return met
+
+    def _missing(self, wanted: Array, pose: Array) -> Array:
+        """What lies between poses: shares of the size, and a turn in radians, ``(n, 6)``."""
+        turn = wanted[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
+        axial = np.stack(
+            (
+                turn[:, 2, 1] - turn[:, 1, 2],
+                turn[:, 0, 2] - turn[:, 2, 0],
+                turn[:, 1, 0] - turn[:, 0, 1],
+            ),
+            axis=1,
+        )
+        sine = np.linalg.norm(axial, axis=1)
+        angle = np.arctan2(sine, np.trace(turn, axis1=1, axis2=2) - 1.0)
+        share = np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 0.5)
+        missing = np.empty((len(pose), 6))
+        missing[:, :3] = (wanted[:, :3, 3] - pose[:, :3, 3]) / self._size
+        missing[:, 3:] = axial * share[:, None]
+        return missing
+
+    def _poses(self, theta: Array) -> tuple[Array, Array]:
+        """Poses ``(..., 4, 4)`` of the flange, and how they change with the free joints.
+
+        The changes ``(..., 6, free)`` count lengths as shares of the size, along with joints.
+        """
+        pose = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
+        origins, axes = [], []
+        for place, frame in enumerate(self._frames):
+            pose = pose @ frame
+            axes.append(pose[..., :3, :3] @ self._directions[place])
+            origins.append(pose[..., :3, 3])
+            move = np.zeros((*theta.shape[:-1], 4, 4))
+            move[..., 3, 3] = 1.0
+            if self._linear[place]:
+                move[..., :3, :3] = np.eye(3)
+                move[..., :3, 3] = theta[..., place, None] * self._directions[place]
+            else:
+                move[..., :3, :3] = self._turn(place, theta[..., place])
+            pose = pose @ move
+        pose = pose @ self._end
+        turns = np.stack([axes[place] for place in self._free], axis=-1)
+        arms = pose[..., :3, 3:] - np.stack([origins[place] for place in self._free], axis=-1)
+        shifts = np.empty_like(arms)  # their cross products
+        for row, (one, other) in enumerate(((1, 2), (2, 0), (0, 1))):
+            shifts[..., row, :] = (
+                turns[..., one, :] * arms[..., other, :] - turns[..., other, :] * arms[..., one, :]
+            )
+        is_linear = self._linear[self._free]
+        slopes = np.concatenate(
+            (
+                np.where(is_linear, turns, shifts / self._size),
+                np.where(is_linear, 0.0, turns),
+            ),
+            axis=-2,
+        )
+        return pose, slopes
+
+    def _turn(self, place: int, angle: Array) -> Array:
+        """A turn about the axis of a joint, by Rodrigues."""
+        skew = self._skews[place]
+        angle = angle[..., None, None]
+        turn: Array = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * (skew @ skew)
+        return turn
+
+    def _starts(self) -> Array:
+        """Joints spread evenly over their range (the additive sequence of Roberts 2018)."""
+        count = self._count
+        golden = 1.5
+        for _ in range(40):
+            golden = (1.0 + golden) ** (1.0 / (count + 1))
+        shares = np.outer(np.arange(_STARTS), golden ** -np.arange(1, count + 1)) + 0.5
+        axes = self.machine.axes[:count]
+        lower = np.array([_bound(axis.lower, -1.0, self._linear[i]) for i, axis in enumerate(axes)])
+        upper = np.array([_bound(axis.upper, 1.0, self._linear[i]) for i, axis in enumerate(axes)])
+        starts: Array = self._held(lower + (shares % 1.0) * (upper - lower)) * self._units
+        return starts
+
+    def _held(self, joints: Array) -> Array:
+        """Joints ``(n, joints)`` with fixed ones at 0."""
+        found = np.zeros_like(joints)
+        found[:, self._free] = joints[:, self._free]
+        return found
+
+    def _degrees(self, theta: Array) -> Array:
+        """Axes ``(n, 6)`` in degrees or mm."""
+        axes = np.zeros((len(theta), ROBOT_AXES))
+        axes[:, : self._count] = theta / self._units
+        axes[np.isnan(theta).any(axis=1)] = math.nan
+        return axes
+
+    def _wrapped(self, axes: Array) -> Array:
+        """Angles above -180 and up to 180 degrees."""
+        turning = np.append(~self._linear, [False] * (ROBOT_AXES - self._count))
+        whole = 360.0 * np.ceil((axes - 180.0 - _TURN) / 360.0)
+        wrapped: Array = np.where(turning, axes - whole, axes)
+        return wrapped
+
+    # ------------------------------------------------------------------------------- the geometry
+
+    def _wrist(self, axes: Array) -> Array:
+        """Where axis 5 (the last, of shorter chains) is, in front of axis 1 turned by A1."""
+        theta = axes[..., : self._count] * self._units
+        pose = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
+        last = min(5, self._count)
+        for place in range(1, last):
+            pose = pose @ self._frames[place]
+            if place < last - 1:
+                move = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
+                if self._linear[place]:
+                    move[..., :3, 3] = theta[..., place, None] * self._directions[place]
+                else:
+                    move[..., :3, :3] = self._turn(place, theta[..., place])
+                pose = pose @ move
+        found: Array = pose[..., :3, 3]
+        return found
+
+    def _stretched(self) -> float:
+        """The angle of A3 at which axis 5 is farthest from axis 2."""
+        if self._count < 4 or self._linear[1:4].any():
+            return 0.0
+        beyond = self._frames[3]
+        if self._count > 4:
+            beyond = beyond @ self._frames[4]
+        ahead, back = beyond[:3, 3], -(self._frames[2][:3, :3].T @ self._frames[2][:3, 3])
+        axis = self._directions[2]
+        ahead, back = ahead - axis * (axis @ ahead), back - axis * (axis @ back)
+        return math.degrees(math.atan2(-(back @ np.cross(axis, ahead)), -(back @ ahead)))
+
+
+def _skew(axis: Array) -> Array:
+    x, y, z = axis
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _bound(value: float, sign: float, is_linear: bool) -> float:
+    """An end of the range that starts are spread over: within half a turn, or a metre."""
+    most = 1000.0 if is_linear else 180.0
+    return value if abs(value) < most or (is_linear and math.isfinite(value)) else sign * most
+
+
+def _distinct(ways: Array) -> Array:
+    """Ways ``(n, 6)`` without those that are no way or the same as another, in a fixed order."""
+    kept: list[Array] = []
+    for way in ways[~np.isnan(ways).any(axis=1)]:
+        differences = (np.abs((way - other + 180.0) % 360.0 - 180.0).max() for other in kept)
+        if all(difference > _SAME for difference in differences):
+            kept.append(way)
+    return np.array(kept).reshape(-1, ROBOT_AXES)

@@ -1,0 +1,178 @@
+"""Palletisers: arms of five or four axes, whose axis 4 is fixed at 0 [$DEF_A4FIX, $DEF_A5LINK].
+
+The flange then lies in the upright plane of the arm, so a pose is reached as far as it can be: its
+position exactly, its orientation turned by the least angle that brings the axis of the flange into
+that plane. With $DEF_A5LINK a parallelogram keeps the flange level, and A5 follows from A2 and A3.
+That a controller takes orientations so is unconfirmed; $ORI_CHECK, which would have it look at
+them, is delivered as 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.central_wrist import CentralWrist
+from interp.robot.kinematics.machine_data import MachineDataError, Palletising
+from interp.robot.kinematics.solver import Array, matrix_of
+
+__all__ = ["Palletiser"]
+
+_WAYS = 4
+_TOLERANCE = 1e-9  # mm, or of a cosine
+_FLAT = 1e-6
+"""Length of the axis of the flange within the plane of the arm, below which it has no direction."""
+_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
+
+
+class Palletiser:
+    """The kinematics of a palletiser: a `interp.robot.kinematics.solver.Kinematics`.
+
+    ``arm`` are those of the same machine with all axes free. Raises `MachineDataError` for a wrist
+    or flange beside the plane of the arm.
+    """
+
+    has_wrist_singularity = False
+
+    def __init__(self, arm: CentralWrist) -> None:
+        machine = arm.machine
+        self.machine = machine
+        self.elbow = arm.elbow
+        self._arm = arm
+        flange = machine.tflwp
+        is_aside = abs(machine.tx3p3.position[1]) > _TOLERANCE
+        is_aside |= math.hypot(*flange.position[:2]) > _TOLERANCE
+        is_aside |= abs(abs(machine.tx3p3.rows[1][1]) - 1.0) > _TOLERANCE
+        if is_aside or abs(flange.rows[2][2] - 1.0) > _TOLERANCE:
+            raise MachineDataError(
+                "the flange of a palletiser does not lie in the plane of the arm"
+            )
+        self._is_linked = machine.palletising is Palletising.LINKED_A5
+        self._to_inner = matrix_of(machine.tiroro.inverse())
+        self._from_inner = matrix_of(machine.tiroro)
+        self._after = matrix_of(flange)[:3, :3]
+        twist = math.copysign(1.0, math.sin(math.radians(machine.dh_4.alpha)))
+        self._senses = -twist * machine.axes[4].direction, float(machine.axes[5].direction)
+        forward, _, down = (-part for part in machine.tx3p3.rows[2][:3])
+        self._level = math.degrees(math.atan2(forward, down))  # of axis 5, with A2 and A3 at 0
+        self._pitch = -machine.tx3p3.rows[1][1] * np.array(
+            [axis.direction for axis in machine.axes[1:3]]
+        )
+
+    def coupled(self, axes: npt.ArrayLike) -> Array:
+        """A4 at 0, and with a parallelogram A5 as it is guided."""
+        found = np.array(axes, dtype=np.float64)
+        found[..., 3] = 0.0
+        if self._is_linked:
+            pitch = found[..., 1:3] @ self._pitch
+            found[..., 4] = (self._level + pitch) * self._senses[0]
+        return found
+
+    def forward(self, axes: npt.ArrayLike) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.forward`."""
+        return self._arm.forward(self.coupled(axes))
+
+    def inverse(self, poses: npt.ArrayLike) -> Array:
+        """Four ways, as shoulder and elbow go; A4 is 0 in all of them."""
+        reached = self._reachable(np.asarray(poses, dtype=np.float64))
+        main = self._arm.inverse(reached)[..., :_WAYS, :3]
+        return self._with_wrist(main, reached[..., None, :, :])
+
+    def inverse_near(self, poses: Array, references: Array) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.inverse_near`."""
+        reached = self._reachable(poses)
+        main = self._arm.inverse_near(reached, references)[:, :3]
+        found = self._with_wrist(main, reached)
+        near: Array = found + 360.0 * np.round((references - found) / 360.0)
+        return near
+
+    def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
+        """See `interp.robot.kinematics.solver.Kinematics.inverse_along`."""
+        references = np.array(start, dtype=np.float64)
+        found = self.inverse_near(poses, np.tile(references, (len(poses), 1)))
+        path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
+        is_plain = bool((np.abs(np.diff(path, axis=0)) < _SAME_WAY).all())
+        return path[1:] if is_plain else None
+
+    def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
+        """See `interp.robot.kinematics.solver.Kinematics.status`."""
+        return self._arm.status(self.coupled(axes))
+
+    def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.distance_to_axis_1`."""
+        return self._arm.distance_to_axis_1(axes)
+
+    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.turned_about_axis_1`."""
+        return self._arm.turned_about_axis_1(poses, degrees)
+
+    # ------------------------------------------------------------------------------- the geometry
+
+    def _unturned(self, axes: Array) -> Array:
+        """Rotations ``(..., 3, 3)`` of the wrist with axes 4 to 6 at 0, in front of $TIRORO."""
+        still = axes.copy()
+        still[..., 3:] = 0.0
+        flange = self._to_inner[:3, :3] @ self._arm.forward(still)[..., :3, :3]
+        found: Array = flange @ self._after.T
+        return found
+
+    def _with_wrist(self, main: Array, poses: Array) -> Array:
+        """Axes ``(..., 6)`` for main axes ``(..., 3)`` and poses that they reach with A4 at 0."""
+        axes = np.zeros((*main.shape[:-1], 6))
+        axes[..., :3] = main
+        wanted = self._to_inner[:3, :3] @ poses[..., :3, :3] @ self._after.T
+        wrist = np.swapaxes(self._unturned(axes), -1, -2) @ wanted
+        a5 = np.arctan2(wrist[..., 0, 2], wrist[..., 2, 2])
+        a6 = np.arctan2(wrist[..., 1, 0], wrist[..., 1, 1])
+        axes[..., 4] = np.degrees(a5) * self._senses[0]
+        axes[..., 5] = np.degrees(a6) * self._senses[1]
+        axes[..., 3] = np.where(np.isnan(main[..., 0]), math.nan, 0.0)
+        return axes
+
+    def _reachable(self, poses: Array) -> Array:
+        """Poses ``(..., 4, 4)`` with the axis of the flange turned into the plane of the arm.
+
+        NaN where it stands upright on that plane.
+        """
+        inner = self._to_inner @ poses
+        axis = inner[..., :3, 2]
+        if self._is_linked:
+            wanted = np.broadcast_to(np.array([0.0, 0.0, -1.0]), axis.shape)
+        else:
+            x, y = inner[..., 0, 3], inner[..., 1, 3]
+            away = np.hypot(x, y)
+            is_on_axis = away < _FLAT
+            away = np.where(is_on_axis, 1.0, away)
+            normal = np.stack((-y / away, x / away, np.zeros_like(x)), axis=-1)
+            wanted = axis - (axis * normal).sum(axis=-1, keepdims=True) * normal
+            wanted[is_on_axis, :2] = 0.0  # in every such plane
+        length = np.linalg.norm(wanted, axis=-1, keepdims=True)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            wanted = np.where(length < _FLAT, math.nan, wanted / length)
+            turned = _least_turn(axis, wanted) @ inner[..., :3, :3]
+        inner = inner.copy()
+        inner[..., :3, :3] = turned
+        reached: Array = self._from_inner @ inner
+        return reached
+
+
+def _least_turn(before: Array, after: Array) -> Array:
+    """The rotations ``(..., 3, 3)`` of least angle that take unit vectors to others.
+
+    NaN between opposite ones.
+    """
+    cross = np.cross(before, after)
+    cosine = (before * after).sum(axis=-1)[..., None, None]
+    skew = np.zeros((*before.shape[:-1], 3, 3))
+    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = (
+        -cross[..., 2],
+        cross[..., 1],
+        -cross[..., 0],
+    )
+    skew -= np.swapaxes(skew, -1, -2)
+    share = 1.0 / np.where(cosine > _FLAT - 1.0, 1.0 + cosine, math.nan)
+    turn: Array = np.eye(3) + skew + skew @ skew * share
+    return turn
