@@ -10,7 +10,7 @@ that obliges: the inputs that a WAIT FOR waits for come after a second.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
@@ -20,7 +20,7 @@ from grammar.syntax.references import calls_in
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.controller.automatic_inputs import OPERATOR
-from interp.controller.input_script import Script
+from interp.controller.input_script import Script, ScriptError
 from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
@@ -50,9 +50,9 @@ PATIENCE: Final = 20_000_000
 
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
 #: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
-#: ``refused`` where it could not begin.
+#: ``refused`` where it could not begin, ``wall`` where it has taken too long for whoever waits.
 Result = Literal[
-    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "refused", "crash"
+    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "wall", "refused", "crash"
 ]
 
 
@@ -171,19 +171,43 @@ def survey_profile() -> Profile:
     return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
 
 
-def run_main(main: MainProgram, setup: RunSetup, script: str = "") -> Ran:
+class _Over(Exception):
+    """A program has taken too long."""
+
+
+def run_main(
+    main: MainProgram,
+    setup: RunSetup,
+    script: str = "",
+    is_over: Callable[[], bool] = lambda: False,
+) -> Ran:
     """Run a main program; ``script`` adds to what the person at the panel and the cell do.
 
-    Raises `interp.controller.input_script.ScriptError` for a script that names what does not exist.
+    ``is_over`` is asked after each virtual second whether it has taken too long. A defect of ours
+    is a result like others, its exception the reason. Raises `ScriptError` for a script that names
+    what does not exist.
     """
     seen = _Seen()
     text = script + "\n" + OPERATOR
     script_read = Script.read(text, f"{main.routine}.io")
     setup = replace(setup, submit=main.submit, script=script_read, patience=PATIENCE)
+
+    def on_time(now: int) -> None:
+        seen.now = now
+        if is_over():
+            raise _Over
+
     try:
-        run = run_program(main.prepared, setup, take=seen.take)
+        run = run_program(main.prepared, setup, take=seen.take, on_time=on_time)
     except LinkError as error:
         return Ran("refused", 0.0, 0, reason=str(error))
+    except _Over:
+        return Ran("wall", seen.now / 1e6, seen.motions, at=seen.at)
+    except ScriptError:
+        raise
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        return Ran("crash", seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     outcome = run.outcome
     program = main.prepared.program
     starts = [program.start(name) for name in (main.routine, main.submit) if name is not None]
@@ -223,9 +247,13 @@ def run_main(main: MainProgram, setup: RunSetup, script: str = "") -> Ran:
 
 @dataclass(slots=True)
 class _Seen:
-    """What a trace tells of motions, which is all that is kept of it."""
+    """What is kept of a trace: motions made, the last report of the time, the last line."""
 
     motions: int = 0
+    now: int = 0
+    at: str = ""
 
     def take(self, event: TraceEvent) -> None:
         self.motions += event.kind == "motion_end"
+        if event.task == "robot":
+            self.at = event.place or self.at

@@ -1,0 +1,221 @@
+"""All main programs of many backups, run in parallel processes, each within bounds of its own.
+
+The files of an origin are read and linked once in one process, and its programs are run there one
+after the other. A program ends at the latest when its virtual time, its wall time or its statements
+are used up, and a defect of ours ends it alone. Results are kept by the content of the origin, so
+that a survey that was ended goes on where it was.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from grammar.syntax.source import Source
+from interp.bench.main_programs import (
+    MainProgram,
+    main_programs,
+    run_main,
+    survey_profile,
+)
+from interp.program.load import Limits
+from interp.robot.simulation.factory import RobotName
+from interp.session import RunSetup
+from support.files.code_digest import code_digest
+from support.files.result_store import ResultStore
+from support.parallel.sticky_pool import StickyPool
+
+__all__ = ["Bounds", "Origin", "Surveyed", "survey"]
+
+#: Statements of one program: what computes longer without end is known to do so by then.
+_STATEMENTS: Final = 3_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where files come from, the files, and scripts of their programs by the stem of the file.
+
+    ``script`` is for all of its programs.
+    """
+
+    name: str
+    sources: tuple[Source, ...]
+    script: str = ""
+    scripts: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """How programs are run: ``until`` is the most virtual time in µs, ``wall`` the most in s."""
+
+    executor: str
+    robot: RobotName = "none"
+    until: int = 600_000_000
+    wall: float = 30.0
+    stands_in: bool = True
+    is_every: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Surveyed:
+    """An origin whose programs have run: their rows, files that cannot be read, and the reasons.
+
+    A row has ``origin`` and ``path``, the fields of `interp.bench.main_programs.Ran`, and ``wall``
+    in seconds.
+    """
+
+    origin: str
+    rows: tuple[dict[str, Any], ...]
+    unread: tuple[tuple[str, str], ...]
+
+
+def survey(
+    origins: Sequence[Origin],
+    bounds: Bounds,
+    *,
+    jobs: int = 1,
+    cache: Path | None = None,
+    on_found: Callable[[int], None] = lambda _count: None,
+    on_done: Callable[[], None] = lambda: None,
+) -> Iterator[Surveyed]:
+    """The results of each origin in the order given, as soon as they are there.
+
+    ``on_found`` is told how many programs more are known of, ``on_done`` of each that has run.
+    ``cache`` is a folder for results. Raises `interp.controller.input_script.ScriptError` for a
+    script that names what does not exist.
+    """
+    key = code_digest("grammar", "interp", "support")
+    with ResultStore(cache, f"programs {key}") as store, StickyPool(jobs) as pool:
+        yield from _Survey(pool, store, bounds, on_found, on_done).run(origins)
+
+
+@dataclass(slots=True)
+class _Running:
+    """An origin in a process: the results of its programs by their places; ``digest`` is of it."""
+
+    number: int
+    origin: Origin
+    process: int
+    digest: str
+    paths: list[str] = field(default_factory=list)
+    unread: list[tuple[str, str]] = field(default_factory=list)
+    rows: dict[int, dict[str, Any]] = field(default_factory=dict)
+
+
+class _Survey:
+    """Gives each process an origin at a time."""
+
+    def __init__(
+        self,
+        pool: StickyPool,
+        store: ResultStore,
+        bounds: Bounds,
+        on_found: Callable[[int], None],
+        on_done: Callable[[], None],
+    ) -> None:
+        self._pool = pool
+        self._store = store
+        self._bounds = bounds
+        self._on_found = on_found
+        self._on_done = on_done
+        #: The program that each is about; ``None`` for the list of an origin's programs.
+        self._pending: dict[Future[Any], tuple[_Running, int | None]] = {}
+
+    def run(self, origins: Sequence[Origin]) -> Iterator[Surveyed]:
+        """See `survey`. The largest origins are begun first."""
+        todo = deque(sorted(range(len(origins)), key=lambda place: -_size(origins[place].sources)))
+        done: dict[int, Surveyed] = {}
+        shown = 0
+        for process in range(min(self._pool.count, len(todo))):
+            self._begin(origins, todo, process)
+        while self._pending:
+            ready, _ = wait(self._pending, return_when=FIRST_COMPLETED)
+            for one in ready:
+                running, program = self._pending.pop(one)
+                if program is None:
+                    self._listed(running, *one.result())
+                else:
+                    self._ran(running, program, one.result())
+                if len(running.rows) == len(running.paths):
+                    done[running.number] = self._finished(running)
+                    self._begin(origins, todo, running.process)
+            while shown in done:
+                yield done.pop(shown)
+                shown += 1
+
+    def _begin(self, origins: Sequence[Origin], todo: deque[int], process: int) -> None:
+        if todo:
+            number = todo.popleft()
+            origin = origins[number]
+            digest = hashlib.sha256(repr((origin, self._bounds)).encode()).hexdigest()
+            running = _Running(number, origin, process, digest)
+            future = self._pool.submit(process, _list_programs, origin, self._bounds)
+            self._pending[future] = running, None
+
+    def _listed(self, running: _Running, paths: list[str], unread: list[tuple[str, str]]) -> None:
+        running.paths, running.unread = paths, unread
+        self._on_found(len(paths))
+        for place in range(len(paths)):
+            kept = self._store.get_record(f"{running.digest} {place}")
+            if kept is not None:
+                running.rows[place] = kept
+                self._on_done()
+                continue
+            future = self._pool.submit(running.process, _run_program, place, self._bounds)
+            self._pending[future] = running, place
+
+    def _ran(self, running: _Running, place: int, row: dict[str, Any]) -> None:
+        row = {"origin": running.origin.name, "path": running.paths[place], **row}
+        running.rows[place] = row
+        self._store.put([(f"{running.digest} {place}", row)])
+        self._on_done()
+
+    @staticmethod
+    def _finished(running: _Running) -> Surveyed:
+        rows = tuple(row for _, row in sorted(running.rows.items()))
+        return Surveyed(running.origin.name, rows, tuple(running.unread))
+
+
+def _size(sources: Sequence[Source]) -> int:
+    return sum(len(source.text) for source in sources)
+
+
+# --------------------------------------------------------------------------- in a process
+
+#: The programs of the origin that this process works on.
+_programs: list[tuple[MainProgram, str]] = []
+
+
+def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tuple[str, str]]]:
+    """The paths of the main programs of an origin, and files that cannot be read."""
+    mains, unread = main_programs(origin.sources, stands_in=bounds.stands_in)
+    scripts = dict(origin.scripts)
+    _programs[:] = [
+        (main, f"{origin.script}\n{scripts.get(Path(main.path).stem, '')}")
+        for main in mains
+        if bounds.is_every or main.has_machine
+    ]
+    return [main.path for main, _ in _programs], unread
+
+
+def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
+    """The row of one program: the fields of `Ran`, and its wall time."""
+    main, script = _programs[place]
+    profile = survey_profile()
+    setup = RunSetup(
+        executor=bounds.executor,
+        robot=bounds.robot,
+        profile=profile,
+        until=bounds.until,
+        limits=Limits(_STATEMENTS, profile.statements),
+        is_tolerant=bounds.stands_in,
+    )
+    start = time.perf_counter()
+    ran = run_main(main, setup, script, is_over=lambda: time.perf_counter() - start > bounds.wall)
+    return {**asdict(ran), "wall": round(time.perf_counter() - start, 3)}
