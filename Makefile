@@ -8,6 +8,9 @@ BIN := $(VENV)/bin
 BASE := $(VENV)/.base
 DEV := $(VENV)/.dev
 
+# Tests and benchmarks start processes by the hundred: none of them should compile every module.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile test check grammar bench clean
 
 help:
@@ -86,4 +89,6 @@ $(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
 
 $(DEV): $(BASE)
 	@$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@# Hypothesis works out its table of characters once here, not in each process of the tests (200 MB).
+	@$(BIN)/python -c 'from hypothesis import find, strategies; find(strategies.characters(), bool)'
 	@touch $@

@@ -1,15 +1,21 @@
 """Results as tables."""
 
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-pytest.importorskip("pandas")
 
-from krl import dataframes
+@pytest.fixture
+def dataframes() -> ModuleType:
+    """The module, which has all of pandas in memory: imported where it is tested only."""
+    pytest.importorskip("pandas")
+    from krl import dataframes
+
+    return dataframes
 
 
-def test_a_survey_becomes_tables(tmp_path: Path) -> None:
+def test_a_survey_becomes_tables(dataframes: ModuleType, tmp_path: Path) -> None:
     """Clusters, proposals and failures belong together by the id of the cluster."""
     (tmp_path / "a.src").write_text("DEF A()\nWAT 1\nEND\n", encoding="utf-8")
     (tmp_path / "none").mkdir()
@@ -23,7 +29,7 @@ def test_a_survey_becomes_tables(tmp_path: Path) -> None:
     assert set(dataframes.proposals(survey)["cluster"]) <= set(found["id"])
 
 
-def test_findings_become_a_table(tmp_path: Path) -> None:
+def test_findings_become_a_table(dataframes: ModuleType, tmp_path: Path) -> None:
     """A row a finding; without any, the columns are there all the same."""
     for name, text in (("good", "DEF GOOD()\nEND\n"), ("bad", "DEF BAD()\nn = 1\nEND\n")):
         (tmp_path / f"{name}.src").write_text(text, encoding="utf-8")
@@ -33,13 +39,13 @@ def test_findings_become_a_table(tmp_path: Path) -> None:
     assert (0, True) == (len(none), "code" in none.columns)
 
 
-def test_what_cannot_be_done_is_told(tmp_path: Path) -> None:
+def test_what_cannot_be_done_is_told(dataframes: ModuleType, tmp_path: Path) -> None:
     """Status 2 is an error with the line that the command said."""
     with pytest.raises(dataframes.CommandError, match="missing"):
         dataframes.record("recover", tmp_path / "missing")
 
 
-def test_a_trace_and_nights_become_tables(tmp_path: Path) -> None:
+def test_a_trace_and_nights_become_tables(dataframes: ModuleType, tmp_path: Path) -> None:
     """Lines of JSON become rows, whatever fields their events have."""
     trace = tmp_path / "t.jsonl"
     trace.write_text(
