@@ -39,12 +39,15 @@ class Recovered:
     of these or no routine is left. ``failures`` are in the order of the text, those marked that
     only follow from others. ``dropped`` is the text of the lines that were left out, ``exchanged``
     the numbers of all that were read as something else: what is found in these is none of theirs.
+    ``text`` is what was read in the end, ``left_out`` are the numbers of the lines left out.
     """
 
     syntax: ast.Module | None
     failures: tuple[SyntaxFailure, ...]
     dropped: str
     exchanged: frozenset[int] = frozenset()
+    text: str = ""
+    left_out: frozenset[int] = frozenset()
 
 
 def recover(text: str, path: str = "") -> Recovered:
@@ -109,7 +112,14 @@ class _Recovery:
     def _recovered(self, syntax: ast.Module) -> Recovered:
         self._failures.sort(key=lambda failure: failure.offset)
         dropped = "\n".join(self._written.line(number) for number in sorted(self._dropped))
-        return Recovered(syntax, tuple(self._failures), dropped, frozenset(self._exchanged))
+        return Recovered(
+            syntax,
+            tuple(self._failures),
+            dropped,
+            frozenset(self._exchanged),
+            self._text,
+            frozenset(self._dropped),
+        )
 
     def _is_orphan(self, line: int) -> bool:
         """Whether a line closes or continues a block."""

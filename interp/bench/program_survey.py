@@ -84,7 +84,7 @@ def survey(
     on_found: Callable[[int], None] = lambda _count: None,
     on_done: Callable[[], None] = lambda: None,
 ) -> Iterator[Surveyed]:
-    """The results of each origin in the order given, as soon as they are there.
+    """The results of each origin as soon as they are there; the largest are begun first.
 
     ``on_found`` is told how many programs more are known of, ``on_done`` of each that has run.
     ``cache`` is a folder for results. Raises `interp.controller.input_script.ScriptError` for a
@@ -99,7 +99,6 @@ def survey(
 class _Running:
     """An origin in a process: the results of its programs by their places; ``digest`` is of it."""
 
-    number: int
     origin: Origin
     process: int
     digest: str
@@ -128,12 +127,10 @@ class _Survey:
         self._pending: dict[Future[Any], tuple[_Running, int | None]] = {}
 
     def run(self, origins: Sequence[Origin]) -> Iterator[Surveyed]:
-        """See `survey`. The largest origins are begun first."""
-        todo = deque(sorted(range(len(origins)), key=lambda place: -_size(origins[place].sources)))
-        done: dict[int, Surveyed] = {}
-        shown = 0
+        """See `survey`."""
+        todo = deque(sorted(origins, key=lambda origin: -_size(origin.sources)))
         for process in range(min(self._pool.count, len(todo))):
-            self._begin(origins, todo, process)
+            self._begin(todo, process)
         while self._pending:
             ready, _ = wait(self._pending, return_when=FIRST_COMPLETED)
             for one in ready:
@@ -143,20 +140,15 @@ class _Survey:
                 else:
                     self._ran(running, program, one.result())
                 if len(running.rows) == len(running.paths):
-                    done[running.number] = self._finished(running)
-                    self._begin(origins, todo, running.process)
-            while shown in done:
-                yield done.pop(shown)
-                shown += 1
+                    self._begin(todo, running.process)
+                    yield self._finished(running)
 
-    def _begin(self, origins: Sequence[Origin], todo: deque[int], process: int) -> None:
+    def _begin(self, todo: deque[Origin], process: int) -> None:
         if todo:
-            number = todo.popleft()
-            origin = origins[number]
+            origin = todo.popleft()
             digest = hashlib.sha256(repr((origin, self._bounds)).encode()).hexdigest()
-            running = _Running(number, origin, process, digest)
             future = self._pool.submit(process, _list_programs, origin, self._bounds)
-            self._pending[future] = running, None
+            self._pending[future] = _Running(origin, process, digest), None
 
     def _listed(self, running: _Running, paths: list[str], unread: list[tuple[str, str]]) -> None:
         running.paths, running.unread = paths, unread

@@ -28,7 +28,7 @@ from interp.controller.waits import Waits
 from interp.port.requests import At, Crash, End, Fail, Request
 from interp.robot.simulation.robot import RobotFault
 from interp.robot.simulation.tracking import Tracking
-from interp.values.faults import BudgetExhausted, RuntimeFailure
+from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
 
 __all__ = ["HOUR", "Ending", "RunOutcome", "Scheduler"]
 
@@ -137,7 +137,8 @@ class Scheduler:
             for task in self.tasks:
                 self._run(task)
             self._collect()
-        if self._outcome is None and self._failed is not None and self.arm.is_standing:
+        is_over = self._failed is not None and self.arm.is_standing and not self._is_finishing
+        if self._outcome is None and self._failed is not None and is_over:
             self._outcome = replace(self._failed, time=clock.now)
         if self._outcome is None and self._robot.is_halted and not self.player.awaits("START"):
             self._outcome = RunOutcome("halt", clock.now, self._robot.at)
@@ -255,8 +256,18 @@ class Scheduler:
 
         return self.advance.when_reached(task, request, finish)
 
+    @property
+    def _is_finishing(self) -> bool:
+        """Whether the arm still does what came before a line that can never be run."""
+        assert self._failed is not None, "a program has failed"
+        return isinstance(self._failed.error, LinkError) and bool(self.queue.pending)
+
     def _fail(self, task: Task, request: Fail) -> None:
-        """A fault that the program did not catch: its message, and the arm stops on its path."""
+        """A fault that the program did not catch: its message, and the arm stops on its path.
+
+        A line that no controller would have begun with, for it needs what no file has, is no fault
+        of the run: the motions before it are finished.
+        """
         task.is_over = True
         error, state = request.fault, self.state
         slug = getattr(error, "slug", "budget" if isinstance(error, BudgetExhausted) else "link")
@@ -272,4 +283,7 @@ class Scheduler:
             return
         ending: Ending = "budget" if isinstance(error, BudgetExhausted) else "fault"
         self._failed = RunOutcome(ending, state.clock.now, request.at, error)
-        self.arm.halt(is_hard=isinstance(error, RobotFault))
+        if isinstance(error, LinkError):
+            self.queue.release()
+        else:
+            self.arm.halt(is_hard=isinstance(error, RobotFault))

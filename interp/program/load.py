@@ -24,6 +24,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
+from interp.standins.unreadable_lines import readable
 from interp.values.faults import LinkError
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
@@ -204,18 +205,25 @@ def load(
 
     Only the project that it belongs to counts. Without ``strict`` errors that the checker finds are
     no obstacle: what they are about fails when it is reached. With ``stands_in`` the project gets
-    stand-ins for what none of its files has. Raises `LinkError` with the first thing that is wrong;
-    where ``unread`` is given, it receives why other files cannot be read, which then are left out.
+    stand-ins for what none of its files has, and a file with syntax errors is run as far as it can
+    be read (`interp.standins.unreadable_lines`). Raises `LinkError` with the first thing that is
+    wrong; where ``unread`` is given, it receives why other files cannot be read, which then are
+    left out.
     """
     by_path = {source.path: source for source in sources}
     files = []
-    for path, source in by_path.items():
+    for path, source in list(by_path.items()):
         try:
             files.append(File(path, _read(source)))
         except LinkError as error:
-            if unread is None or path == main:
+            found = readable(source) if stands_in else None
+            if (unread is None or path == main) and found is None:
                 raise
-            unread.append(str(error))
+            if unread is not None:
+                unread += [str(error)] if found is None else found.reasons
+            if found is not None:
+                by_path[path] = found.source
+                files.append(File(path, found.syntax))
     for project in link(files, system).projects:
         if any(module.path == main for module in project.modules):
             return _checked(project, by_path, main, strict=strict, stands_in=stands_in)
@@ -228,15 +236,19 @@ def load_all(
     """Link and check files of any number of projects; gives a program for each file with routines.
 
     It is checked as without ``strict`` in `load`, each project once. A file that cannot be read is
-    left out of its project and told with the reason, after the programs.
+    told with the reason, after the programs; without ``stands_in`` it is left out of its project.
     """
     by_path = {source.path: source for source in sources}
     files, unread = [], []
-    for path, source in by_path.items():
+    for path, source in list(by_path.items()):
         try:
             files.append(File(path, _read(source)))
         except LinkError as error:
             unread.append((path, str(error)))
+            found = readable(source) if stands_in else None
+            if found is not None:
+                by_path[path] = found.source
+                files.append(File(path, found.syntax))
     programs: list[CheckedProgram] = []
     for project in link(files, system).projects:
         first = project.modules[0].path

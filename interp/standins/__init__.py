@@ -1,11 +1,12 @@
 """Stand-ins for what an incomplete backup calls and does not hold.
 
-================ ===================================================================================
-module           what it is
-================ ===================================================================================
-`library`        routines and data that controllers and packages bring along, written by us
-`uses`           what the uses of an undeclared name tell of its type
-`signatures`     declarations for such names, as KRL
-`completion`     a project with its stand-ins, and a list of them
-================ ===================================================================================
+==================== ===============================================================================
+module               what it is
+==================== ===============================================================================
+`unreadable_lines`   a file with syntax errors, as a program that runs until it comes to one
+`library`            routines and data that controllers and packages bring along, written by us
+`uses`               what the uses of an undeclared name tell of its type
+`signatures`         declarations for such names, as KRL
+`completion`         a project with its stand-ins, and a list of them
+==================== ===============================================================================
 """

@@ -23,6 +23,7 @@ from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
+from interp.standins.unreadable_lines import STOP
 from interp.standins.uses import FOLDER, Uses
 
 __all__ = ["Completed", "StandIn", "complete", "summary"]
@@ -84,7 +85,7 @@ class _Wanted:
         is_wanting = False
         for use in resolution.open_uses:
             wanted = names.get(use.space) if use.space is not None else None
-            if wanted is not None:
+            if wanted is not None and use.name.key != STOP:
                 wanted.setdefault(use.name.key, (module, use.name))
                 is_wanting = True
         for name, answer in resolution.answers.items():

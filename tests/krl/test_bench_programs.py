@@ -108,10 +108,10 @@ def test_scripts(backup: Path) -> None:
 
 
 def test_own_machine_data_is_asked_for(backup: Path) -> None:
-    """Programs of a backup without an arm are left aside, unless all are asked for."""
+    """Programs of a backup without an arm are left aside where that is asked for."""
     (backup / "R1" / "Mada" / "$machine.dat").unlink()
-    assert {} == results(backup)
-    assert 8 == len(results(backup, "--every"))
+    assert {} == results(backup, "--own-arm")
+    assert 8 == len(results(backup))
 
 
 @pytest.mark.parametrize(

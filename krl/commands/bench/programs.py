@@ -1,7 +1,7 @@
 """`krl bench programs`: which main programs of controllers' backups run to their end."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -61,8 +61,8 @@ def programs(
     ] = None,
     every: Annotated[
         bool,
-        typer.Option("--every", help="Programs without machine data of their own too."),
-    ] = False,
+        typer.Option("--every/--own-arm", help="Programs without machine data of their own too."),
+    ] = True,
     strict: Annotated[
         bool, typer.Option("--strict", help="Nothing stands in for what a backup lacks.")
     ] = False,
@@ -112,6 +112,7 @@ def programs(
         "unread": [],
     }
     console = Console(highlight=False)
+    finished: dict[str, Surveyed] = {}
     expected = 0
     try:
         with progress_bar("running programs") as bar:
@@ -130,7 +131,8 @@ def programs(
                 on_found=on_found,
                 on_done=bar,
             ):
-                _add(record, done)
+                finished[done.origin] = done
+                _fill(record, [finished[one.name] for one in origins if one.name in finished])
                 write_json(record, json_file, indent=1)
                 _print_origin(console, done)
     except ScriptError as error:
@@ -164,11 +166,13 @@ def _scripts(folder: Path | None) -> dict[str, str]:
     return {file.stem: file.read_text(encoding="utf-8") for file in found}
 
 
-def _add(record: dict[str, Any], done: "Surveyed") -> None:
-    """Take the results of an origin into the record."""
-    record["programs"] += done.rows
-    record["unread"] += [{"path": path, "reason": reason} for path, reason in done.unread]
-    rows = record["programs"]
+def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
+    """Put what is known so far into the record."""
+    rows = [row for one in finished for row in one.rows]
+    record["programs"] = rows
+    record["unread"] = [
+        {"path": path, "reason": reason} for one in finished for path, reason in one.unread
+    ]
     record["results"] = dict(Counter(row["result"] for row in rows))
     record["moved"] = sum(row["motions"] > 0 for row in rows)
     record["served"] = sum(row["result"] in _SERVED for row in rows)

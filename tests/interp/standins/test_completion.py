@@ -189,7 +189,7 @@ def test_arm_of_unknown_kinematics() -> None:
     program = _program({"main.src": f"DEF main ( )\n{HOME}END\n", "$machine.dat": machine})
     run = _run(program)
     assert "end" == run.outcome.ending
-    assert "$machine.dat: " in run.machine_note
+    assert "$machine.dat:3: " in run.machine_note
 
 
 def test_profile_is_strict_by_default() -> None:

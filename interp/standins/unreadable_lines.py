@@ -1,0 +1,93 @@
+"""A file with syntax errors, as a program that runs until it comes to one of them.
+
+A controller selects no such program. Offline most of it can be run all the same: a statement that
+cannot be read becomes a call of `STOP`, a routine that no file has, so that the program ends there
+with file and line. A declaration that cannot be read is left out: stand-ins take its place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from grammar.diagnostics.error_recovery import recover
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+
+__all__ = ["STOP", "Readable", "readable"]
+
+#: What is called in place of a statement that cannot be read.
+STOP: Final = "SYNTAX_ERROR"
+_DECLARES: Final = frozenset(
+    "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "
+    "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
+)
+_WORD: Final = re.compile(r"\s*(\w*)")
+
+
+#: So many are tried one by one where not all can stand together.
+_MOST: Final = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Readable:
+    """A file as it can be run, and where and why not all of it can be read, in words.
+
+    ``source`` has a line for each line of the file.
+    """
+
+    source: Source
+    syntax: ast.Module
+    reasons: tuple[str, ...]
+
+
+def readable(source: Source) -> Readable | None:
+    """A file that has syntax errors without the lines that cannot be read; or ``None``."""
+    found = recover(source.text, source.path)
+    if found.syntax is None:
+        return None
+    lines = list(Source(found.text).lines)
+    if isinstance(found.syntax.content, ast.Program):
+        _put_stops(
+            lines, [one for one in sorted(found.left_out) if not lines[one - 1].strip()], source
+        )
+    text = "\n".join(lines)
+    syntax = read_module(text, source.path)
+    assert isinstance(syntax, ast.Module), "what was recovered can be read"
+    reasons = tuple(
+        f"{source.path}:{one.line}: {one.text or 'the end of the file'!r} is not expected here"
+        for one in found.failures
+        if not one.follows
+    )
+    return Readable(Source(text, source.path), syntax, reasons)
+
+
+def _put_stops(lines: list[str], left_out: Sequence[int], written: Source) -> None:
+    """Call `STOP` where a statement was left out, as far as a call can stand there."""
+    stops = {
+        number: f"{STOP}() ;{written.line(number)}"
+        for number in left_out
+        if _first_word(written.line(number)) not in _DECLARES
+    }
+    bare = list(lines)
+    for number, text in stops.items():
+        lines[number - 1] = text
+    if _is_readable(lines):
+        return
+    lines[:] = bare
+    for number, text in list(stops.items())[:_MOST]:
+        lines[number - 1] = text
+        if not _is_readable(lines):  # between SWITCH and CASE, for instance
+            lines[number - 1] = bare[number - 1]
+
+
+def _first_word(line: str) -> str:
+    found = _WORD.match(line)
+    return found[1].upper() if found is not None else ""
+
+
+def _is_readable(lines: Sequence[str]) -> bool:
+    return isinstance(read_module("\n".join(lines)), ast.Module)
