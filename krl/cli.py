@@ -15,7 +15,8 @@ __all__ = ["app", "main"]
 _COMMANDS: Final = {
     "recover": "krl.commands.recover:recover",
     "construct": "krl.commands.construct.app:app",
-    "check": "krl.commands.check:check",
+    "check": "krl.commands.check.command:check",
+    "explain": "krl.commands.explain:explain",
     "format": "krl.commands.format:format_programs",
     "conform": "krl.commands.conform.command:conform",
     "fuzz": "krl.commands.fuzz:fuzz",

@@ -19,6 +19,7 @@ _EXTRA_OF = {
     "pygls": "lsp",
     "ruckig": "arm",
     "scipy": "arm",
+    "watchfiles": "watch",
 }
 
 

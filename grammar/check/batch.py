@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -61,7 +61,8 @@ class CheckReport:
     """Findings in order, and what was checked.
 
     ``lines`` are source lines by path and number. ``files`` were checked, of ``bytes`` in all, in
-    ``projects``; of ``unchanged`` files the results were kept. ``skipped`` is what is no KRL.
+    ``projects``; of ``unchanged`` files the results were kept. ``skipped`` is what is no KRL,
+    ``paths`` what is, sorted.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -71,6 +72,7 @@ class CheckReport:
     bytes: int
     projects: int
     unchanged: int
+    paths: tuple[str, ...]
 
 
 def check_paths(
@@ -78,6 +80,7 @@ def check_paths(
     options: CheckOptions,
     *,
     around: Sequence[Path] = (),
+    leaves_out: Callable[[Found], bool] | None = None,
     jobs: int | None = None,
     cache: Path | None = None,
     on_found: Progress = no_progress,
@@ -86,7 +89,7 @@ def check_paths(
     """Check everything below ``roots``.
 
     ``around`` are the folders and archives of the projects that these belong to, if they are more:
-    what is there is read, and not reported.
+    what is there is read, and not reported. ``leaves_out`` says which files are not to be read.
     ``jobs`` is the number of processes, by default one a core, or one where there is little to do.
     ``cache`` is the folder where findings are kept for the next time; without one nothing is kept.
     ``on_found`` is given the number of candidates once it is known, ``on_done`` how many
@@ -94,10 +97,15 @@ def check_paths(
 
     Raises `support.files.discovery.IngestError` where there is nothing to check.
     """
-    asked = list(discover(roots))
+
+    def is_left(one: Found | Skipped) -> bool:
+        return leaves_out is None or isinstance(one, Skipped) or not leaves_out(one)
+
+    asked = list(filter(is_left, discover(roots)))
     skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
     wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
-    found = [one for one in (discover(around) if around else asked) if isinstance(one, Found)]
+    there = filter(is_left, discover(around)) if around else asked
+    found = [one for one in there if isinstance(one, Found)]
     names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
     projects = [some for some in _projects(found) if any(one.path in names for one in some)]
     on_found(sum(map(len, projects)) + len(skipped))
@@ -162,6 +170,7 @@ def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> C
         sum(sum(result.sizes.values()) for result in results),
         len(results),
         sum(len(result.kept & result.sizes.keys()) for result in results),
+        tuple(sorted(path for result in results for path in result.sizes)),
     )
 
 

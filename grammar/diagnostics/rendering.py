@@ -3,7 +3,7 @@
     R1/main.src:12:15: error KSS2296: ORI_TYPE has no constant #CONST
       12 |   $ORI_TYPE = #CONST
          |               ^^^^^^
-         = a constant is looked up in the enumeration of its place [TYP-20]
+         = a constant is looked up in the enumeration of its place
          = did you mean #CONSTANT?
 
 Files are written by others: whatever a terminal would obey instead of showing is made visible.
@@ -24,14 +24,16 @@ _AHEAD_OF_CARET = 40
 
 
 def rendered(
-    diagnostics: Iterable[Diagnostic], line_of: Callable[[str, int], str]
+    diagnostics: Iterable[Diagnostic], line_of: Callable[[str, int], str], is_verbose: bool = False
 ) -> Iterator[str]:
     """The lines of text for findings, in order, each finding followed by an empty line.
 
-    ``line_of`` gives a line of a file by path and number, empty where there is none.
+    ``line_of`` gives a line of a file by path and number, empty where there is none; with
+    ``is_verbose`` the rules that say so are named.
     """
     for diagnostic in in_order(diagnostics):
-        yield from _lines(diagnostic, line_of(diagnostic.path, diagnostic.region.line))
+        line = line_of(diagnostic.path, diagnostic.region.line)
+        yield from _lines(diagnostic, line, is_verbose)
         yield ""
 
 
@@ -43,7 +45,7 @@ def summary(diagnostics: Iterable[Diagnostic]) -> str:
     return ", ".join(parts) or "no findings"
 
 
-def _lines(diagnostic: Diagnostic, source: str) -> Iterator[str]:
+def _lines(diagnostic: Diagnostic, source: str, is_verbose: bool) -> Iterator[str]:
     region = diagnostic.region
     place = f"{diagnostic.path}:{region.line}:{region.column}"
     yield _visible(f"{place}: {diagnostic.severity} {diagnostic.code}: {diagnostic.message}")
@@ -54,7 +56,7 @@ def _lines(diagnostic: Diagnostic, source: str) -> Iterator[str]:
         caret = " " * _width(shown[:start]) + "^" * max(1, _width(shown[start:end]))
         yield f"  {number} | {_visible(shown)}".rstrip()
         yield f"{margin}| {caret}"
-    rules = f"[{', '.join(diagnostic.rules)}]" if diagnostic.rules else ""
+    rules = f"[{', '.join(diagnostic.rules)}]" if diagnostic.rules and is_verbose else ""
     if diagnostic.reason or rules:
         yield _visible(f"{margin}= {' '.join(filter(None, (diagnostic.reason, rules)))}")
     if diagnostic.fix:

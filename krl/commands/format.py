@@ -90,10 +90,8 @@ def _format(found: "Found | Skipped", check: bool) -> _Outcome:
     if check or found.member is not None:
         typer.echo(f"would change {one_line(found.path)}")
         return _Outcome.WOULD_CHANGE
-    # what decoding leaves out, a mark at the start and padding at the end, stays as it is
-    before, _, after = data.partition(source.text.encode(source.encoding))
     try:
-        write_atomic(found.file, before + text.encode(source.encoding) + after)
+        write_atomic(found.file, source.replaced(data, text))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         return _complain(found.path, f"not written: {reason}", _Outcome.NOT_WRITTEN)

@@ -17,6 +17,7 @@ from krl.extras import ARM, expected_extras
 from krl.output_files import check_files
 from krl.program_loading import load_program
 from krl.progress import progress_bar
+from krl.project_settings import settings_of
 from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
@@ -77,8 +78,12 @@ def run(
     ] = None,
     robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE,
     profile: Annotated[
-        str, typer.Option(metavar="NAME", help="The controller: kss8, kss5, or a .toml file.")
-    ] = "kss8",
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
+        ),
+    ] = None,
     io_script: Annotated[
         Path | None,
         typer.Option(
@@ -161,7 +166,7 @@ def run(
         setup = RunSetup(
             executor=chosen,
             robot=robot.value,
-            profile=Profile.load(profile),
+            profile=Profile.load(profile or _agreed_profile(file)),
             script=script,
             routine=routine,
             submit=submit,
@@ -225,6 +230,12 @@ def _text(file: Path) -> str:
         return read_text(file, "utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{file}: not a text in UTF-8") from None
+
+
+def _agreed_profile(file: Path) -> str:
+    """The profile that the settings of a project name, or the one of today's controllers."""
+    agreed = settings_of([file])
+    return (agreed and agreed.profile) or "kss8"
 
 
 def _check_targets(

@@ -33,6 +33,15 @@ class Source:
     text: str
     encoding: str
 
+    def replaced(self, data: bytes, text: str) -> bytes:
+        """The bytes of the file, which were ``data``, with another text.
+
+        What decoding leaves out, a mark at the start and padding at the end, stays as it is. Raises
+        `UnicodeEncodeError` for a text with other characters than the encoding has.
+        """
+        before, _, after = data.partition(self.text.encode(self.encoding))
+        return before + text.encode(self.encoding) + after
+
 
 def digest(data: bytes) -> str:
     """Return the SHA-256 of `data` in hexadecimal: two files are the same when it is the same."""

@@ -124,10 +124,12 @@ def test_text_shows_line_caret_reason_and_fix() -> None:
         "R1/a.src:2:15: error KSS2296: ORI_TYPE has no #CONST",
         "  2 |   $ORI_TYPE = #CONST",
         "    |               ^^^^^^",
-        "    = a constant belongs to its place [TYP-20]",
+        "    = a constant belongs to its place",
         "    = did you mean #CONSTANT?",
         "",
     ] == text_of(found)
+    verbose = list(rendered([found], lambda _path, _line: "", is_verbose=True))
+    assert "    = a constant belongs to its place [TYP-20]" in verbose
 
 
 def test_caret_stands_under_its_place_behind_tabs() -> None:

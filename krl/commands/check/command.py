@@ -1,0 +1,284 @@
+"""The command: what is to be checked, under which settings, and what is done about it."""
+
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.commands.check.output import Format, sum_up, write
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors
+from krl.extras import expected_extras
+from krl.options import JobsOption
+from krl.output_files import check_files, write_json
+from krl.progress import progress_bar
+from krl.project_settings import Settings, read_settings, settings_of
+
+if TYPE_CHECKING:
+    from grammar.check.batch import CheckOptions, CheckReport
+    from grammar.diagnostics.baseline import Baseline
+    from grammar.diagnostics.diagnostic import Diagnostic
+    from grammar.diagnostics.suppression import Selection
+
+__all__ = ["check"]
+
+#: Findings that are no faults: why the robot stops.
+_STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
+_LARGEST_BASELINE = 64_000_000
+
+
+def check(
+    paths: Annotated[
+        list[Path],
+        typer.Argument(metavar="PATH...", help="Files, folders, .zip archives of controllers."),
+    ],
+    format_: Annotated[
+        Format, typer.Option("--format", help="How to write the findings.")
+    ] = Format.TEXT,
+    syntax_only: Annotated[
+        bool, typer.Option("--syntax-only", help="Only see whether the files can be read.")
+    ] = False,
+    select: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CODES", help="Only these codes, or those that begin so: KSS,KRL2."),
+    ] = None,
+    ignore: Annotated[
+        list[str] | None, typer.Option(metavar="CODES", help="Not these codes.")
+    ] = None,
+    stops: Annotated[
+        bool,
+        typer.Option(
+            "--stops", help="Also report what stops the advance run and which blends are lost."
+        ),
+    ] = False,
+    complete: Annotated[
+        bool,
+        typer.Option("--complete", help="No file is missing: what nothing declares is an error."),
+    ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Name the rules that say so.")] = False,
+    fix: Annotated[
+        bool, typer.Option("--fix", help="Mend what has one plain remedy, and check the rest.")
+    ] = False,
+    diff: Annotated[
+        bool, typer.Option("--diff", help="Show what --fix would change, and change nothing.")
+    ] = False,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Check again whenever a file changes.")
+    ] = False,
+    baseline: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Report what is not in this file of known findings."),
+    ] = None,
+    write_baseline: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Make all findings known ones, in this file."),
+    ] = None,
+    settings: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Settings; default: krl.toml in or above PATH."),
+    ] = None,
+    no_settings: Annotated[
+        bool, typer.Option("--no-settings", help="Take no notice of any krl.toml.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
+    ] = None,
+    jobs: JobsOption = None,
+    cache: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Where to keep findings; default: the user's cache."),
+    ] = None,
+    no_cache: Annotated[
+        bool, typer.Option("--no-cache", help="Keep nothing, and use nothing that was kept.")
+    ] = False,
+) -> int:
+    """Check programs: syntax, names, types, control flow, and what is not allowed where.
+
+    Exit status 1 where there are errors or warnings; notes alone leave it 0. A comment
+    '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl explain
+    CODE' says what a code means.
+    """
+    from grammar.check.batch import CheckOptions
+
+    check_files(out, write_baseline)
+    if format_ is Format.JUNIT:
+        with expected_extras("junitparser"):
+            pass
+    agreed = _agreed(paths, settings, no_settings)
+    selection = _selection(agreed, select, ignore)
+    options = CheckOptions(
+        syntax_only, stops or _asks_for_stops(selection), complete or agreed.complete
+    )
+    known = baseline or agreed.baseline
+    check_ = _Check(
+        paths,
+        options,
+        agreed,
+        selection,
+        None if write_baseline else known,
+        jobs,
+        None if no_cache else _usable(cache, _users_cache()),
+    )
+    if fix or diff:
+        from krl.commands.check.fixing import fix_files
+
+        is_changed = fix_files(paths, check_.is_wanted, agreed.leaves_out, is_shown=diff)
+        if diff:
+            return FINDINGS if is_changed else FINE
+    if write_baseline:
+        return check_.make_baseline(write_baseline)
+    if watch:
+        from krl.commands.check.watching import changes
+
+        with expected_extras("watchfiles"):
+            for _ in changes(paths):
+                check_.run(format_, out, verbose)
+        return FINE
+    return check_.run(format_, out, verbose)
+
+
+def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Settings:
+    if has_none:
+        return Settings(Path.cwd())
+    if file is not None:
+        return read_settings(file)
+    return settings_of(paths) or Settings(Path.cwd())
+
+
+def _selection(agreed: Settings, select: list[str] | None, ignore: list[str] | None) -> "Selection":
+    """What is wanted: a choice on the command line stands in place of the one in the settings."""
+    from grammar.diagnostics.suppression import Selection
+
+    with as_input_errors(ValueError):
+        return Selection.of(select or agreed.select, (*agreed.ignore, *(ignore or ())))
+
+
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """A check that can be made again and again."""
+
+    paths: Sequence[Path]
+    options: "CheckOptions"
+    agreed: Settings
+    selection: "Selection"
+    baseline: Path | None
+    jobs: int | None
+    cache: Path | None
+
+    def run(self, format_: Format, out: Path | None, is_verbose: bool) -> int:
+        """Check, write the findings that are new, and say on stderr what there was."""
+        report, kept = self._found()
+        more = ""
+        if self.baseline is not None:
+            known = _read_baseline(self.baseline)
+            new, gone = known.new(kept, _line_of(report), _place(self.baseline))
+            more = f"; {len(kept) - len(new):,} known ones left out"
+            more += f", {gone:,} known ones are gone" if gone else ""
+            kept = new
+        write(kept, report, format_, out, is_verbose=is_verbose)
+        sum_up(kept, report, more)
+        return FINDINGS if any(one.severity != "note" for one in kept) else FINE
+
+    def make_baseline(self, file: Path) -> int:
+        """Write all findings down as known."""
+        from grammar.diagnostics.baseline import Baseline
+
+        report, kept = self._found()
+        write_json(Baseline.of(kept, _line_of(report), _place(file)).record(), file, 1)
+        sum_up(kept, report, ", all known from now on")
+        return FINE
+
+    def is_wanted(self, found: "Diagnostic") -> bool:
+        """Whether a finding is reported, but for the baseline."""
+        return self.selection.keeps(found.code) and bool(self.agreed.adjusted([found]))
+
+    def _found(self) -> "tuple[CheckReport, list[Diagnostic]]":
+        from grammar.check.batch import check_paths
+        from krl.program_loading import project_paths
+        from support.files.discovery import IngestError
+
+        with as_input_errors(IngestError), progress_bar("checking") as bar:
+            report = check_paths(
+                self.paths,
+                self.options,
+                around=[one for path in self.paths for one in project_paths(path)],
+                leaves_out=self.agreed.leaves_out if self.agreed.exclude else None,
+                jobs=self.jobs,
+                cache=self.cache,
+                on_found=bar.expect,
+                on_done=bar,
+            )
+        if not report.files:
+            first = report.skipped[0]
+            raise InputError(f"{first.path}: {first.reason}")
+        wanted = [one for one in report.diagnostics if self.selection.keeps(one.code)]
+        return report, self.agreed.adjusted(wanted)
+
+
+def _asks_for_stops(selection: "Selection") -> bool:
+    """Whether those notes are among what was selected by name."""
+    return bool(selection.select) and any(map(selection.keeps, _STOPS))
+
+
+# -- the baseline ----------------------------------------------------------------------------------
+
+
+def _read_baseline(file: Path) -> "Baseline":
+    from grammar.diagnostics.baseline import Baseline
+    from support.files.untrusted import open_file
+
+    try:
+        with open_file(file) as stream:
+            data = stream.read(_LARGEST_BASELINE)
+        return Baseline.read(json.loads(data))
+    except OSError as error:
+        hint = f": make it with --write-baseline {file}" if not file.exists() else ""
+        raise InputError(f"{file}: {error.strerror or error}{hint}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _line_of(report: "CheckReport") -> Callable[[str, int], str]:
+    return lambda path, number: report.lines.get((path, number), "")
+
+
+def _place(baseline: Path) -> Callable[[str], str]:
+    """Paths as they are seen from a baseline: the same from whatever folder one checks."""
+    home = baseline.absolute().parent
+    return lambda path: Path(os.path.relpath(Path(path).absolute(), home)).as_posix()
+
+
+# -- the cache -------------------------------------------------------------------------------------
+
+
+def _users_cache() -> Path | None:
+    """Where programs of this user keep what can be worked out again."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA")
+        return Path(base, "krl", "cache") if base else None
+    if base := os.environ.get("XDG_CACHE_HOME"):
+        return Path(base, "krl")
+    try:
+        home = Path.home()
+    except RuntimeError:  # a user without a home
+        return None
+    return home / "Library" / "Caches" / "krl" if sys.platform == "darwin" else home / ".cache/krl"
+
+
+def _usable(wanted: Path | None, default: Path | None) -> Path | None:
+    """The folder for what is kept; without a usable one nothing is, unless it was asked for."""
+    folder = wanted or default
+    if folder is None:
+        return None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        usable = os.access(folder, os.W_OK)
+    except OSError:
+        usable = False
+    if not usable and wanted is not None:
+        raise InputError(f"{wanted}: not a folder that can be written to")
+    return folder if usable else None

@@ -1,0 +1,66 @@
+"""`krl check --fix`: files mended where the remedy is plain, or shown as they would be."""
+
+import difflib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from krl.errors import as_input_errors, one_line, shown
+from support.files.atomic_write import write_atomic
+
+if TYPE_CHECKING:
+    from grammar.diagnostics.diagnostic import Diagnostic
+    from support.files.discovery import Found
+
+__all__ = ["fix_files"]
+
+
+def fix_files(
+    paths: Sequence[Path],
+    is_wanted: "Callable[[Diagnostic], bool]",
+    leaves_out: "Callable[[Found], bool]",
+    *,
+    is_shown: bool,
+) -> bool:
+    """Mend the files below some paths, or show the differences; whether there were any.
+
+    Encoding, line ends and all other lines stay as they are. Archives are not written to.
+    """
+    from grammar.check.repair import repair
+    from grammar.syntax.source import Source
+    from support.files.decode import decode
+    from support.files.discovery import Found, IngestError, discover, read
+
+    is_changed = False
+    with as_input_errors(IngestError):
+        for found in discover(paths):
+            data = read(found) if isinstance(found, Found) and not leaves_out(found) else None
+            decoded = decode(data) if isinstance(data, bytes) else ""
+            if isinstance(decoded, str) or not isinstance(found, Found):
+                continue
+            assert isinstance(data, bytes)
+            done = repair(Source(decoded.text, found.path), is_wanted)
+            if not done.mended:
+                continue
+            is_changed = True
+            if is_shown:
+                _show(found.path, decoded.text, done.text)
+                continue
+            if found.member is not None:
+                typer.echo(one_line(f"{found.path}: not mended: it is in an archive"), err=True)
+                continue
+            write_atomic(found.file, decoded.replaced(data, done.text))
+            for one in done.mended:
+                place = f"{one.path}:{one.region.line}:{one.region.column}"
+                typer.echo(one_line(f"{place}: mended {one.code}: {one.message}"), err=True)
+    return is_changed
+
+
+def _show(path: str, before: str, after: str) -> None:
+    lines = difflib.unified_diff(
+        before.splitlines(keepends=True), after.splitlines(keepends=True), path, path
+    )
+    for line in lines:
+        typer.echo(shown(line.rstrip("\r\n")))

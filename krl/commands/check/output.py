@@ -1,0 +1,177 @@
+"""Findings as they are written: text for people, and forms that other tools read."""
+
+import io
+import json
+import re
+from collections.abc import Iterator, Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from krl.errors import one_line
+from support.files.atomic_write import write_atomic
+
+if TYPE_CHECKING:
+    from grammar.check.batch import CheckReport
+    from grammar.diagnostics.diagnostic import Diagnostic
+
+__all__ = ["Format", "sum_up", "write"]
+
+_SKIPPED_SHOWN = 5
+_STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
+_NOT_ASCII = re.compile(r"[^\n\x20-\x7e]")
+_COMMANDS_OF_GITHUB = {"error": "error", "warning": "warning", "note": "notice"}
+#: What XML cannot have, not even as an escape.
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+class Format(StrEnum):
+    """How findings are written."""
+
+    TEXT = "text"
+    JSON = "json"
+    SARIF = "sarif"
+    GITHUB = "github"
+    JUNIT = "junit"
+
+
+def write(
+    kept: "Sequence[Diagnostic]",
+    report: "CheckReport",
+    format_: Format,
+    out: Path | None,
+    *,
+    is_verbose: bool = False,
+) -> None:
+    """Write findings to a file or the terminal; with ``is_verbose`` text names the rules."""
+    if format_ is Format.TEXT and out is None:
+        _print_text(kept, report, is_verbose)
+        return
+    written = "".join(f"{line}\n" for line in _written(kept, report, format_, is_verbose))
+    if out is None:
+        typer.echo(written, nl=False)
+        return
+    write_atomic(out, written)
+
+
+def _written(
+    kept: "Sequence[Diagnostic]", report: "CheckReport", format_: Format, is_verbose: bool
+) -> Iterator[str]:
+    from importlib import metadata
+
+    from grammar.diagnostics.diagnostic import in_order, records
+    from grammar.diagnostics.rendering import rendered
+    from grammar.diagnostics.sarif import sarif
+
+    match format_:
+        case Format.TEXT:
+            yield from rendered(
+                kept, lambda path, number: report.lines.get((path, number), ""), is_verbose
+            )
+        case Format.JSON:
+            yield _json(records(kept))
+        case Format.SARIF:
+            yield _json(sarif(kept, metadata.version("krl-workbench")))
+        case Format.GITHUB:
+            yield from map(_github, in_order(kept))
+        case Format.JUNIT:
+            yield _junit(in_order(kept), report.paths)
+
+
+def _json(record: Any) -> str:
+    """The record as JSON that steers no terminal: what is not printable is escaped."""
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+    return _NOT_ASCII.sub(_shown, text)
+
+
+def _shown(found: re.Match[str]) -> str:
+    char = found[0]
+    return char if char.isprintable() else json.dumps(char)[1:-1].replace("\x7f", "\\u007f")
+
+
+def _said(found: "Diagnostic") -> str:
+    fix = found.fix.text if found.fix else ""
+    return "; ".join(filter(None, (found.message, found.reason, fix)))
+
+
+def _github(found: "Diagnostic") -> str:
+    """A finding as a workflow command of GitHub Actions, which shows it beside its line."""
+    region = found.region
+    properties = {
+        "file": found.path,
+        "line": region.line,
+        "endLine": region.end_line,
+        "col": region.column,
+        "endColumn": region.end_column,
+        "title": found.code,
+    }
+    listed = ",".join(
+        f"{name}={_escaped(str(value)).replace(':', '%3A').replace(',', '%2C')}"
+        for name, value in properties.items()
+    )
+    return f"::{_COMMANDS_OF_GITHUB[found.severity]} {listed}::{_escaped(_said(found))}"
+
+
+def _escaped(text: str) -> str:
+    return one_line(text.replace("%", "%25"))
+
+
+def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
+    """JUnit XML: a test case a file, with a failure for each finding that is more than a note."""
+    from junitparser import Failure, JUnitXml, TestCase, TestSuite
+
+    suite = TestSuite("krl check")
+    by_path: dict[str, list[Failure]] = {path: [] for path in paths}
+    for one in kept:
+        if one.severity != "note":
+            place = f"{one.region.line}:{one.region.column}"
+            said = _NOT_XML.sub("\ufffd", f"{place}: {one.severity} {one.code}: {_said(one)}")
+            by_path.setdefault(one.path, []).append(Failure(said, one.code))
+    for path, failures in by_path.items():
+        folder, _, name = _NOT_XML.sub("\ufffd", path).rpartition("/")
+        case = TestCase(name, folder)
+        case.result = [*failures]
+        suite.add_testcase(case)
+    report = JUnitXml("krl check")
+    report.add_testsuite(suite)
+    stream = io.BytesIO()
+    report.write(stream)
+    return stream.getvalue().decode("utf-8")
+
+
+def _print_text(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> None:
+    """The findings on the terminal, in colours where it has any."""
+    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    for line in _written(kept, report, Format.TEXT, is_verbose):
+        if console.is_terminal:
+            console.print(_coloured(line))
+        else:
+            typer.echo(line)
+
+
+def _coloured(line: str) -> Text:
+    text = Text(line)
+    if not line.startswith(" "):
+        for severity, style in _STYLES.items():
+            text.highlight_regex(rf": {severity} [A-Z]+\d+:", style)
+    elif set(line.partition("|")[2].strip()) == {"^"}:
+        text.stylize("bold green", line.index("|") + 1)
+    return text
+
+
+def sum_up(kept: "Sequence[Diagnostic]", report: "CheckReport", more: str = "") -> None:
+    """What was checked and found, on one line of stderr, and what was left out."""
+    from grammar.diagnostics.rendering import summary
+
+    for skipped in report.skipped[:_SKIPPED_SHOWN]:
+        typer.echo(one_line(f"skipped {skipped.path}: {skipped.reason}"), err=True)
+    rest = len(report.skipped) - _SKIPPED_SHOWN
+    if rest > 0:
+        typer.echo(f"skipped {rest:,} more", err=True)
+    files = f"{report.files:,} file{'s' * (report.files != 1)} checked"
+    unchanged = f" ({report.unchanged:,} unchanged)" if report.unchanged else ""
+    typer.echo(f"{files}{unchanged}: {summary(kept)}{more}", err=True)

@@ -1,0 +1,28 @@
+"""`krl check --watch`: when to check again."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import typer
+
+__all__ = ["changes"]
+
+_ENDINGS = (".src", ".dat", ".sub", ".zip", ".toml")
+
+
+def changes(paths: Sequence[Path]) -> Iterator[None]:
+    """Once now, and then whenever programs or settings below some paths have changed.
+
+    Ends when it is interrupted.
+    """
+    from watchfiles import Change, watch
+
+    def is_ours(_change: Change, path: str) -> bool:
+        return path.lower().endswith(_ENDINGS)
+
+    yield
+    # a file that is written anew in place of another is seen in its folder only
+    roots = {path if path.is_dir() else path.absolute().parent for path in paths}
+    for _ in watch(*roots, watch_filter=is_ours, raise_interrupt=False):
+        typer.echo("", err=True)
+        yield

@@ -1,0 +1,192 @@
+"""`krl.toml`: what a team has agreed on for the programs of one project.
+
+It lies at the root of the project and counts for everything below it. Every key has the meaning of
+the option of `krl check` that is named so; docs/settings.md has them all.
+"""
+
+import difflib
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal, get_args
+
+from krl.errors import InputError
+
+if TYPE_CHECKING:
+    from grammar.diagnostics.diagnostic import Diagnostic
+    from support.files.discovery import Found
+
+__all__ = ["FILE_NAME", "Settings", "read_settings", "settings_of"]
+
+FILE_NAME: Final = "krl.toml"
+_LARGEST: Final = 1_000_000
+
+_Level = Literal["error", "warning", "note", "off"]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The settings of a project; paths and patterns count from ``root``.
+
+    ``select`` and ``ignore`` are beginnings of codes, as are the keys of ``severity``, of which the
+    longest decides. A pattern without a slash fits any file or folder of that name; another one
+    fits a path, or that of a folder above it. Letter case makes no difference.
+    """
+
+    root: Path
+    select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    severity: Mapping[str, _Level] = field(default_factory=dict)
+    exclude: tuple[str, ...] = ()
+    ignored_in: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    baseline: Path | None = None
+    complete: bool = False
+    profile: str | None = None
+
+    def leaves_out(self, found: "Found") -> bool:
+        """Whether a file is not to be read at all."""
+        return any(_fits(self._below(found.file, found.member), one) for one in self.exclude)
+
+    def adjusted(self, found: "Iterable[Diagnostic]") -> "list[Diagnostic]":
+        """Findings with the severities that were agreed on, without those that are not wanted."""
+        return [one for each in found if (one := self._adjusted(each)) is not None]
+
+    def _adjusted(self, found: "Diagnostic") -> "Diagnostic | None":
+        for pattern, codes in self.ignored_in.items():
+            if found.code.startswith(codes) and _fits(self._below(Path(found.path)), pattern):
+                return None
+        fitting = [prefix for prefix in self.severity if found.code.startswith(prefix)]
+        if not fitting:
+            return found
+        level = self.severity[max(fitting, key=len)]
+        return None if level == "off" else replace(found, severity=level)
+
+    def _below(self, file: Path, member: str | None = None) -> str:
+        """The path of a file below the root; elsewhere as it is."""
+        path = file.absolute()
+        shown = (path.relative_to(self.root) if path.is_relative_to(self.root) else path).as_posix()
+        return f"{shown}/{member}" if member else shown
+
+
+def _fits(path: str, pattern: str) -> bool:
+    parts = path.casefold().split("/")
+    wanted = pattern.casefold().rstrip("/")
+    if "/" not in wanted:
+        return any(fnmatchcase(part, wanted) for part in parts)
+    wanted = wanted.removeprefix("./").removeprefix("/")
+    return any(fnmatchcase("/".join(parts[:end]), wanted) for end in range(1, len(parts) + 1))
+
+
+def settings_of(paths: Sequence[Path]) -> Settings | None:
+    """The settings that lie in or above all of some paths; ``None`` without any.
+
+    Raises `InputError` where they lie below different settings.
+    """
+    found = {one for path in paths if (one := _nearest(path.absolute()))}
+    if len(found) > 1:
+        listed = " and ".join(map(str, sorted(found)))
+        raise InputError(f"{listed} are settings of different projects: check them one by one")
+    return read_settings(found.pop()) if found else None
+
+
+def _nearest(path: Path) -> Path | None:
+    return next(
+        (at / FILE_NAME for at in (path, *path.parents) if (at / FILE_NAME).is_file()), None
+    )
+
+
+def read_settings(file: Path) -> Settings:
+    """The settings in a file; raises `InputError` with the key that is wrong."""
+    from support.files.untrusted import open_file
+
+    try:
+        with open_file(file) as stream:
+            data = stream.read(_LARGEST + 1)
+        if len(data) > _LARGEST:
+            raise InputError(f"{file}: too large for settings")
+        table = tomllib.loads(data.decode("utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: {error}") from None
+    try:
+        return _settings(file.absolute().parent, table)
+    except ValueError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
+    for key in table:
+        if key not in _READ:
+            near = difflib.get_close_matches(key, _READ, 1)
+            raise ValueError(f"no setting is called {key}" + (f"; {near[0]}?" if near else ""))
+    given = {name: read(key, table[key]) for key, (name, read) in _READ.items() if key in table}
+    if "baseline" in given:
+        given["baseline"] = root / given["baseline"]
+    return Settings(root, **given)
+
+
+# ------------------------------------------------------------------------------- kinds of values
+
+
+def _text(key: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{key} is a text")
+    return value
+
+
+def _truth(key: str, value: object) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError(f"{key} is true or false")
+    return value
+
+
+def _texts(key: str, value: object) -> tuple[str, ...]:
+    if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
+        raise ValueError(f"{key} is a list of texts")
+    return tuple(value)
+
+
+def _codes(key: str, value: object) -> tuple[str, ...]:
+    from grammar.diagnostics.suppression import Selection
+
+    try:
+        return Selection.of(_texts(key, value)).select
+    except ValueError as error:
+        raise ValueError(f"{key}: {error}") from None
+
+
+def _severity(key: str, value: object) -> dict[str, _Level]:
+    found: dict[str, _Level] = {}
+    for code, level in _table(key, value).items():
+        (prefix,) = _codes(key, [code]) or ("",)
+        known = next((one for one in get_args(_Level) if one == level), None)
+        if known is None:
+            raise ValueError(f"{key}: {code} is one of {', '.join(get_args(_Level))}")
+        found[prefix] = known
+    return found
+
+
+def _ignored_in(key: str, value: object) -> dict[str, tuple[str, ...]]:
+    return {one: _codes(f"{key}: {one}", codes) for one, codes in _table(key, value).items()}
+
+
+def _table(key: str, value: object) -> Mapping[str, object]:
+    if not isinstance(value, dict):
+        raise ValueError(f"{key} is a table")
+    return value
+
+
+#: The field of each key, and how its value is read.
+_READ: Final[Mapping[str, tuple[str, Callable[[str, object], Any]]]] = {
+    "profile": ("profile", _text),
+    "complete": ("complete", _truth),
+    "select": ("select", _codes),
+    "ignore": ("ignore", _codes),
+    "exclude": ("exclude", _texts),
+    "baseline": ("baseline", _text),
+    "severity": ("severity", _severity),
+    "per-file-ignores": ("ignored_in", _ignored_in),
+}
