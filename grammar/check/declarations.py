@@ -24,6 +24,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
     """What is wrong with the declarations of a file."""
     checker = type_checker(context)
     _check_name(checker)
+    _check_use(checker)
     data = context.data
     if data is not None:
         for item in data.items:
@@ -45,6 +46,18 @@ def _check_name(checker: TypeChecker) -> None:
     what = "the data list" if table.is_data else "the first routine"
     message = f"{what} of {module.name} has another name, {table.name}"
     checker.report("module-name", table.span, message)
+
+
+def _check_use(checker: TypeChecker) -> None:
+    """A data list that is not PUBLIC is that of the program of the same name [SCO-01, SCO-05]."""
+    context = checker.context
+    table, module = context.table, context.module
+    if not table.is_data or table.is_public or table.is_system:
+        return
+    lists = map(context.project.data_of, context.project.modules)
+    if not any(one is not None and one.path == module.path for one in lists):
+        message = f"{table.name} is not PUBLIC, and no program is called so"
+        checker.report("orphan-data-list", table.span, message)
 
 
 # ------------------------------------------------------------------------------- declarations
@@ -114,6 +127,9 @@ def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool
         elif isinstance(value, int | float) and (value < 1 or value != int(value)):
             message = f"an array has at least one element and not {value}"
             checker.report("wrong-size", size, message)
+        elif value is None and kind != UNKNOWN:
+            message = "the size of an array is a constant"
+            checker.report("wrong-size", size, message, is_unconfirmed=True)
 
 
 def _check_import(checker: TypeChecker, node: ast.Importation) -> None:

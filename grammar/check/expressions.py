@@ -84,9 +84,12 @@ def _subscript(checker: TypeChecker, node: ast.Subscript, _expected: Type) -> Ty
     base = checker.infer(node.base)
     for given in node.indices:
         if given is not None:
-            verdict = index(checker.infer(given))
+            kind = checker.infer(given)
+            verdict = index(kind)
             if not verdict:
                 checker.reject("not-a-number-here", given, verdict)
+            elif kind is REAL:
+                checker.report("real-index", given, "an index is an INT, and this is a REAL")
     typed = subscript(base, [given is not None for given in node.indices])
     if not typed.verdict:
         checker.reject("wrong-indices", node, typed.verdict)

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 
 from grammar.check import (
     control_flow,
+    data_flow,
     declarations,
     duplicate_names,
     entry_points,
+    folds,
     initial_values,
     misplaced_statements,
     name_limits,
@@ -24,6 +26,8 @@ from grammar.check import (
 )
 from grammar.check.constant_folding import Value
 from grammar.check.context import Context
+from grammar.check.effects import NO_EFFECTS, Effects, effects
+from grammar.check.effects import of_project as of_effects
 from grammar.check.undeclared_names import UnresolvedName
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
@@ -60,15 +64,21 @@ CHECKS: tuple[Check, ...] = (
     splines.check,
     value_limits.check,
     entry_points.check,
+    data_flow.check,
+    folds.check,
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What the check of one file found; ``references`` are names that other files may declare."""
+    """What the check of one file found.
+
+    ``references`` are names that other files may declare, ``effects`` what other files rely on.
+    """
 
     diagnostics: tuple[Diagnostic, ...]
     references: tuple[UnresolvedName, ...]
+    effects: Effects = NO_EFFECTS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +104,7 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     return Checked(
         module,
-        Findings(tuple(found), undeclared_names.references(context)),
+        Findings(tuple(found), undeclared_names.references(context), effects(context)),
         context.resolution,
         context.types,
         context.enumerations,
@@ -102,11 +112,16 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     )
 
 
-def check_project(findings: Iterable[Findings]) -> list[Diagnostic]:
-    """All findings of a project, from those of its files, in order."""
+def check_project(findings: Iterable[Findings], *, is_whole: bool = True) -> list[Diagnostic]:
+    """All findings of a project, from those of its files, in order.
+
+    Where these are not all of its files, what the others would have to do is not missed.
+    """
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
     found += undeclared_names.of_project(reference for one in kept for reference in one.references)
+    if is_whole:
+        found += of_effects(one.effects for one in kept)
     return in_order(found)
 
 

@@ -342,7 +342,7 @@ def _checked(project: Project, module: Module, tree: _Tree, options: CheckOption
             dict(done.values),
         )
         found = in_order([*findings.diagnostics, *advance_stops.check(context)])
-        findings = Findings(tuple(found), findings.references)
+        findings = replace(findings, diagnostics=tuple(found))
     findings = tree.reading.completed(findings)
     numbers = {one.region.line for one in findings.diagnostics}
     numbers |= {one.region.line for one in findings.references}

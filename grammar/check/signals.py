@@ -31,7 +31,10 @@ def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
     if first is None or last is None:
         return
     width = last - first + 1
-    if width > _WIDEST:
+    if width < 1:
+        message = f"{node.name.text} goes from {first} down to {last}"
+        checker.report("signal-order", node.last, message, is_unconfirmed=True)
+    elif width > _WIDEST:
         message = f"{node.name.text} has {width} bits, and a signal has at most {_WIDEST}"
         checker.report("signal-too-wide", node.last, message)
 

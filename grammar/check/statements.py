@@ -21,6 +21,7 @@ from grammar.semantics.assignability import case_label, condition, integer, numb
 from grammar.semantics.types import (
     REAL,
     UNKNOWN,
+    Structure,
     Type,
     Verdict,
 )
@@ -172,6 +173,7 @@ class _Routine:
         for place in (node.auxiliary, node.target):
             if place is not None:
                 self._target(place)
+                self._on_path(node, place)
         self.numbers(node.angle)
         self.values(node.values)
         if node.reference is not None:
@@ -193,6 +195,14 @@ class _Routine:
             self.checker.infer(inner, self._position(inner))
         else:
             self.needs(lambda _to, value: target(value), "not-a-position", node)
+
+    def _on_path(self, node: ast.Motion, place: ast.Expression) -> None:
+        """A motion on a path goes to a pose, as axis positions do not say which way."""
+        kind = self.context.types.get(without_parentheses(place))
+        is_path = not node.kind.startswith(("PTP", "SPTP", "ASYPTP"))
+        if is_path and isinstance(kind, Structure) and kind.name in ("AXIS", "E6AXIS"):
+            message = f"{node.kind} goes to a pose, and these are axis positions"
+            self.checker.report("path-to-axes", place, message, is_unconfirmed=True)
 
     def _position(self, node: ast.Aggregate) -> Type:
         """The structure of a position that is written out: axes, or a pose."""

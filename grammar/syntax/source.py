@@ -144,6 +144,19 @@ class Source:
         """All folds in the order of their first lines, those that are never closed included."""
         return tuple(sorted(self._folds(), key=lambda fold: fold.first))
 
+    @cached_property
+    def stray_fold_ends(self) -> tuple[int, ...]:
+        """The lines of all ``;ENDFOLD`` that close nothing."""
+        depth, found = 0, []
+        for comment in self.comments:
+            if comment.is_alone and _FOLD.match(comment.text):
+                depth += 1
+            elif comment.is_alone and _ENDFOLD.match(comment.text):
+                if not depth:
+                    found.append(comment.line)
+                depth = max(0, depth - 1)
+        return tuple(found)
+
     def _folds(self) -> Iterator[Fold]:
         opened: list[tuple[Comment, str]] = []
 

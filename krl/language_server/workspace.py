@@ -131,7 +131,7 @@ class OpenProject:
             return Looked(source, _kept(source, found))
         project, module = place
         checked = check_module(project, module, source)
-        found = check_project([checked.findings])
+        found = check_project([checked.findings], is_whole=False)
         return Looked(source, _kept(source, found), module, project, checked)
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:

@@ -30,7 +30,7 @@ Agrees = Callable[..., None]
         ("TYP-10", ["DECL INT A[2,2]", "A[2,1] = 1", "A[1,2] = 1 ;> KSS2074"]),
         ("TYP-10", ["DECL INT A[2], B[2]", "A[1] = 1", "B[1] = 1", "A[2] = 2"]),
         ("TYP-10", ["DECL INT A[2]", "", "A[1] = 1 ;> KRL112-"]),
-        ("TYP-10", ["DECL INT A[2]", ";FOLD", "A[1] = 1"]),
+        ("TYP-10", ["DECL INT A[2]", ";its places", "A[1] = 1"]),
         ("TYP-10", ["DECL INT A[2]", "DECL INT B", "A[1] = 1 ;> KRL112", "A[2] = 1"]),
         ("TYP-11", ["DECL CHAR A[3]", 'A[] = "ABC"']),
         ("TYP-11", ["DECL CHAR A[3]", 'A[] = "ABCD" ;> KRL206?']),

@@ -1,0 +1,273 @@
+"""What becomes of the data of a routine: read before it has a value, unused, counters changed.
+
+Only the routine's own variables are followed: nothing else can reach them. That a variable is read
+too early is said where no way through the routine gives it a value before, so a finding is certain
+as far as the language goes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Iterator
+
+from grammar.check.accesses import Access, Use, accesses, calls_of
+from grammar.check.constant_folding import constant
+from grammar.check.context import Context, PlacedStatement, RoutineBody
+from grammar.check.control_flow_graph import FlowNode, flow_graph
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.symbols import Kind
+from grammar.semantics.types import BOOL, REAL
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import root_variable, walk, without_parentheses
+
+__all__ = ["check", "needed_parameters"]
+
+_WORD = re.compile(r"[A-Za-z_$][\w$]*")
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about the data of all routines of a file."""
+    for routine in context.routines:
+        flow = _DataFlow(context, routine)
+        yield from flow.read_too_early()
+        yield from flow.unused()
+        yield from _counters(context, routine)
+        before: ast.Node | None = None
+        for placed in routine.statements:
+            is_tried = isinstance(before, ast.OnErrorProceed)
+            if isinstance(placed.statement, ast.Assignment) and not is_tried:
+                yield from _to_itself(context, placed.statement)
+            elif isinstance(placed.statement, ast.WaitFor):
+                yield from _waiting(context, placed.statement)
+            before = placed.statement
+        yield from _real_equality(context, routine)
+
+
+def needed_parameters(context: Context, routine: RoutineBody) -> tuple[int, ...]:
+    """The parameters, from 0, that a routine reads on every way, without asking VARSTATE for them.
+
+    To pass a parameter on is not to read it: who gets it may ask. Behind ON_ERROR_PROCEED a routine
+    may try.
+    """
+    if any(isinstance(placed.statement, ast.OnErrorProceed) for placed in routine.statements):
+        return ()
+    flow = _DataFlow(context, routine)
+    return tuple(
+        index
+        for index, parameter in enumerate(routine.node.parameters)
+        if parameter.name.key in flow.parameters and flow.is_needed(parameter.name.key)
+    )
+
+
+class _DataFlow:
+    """The variables of one routine and what its statements do to them."""
+
+    def __init__(self, context: Context, routine: RoutineBody) -> None:
+        self._context = context
+        self._routine = routine
+        told = context.module.words or frozenset()
+        symbols = routine.table.table.spaces[Space.VALUE].values()
+        asked = _names_in_texts(routine)
+        followed = {one.key: one for one in symbols if one.key not in told and one.key not in asked}
+        self.parameters = frozenset(
+            key for key, one in followed.items() if one.kind is Kind.PARAMETER
+        )
+        self.variables = frozenset(
+            key for key, one in followed.items() if one.kind is Kind.VARIABLE
+        )
+        self._graph = flow_graph(routine.node)
+        self._accesses: dict[FlowNode, list[Access]] = {}
+
+    def _of(self, node: FlowNode) -> list[Access]:
+        """The accesses at a place: of REPEAT, the condition stands at its end."""
+        found = self._accesses.get(node)
+        if found is None:
+            statement: ast.Node | None = node.statement
+            if isinstance(statement, ast.Repeat):
+                statement = statement.condition if node.is_test else None
+            found = [] if statement is None else list(accesses(self._context, statement))
+            self._accesses[node] = found
+        return found
+
+    def early(self, followed: frozenset[str]) -> Iterator[Access]:
+        """The reads of some variables that no way with a value leads to, each variable once."""
+        if not followed:
+            return
+        bits = {key: 1 << index for index, key in enumerate(sorted(followed))}
+        known = self._assigned(bits)
+        told = 0
+        for node in sorted(known, key=_position):
+            value = known[node]
+            for access in self._of(node):
+                bit = bits.get(access.name.key, 0)
+                if access.use is Use.READ and bit and not (value | told) & bit:
+                    told |= bit
+                    yield access
+                elif access.use is not Use.READ:
+                    value |= bit
+
+    def _assigned(self, bits: dict[str, int]) -> dict[FlowNode, int]:
+        """The variables that may have a value, at each place that can be reached."""
+        start = self._graph.start
+        known = {start: 0}
+        todo = deque([start])
+        while todo:
+            node = todo.popleft()
+            value = known[node]
+            for access in self._of(node):
+                if access.use is not Use.READ:
+                    value |= bits.get(access.name.key, 0)
+            for after in node.after:
+                before = known.get(after)
+                if before is None or value | before != before:
+                    known[after] = value | (before or 0)
+                    todo.append(after)
+        return known
+
+    def is_needed(self, key: str) -> bool:
+        """Whether no way leads to the end without reading a parameter."""
+        start, end = self._graph.start, self._graph.end
+        seen = {start}
+        todo = [start]
+        is_read = False
+        while todo:
+            node = todo.pop()
+            if node is end:
+                return False
+            uses = [access.use for access in self._of(node) if access.name.key == key]
+            if uses and not self._is_passed(node, key):
+                if uses[0] is not Use.READ:
+                    return False
+                is_read = True
+                continue
+            todo.extend(after for after in node.after if after not in seen)
+            seen.update(node.after)
+        return is_read
+
+    def _is_passed(self, node: FlowNode, key: str) -> bool:
+        return node.statement is not None and any(
+            isinstance(argument, ast.Variable) and argument.name.key == key
+            for call in calls_of(node.statement)
+            for argument in call.arguments
+        )
+
+    def read_too_early(self) -> Iterator[Diagnostic]:
+        """Variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
+        for access in self.early(self.variables):
+            message = f"{access.name.text} has no value yet"
+            reason = "nothing before this assigns to it"
+            yield self._context.finding("read-too-early", access.name, message, reason=reason)
+
+    def unused(self) -> Iterator[Diagnostic]:
+        """Variables and parameters that nothing reads; notes."""
+        used: set[str] = set()
+        written: set[str] = set()
+        for placed in self._routine.statements:
+            for access in _all(self._context, placed):
+                (written if access.use is Use.WRITTEN else used).add(access.name.key)
+        table = self._routine.table.table.spaces[Space.VALUE]
+        for key in sorted(self.variables | self.parameters):
+            symbol = table[key]
+            if key in used or (symbol.kind is Kind.PARAMETER and key in written):
+                continue
+            what = "is assigned to and never read" if key in written else "is never used"
+            message = f"{symbol.name} {what}"
+            yield self._context.finding("unused", symbol.span, message)
+
+
+def _all(context: Context, placed: PlacedStatement) -> Iterator[Access]:
+    statement = placed.statement
+    yield from accesses(context, statement)
+    if isinstance(statement, ast.VariableDeclaration):
+        for declarator in statement.declarators:
+            for index in declarator.indices or ():
+                if index is not None:
+                    yield from accesses(context, index)
+
+
+def _position(node: FlowNode) -> tuple[int, int]:
+    if node.statement is None:
+        return (-1, 0)
+    return node.statement.span[node.is_test], node.is_test
+
+
+def _names_in_texts(routine: RoutineBody) -> frozenset[str]:
+    """The names that a routine hands over in texts, as VARSTATE("NAME") does."""
+    return frozenset(
+        word.upper()
+        for node in walk(routine.node)
+        if isinstance(node, ast.StringLiteral)
+        for word in _WORD.findall(node.text)
+    )
+
+
+# ------------------------------------------------------------------------------- single statements
+
+
+def _counters(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    """Counters that are changed inside their own loop [CTL-05]."""
+    for placed in routine.statements:
+        statement = placed.statement
+        if isinstance(statement, ast.For):
+            name, place = statement.counter, statement.counter
+        elif isinstance(statement, ast.Assignment) and isinstance(statement.target, ast.Variable):
+            name, place = statement.target.name, statement.target.name
+        else:
+            continue
+        around = placed.inside
+        while around is not None:
+            if isinstance(around.statement, ast.For) and around.statement.counter.key == name.key:
+                line = context.source.place(around.statement.span[0])[0]
+                message = f"{name.text} counts the loop of line {line} and is changed inside it"
+                yield context.finding("counter-changed", place, message)
+                break
+            around = around.inside
+
+
+def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
+    """``A = A``; to assign to a variable of the controller has effects of its own.
+
+    Behind ON_ERROR_PROCEED it is a way to ask whether there is a value.
+    """
+    root = root_variable(node.target)
+    if root is None or root.name.text.startswith("$"):
+        return
+    found = context.found(root.name)
+    is_plain = found is not None and found.symbol.kind is not Kind.SIGNAL
+    has_call = any(isinstance(inner, ast.Call) for inner in walk(node.target))
+    shown = [
+        "".join(context.source.text[slice(*one.span)].upper().split())
+        for one in (node.target, without_parentheses(node.value))
+    ]
+    if is_plain and not has_call and shown[0] == shown[1]:
+        yield context.finding("self-assignment", node, f"{root.name.text} is assigned to itself")
+
+
+def _real_equality(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    """``==`` and ``<>`` of numbers that are rounded [ARI-10]."""
+    for node in walk(routine.node):
+        if isinstance(node, ast.Binary) and node.operator in ("==", "<>"):
+            types = context.types.get(node.left), context.types.get(node.right)
+            if REAL in types:
+                message = f"{node.operator} compares REAL values, which are rounded"
+                yield context.finding("real-equality", node, message)
+
+
+def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
+    """WAIT FOR on what nothing can change while the routine waits: FALSE, its own variables."""
+    used = list(accesses(context, node))
+    found = [context.found(access.name) for access in used]
+    has_call = any(isinstance(inner, ast.Call) for inner in walk(node))
+    is_own = bool(found) and all(
+        one is not None and one.scope.routine is not None and one.symbol.kind is Kind.VARIABLE
+        for one in found
+    )
+    if is_own and not has_call and context.types.get(node.condition) == BOOL:
+        names = ", ".join(dict.fromkeys(access.name.text for access in used))
+        message = f"nothing can change {names} while this waits"
+        yield context.finding("waits-for-ever", node.condition, message)
+    elif constant(context, node.condition) is False:
+        message = "this condition is never fulfilled"
+        yield context.finding("waits-for-ever", node.condition, message)

@@ -1,0 +1,298 @@
+"""What takes all files of a project to be judged: what one does and another relies on.
+
+An interrupt is declared here and switched on there, an output is set here and reset there, a
+parameter is read without a guard here and left out there. Each file gives its `Effects`, in its
+check; `of_project` puts those of all files together.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from grammar.check.accesses import Use, accesses, calls_of
+from grammar.check.constant_folding import constant, integer_of
+from grammar.check.context import Context
+from grammar.check.data_flow import needed_parameters
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
+from grammar.syntax import ast
+from grammar.syntax.walk import without_parentheses
+
+__all__ = ["NO_EFFECTS", "Effects", "LeftOut", "Place", "effects", "of_project"]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something is done in a file, and to what: a number or a name."""
+
+    path: str
+    region: Region
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A call that leaves the ``index``-th parameter of a routine out, which counts from 0.
+
+    ``routine`` is the path of its file and its name in upper case.
+    """
+
+    path: str
+    region: Region
+    routine: tuple[str, str]
+    index: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Effects:
+    """What the routines of a file do that others may rely on.
+
+    ``changed`` are the names, with a known index as in ``$FLAG[3]``, of all that is assigned to or
+    passed on; ``reset`` those that may become FALSE. ``switched_on`` has numbers of interrupts, and
+    ``""`` where all or unknown ones are meant. ``needed`` are the parameters, by file and routine,
+    that are read without a guard.
+    """
+
+    interrupts: tuple[Place, ...] = ()
+    switched_on: frozenset[str] = frozenset()
+    outputs: tuple[Place, ...] = ()
+    reset: frozenset[str] = frozenset()
+    waits: tuple[tuple[Place, frozenset[str]], ...] = ()
+    changed: frozenset[str] = frozenset()
+    left_out: tuple[LeftOut, ...] = ()
+    needed: dict[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
+
+
+NO_EFFECTS = Effects()
+
+_OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
+    "AND": operator.and_,
+    "OR": operator.or_,
+    "==": operator.eq,
+    "<>": operator.ne,
+}
+
+#: Nothing but programs changes these.
+_PROGRAMS_OWN = frozenset({"$FLAG", "$OUT"})
+
+
+def effects(context: Context) -> Effects:
+    """What the routines of a file do."""
+    return _Collector(context).collect()
+
+
+class _Collector:
+    """Goes through the statements of a file."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._interrupts: list[Place] = []
+        self._on: set[str] = set()
+        self._outputs: dict[str, Place] = {}
+        self._reset: set[str] = set()
+        self._waits: list[tuple[Place, frozenset[str]]] = []
+        self._changed: set[str] = set()
+        self._left_out: list[LeftOut] = []
+
+    def collect(self) -> Effects:
+        context = self._context
+        for routine in context.routines:
+            for placed in routine.statements:
+                self._statement(placed.statement)
+                if not isinstance(placed.statement, ast.Definition):
+                    self._accesses(placed.statement)
+        needed = {
+            (context.module.path, routine.node.name.key): indices
+            for routine in context.routines
+            if routine.node.parameters and (indices := needed_parameters(context, routine))
+        }
+        return Effects(
+            tuple(self._interrupts),
+            frozenset(self._on),
+            tuple(self._outputs.values()),
+            frozenset(self._reset),
+            tuple(self._waits),
+            frozenset(self._changed),
+            tuple(self._left_out),
+            needed,
+        )
+
+    def _place(self, node: ast.Node, what: str) -> Place:
+        source = self._context.source
+        return Place(source.path, Region.of(source, node.span), what)
+
+    def _statement(self, node: ast.Node) -> None:
+        match node:
+            case ast.InterruptDeclaration(number=number):
+                known = integer_of(self._context, number)
+                if known is not None:
+                    self._interrupts.append(self._place(number, str(known)))
+            case ast.InterruptSwitch(action="ON" | "ENABLE", number=number):
+                known = None if number is None else integer_of(self._context, number)
+                self._on.add("" if known is None else str(known))
+            case ast.WaitFor(condition=condition):
+                self._wait(condition)
+
+    def _accesses(self, node: ast.Node) -> None:
+        for inner in _assignments(node):
+            self._assigned(inner)
+        for access in accesses(self._context, node):
+            if access.use is not Use.READ:
+                key = self._key(access.place) if access.place is not None else access.name.key
+                self._changed.add(key)
+                if access.use is Use.PASSED:
+                    self._reset.add(key)
+        for call in calls_of(node):
+            self._call(call)
+
+    # --------------------------------------------------------------------------- keys
+
+    def _key(self, node: ast.Expression) -> str:
+        """What is accessed: a name, ``$OUT[5]``, or the output that a signal stands for."""
+        node = without_parentheses(node)
+        if isinstance(node, ast.Subscript) and isinstance(node.base, ast.Variable):
+            index = integer_of(self._context, node.indices[0]) if node.indices else None
+            if index is not None and node.base.name.key in _PROGRAMS_OWN:
+                return f"{node.base.name.key}[{index}]"
+            return node.base.name.key
+        while isinstance(node, ast.Subscript | ast.Member):
+            node = node.base
+        if not isinstance(node, ast.Variable):
+            return ""
+        found = self._context.found(node.name)
+        if found is None or not isinstance(found.symbol, SignalSymbol):
+            return node.name.key
+        first = found.symbol.first
+        return _written_key(first) if found.symbol.last is None else "$OUT"
+
+    # --------------------------------------------------------------------------- outputs
+
+    def _assigned(self, node: ast.Assignment) -> None:
+        key = self._key(node.target).replace("$OUT_C", "$OUT")
+        value = constant(self._context, node.value)
+        if value is not True:
+            self._reset.add(key)
+        elif key.startswith("$OUT[") and key not in self._outputs:
+            shown = self._context.source.text[slice(*node.target.span)]
+            self._outputs[key] = self._place(node, f"{key}\t{shown}")
+
+    # --------------------------------------------------------------------------- waiting
+
+    def _wait(self, condition: ast.Expression) -> None:
+        """A condition that flags alone fulfil, and that is not fulfilled while these are FALSE."""
+        keys: set[str] = set()
+        if self._with_flags_off(condition, keys) is False and keys:
+            shown = ", ".join(sorted(keys))
+            self._waits.append((self._place(condition, shown), frozenset(keys)))
+
+    def _with_flags_off(self, node: ast.Expression, keys: set[str]) -> bool | None:
+        """The value of a condition while all flags are FALSE; ``keys`` gets those that it asks."""
+        match without_parentheses(node):
+            case ast.BoolLiteral(value=value):
+                return value
+            case ast.Subscript() as place:
+                key = self._key(place)
+                keys.add(key)
+                return False if key.startswith("$FLAG[") else None
+            case ast.Unary(operator="NOT", operand=operand):
+                inner = self._with_flags_off(operand, keys)
+                return None if inner is None else not inner
+            case ast.Binary(operator="AND" | "OR" | "==" | "<>" as sign) as both:
+                left = self._with_flags_off(both.left, keys)
+                right = self._with_flags_off(both.right, keys)
+                if left is None or right is None:
+                    return None
+                return _OPERATORS[sign](left, right)
+        return None
+
+    # --------------------------------------------------------------------------- calls
+
+    def _call(self, node: ast.Call) -> None:
+        for argument in node.arguments:
+            if argument is not None:
+                self._reset.add(self._key(argument))  # PULSE, and what a routine may do with it
+        found = self._context.found(node.name)
+        if found is None or found.module is None or not isinstance(found.symbol, RoutineSymbol):
+            return
+        if found.symbol.kind is Kind.EXTERNAL:
+            return
+        source = self._context.source
+        for index, parameter in enumerate(found.symbol.parameters):
+            if index >= len(node.arguments) or node.arguments[index] is None:
+                routine = found.module.path, found.symbol.key
+                region = Region.of(source, node.span)
+                self._left_out.append(LeftOut(source.path, region, routine, index, parameter.name))
+
+
+def _written_key(node: ast.Expression) -> str:
+    """The output or flag that a signal stands for."""
+    match node:
+        case ast.Subscript(
+            base=ast.Variable(name=name), indices=(ast.IntegerLiteral(value=index),)
+        ):
+            return f"{name.key}[{index}]"
+    return "$OUT"
+
+
+def _assignments(node: ast.Node) -> Iterator[ast.Assignment]:
+    """What a statement assigns, now or later."""
+    match node:
+        case ast.Assignment():
+            yield node
+        case ast.Trigger(action=ast.Assignment() as action):
+            yield action
+        case ast.Motion(values=values) | ast.SplineBlock(values=values):
+            yield from values
+        case ast.SignalOn(assignment=assignment):
+            yield assignment
+
+
+# ------------------------------------------------------------------------------------- a project
+
+
+def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
+    """What is to be said of what the files of a project do to one another."""
+    files = list(found)
+    switched_on = frozenset[str]().union(*(one.switched_on for one in files))
+    reset = frozenset[str]().union(*(one.reset for one in files))
+    changed = frozenset[str]().union(*(one.changed for one in files))
+    needed = {routine: some for one in files for routine, some in one.needed.items()}
+    for one in files:
+        if "" not in switched_on:
+            yield from _never_on(one.interrupts, switched_on)
+        if "$OUT" not in reset:
+            yield from _never_reset(one.outputs, reset)
+        for place, keys in one.waits:
+            if "$FLAG" not in changed and not keys & changed:
+                message = f"nothing at hand sets {place.what}, so this may wait for ever"
+                yield diagnose("never-fulfilled", place.path, place.region, message)
+        for call in one.left_out:
+            if call.index in needed.get(call.routine, ()):
+                yield _left_out(call)
+
+
+def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:
+    told = set()
+    for place in declared:
+        if place.what not in switched_on and place.what not in told:
+            told.add(place.what)
+            message = f"interrupt {place.what} is never switched on"
+            yield diagnose("interrupt-never-on", place.path, place.region, message)
+
+
+def _never_reset(outputs: Iterable[Place], reset: frozenset[str]) -> Iterator[Diagnostic]:
+    for place in outputs:
+        key, _, shown = place.what.partition("\t")
+        if key not in reset:
+            message = f"{shown} is set here and never reset"
+            yield diagnose("output-never-reset", place.path, place.region, message)
+
+
+def _left_out(call: LeftOut) -> Diagnostic:
+    path, routine = call.routine
+    message = f"{call.name} is left out, and {routine} reads it"
+    reason = f"{path.rpartition('/')[2]} does not ask VARSTATE first"
+    return diagnose("argument-missing", call.path, call.region, message, reason=reason)

@@ -1,0 +1,168 @@
+"""What becomes of data: values, counters, waits, and what other files rely on."""
+
+from collections.abc import Callable
+
+import pytest
+
+Agrees = Callable[..., None]
+
+
+def routine(*lines: str) -> str:
+    return "\n".join(["DEF NEG()", "DECL INT I, N", "DECL BOOL B", *lines, "END"])
+
+
+USED = ("$ANOUT[1] = I + N", "$FLAG[1] = B")
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["N = 1", "B = TRUE", "I = N + 1"],
+        ["N = I ;> KRL409?", "I = 1", "B = TRUE"],
+        ["I = I + 1 ;> KRL409?", "N = 1", "B = I > 1"],
+        ["N = 1", "B = TRUE", "IF $IN[1] THEN", "I = 2", "ENDIF"],
+        ["N = 1", "IF B THEN ;> KRL409?", "I = 2", "ENDIF", "B = TRUE", "I = 3"],
+        [
+            "N = 1",
+            "B = TRUE",
+            "LOOP",
+            "IF N > 5 THEN",
+            "EXIT",
+            "ENDIF",
+            "N = I",
+            "I = N",
+            "ENDLOOP",
+        ],
+        ["FOR I = 1 TO N ;> KRL409?", "B = I > 1", "ENDFOR", "N = 1"],
+        ["SET(I, N)", "B = TRUE"],
+        ["REPEAT", "I = 1", "N = 2", "B = I == N", "UNTIL B"],
+    ],
+)
+def test_values(agrees: Agrees, lines: list[str]) -> None:
+    """A variable is read too early where no way to the place gives it a value [SCO-03]."""
+    text = routine(*lines, *USED) + "\nDEF SET(A:OUT, B:OUT)\nDECL INT A, B\nA = 1\nB = A\nEND"
+    agrees(text, with_data=True)
+
+
+def test_names_in_texts(agrees: Agrees) -> None:
+    """A variable that VARSTATE is asked for may have no value."""
+    line = 'IF VARSTATE("I") == #INITIALIZED THEN'
+    agrees(routine(line, "N = I", "B = TRUE", "ENDIF", *USED), with_data=True)
+
+
+def test_unused(agrees: Agrees) -> None:
+    """Variables and parameters that nothing reads are noted at their declarations."""
+    text = """DEF NEG()
+  DECL INT A ;> KRL117-
+  DECL INT B ;> KRL117-
+  B = 1
+  WORK(1, 2)
+END
+DEF WORK(C:IN, D:IN) ;> KRL117-
+  DECL INT C, D
+  $ANOUT[1] = C
+END"""
+    agrees(text, with_data=True)
+
+
+def test_counters(agrees: Agrees) -> None:
+    """A counter belongs to its loop until that ends [CTL-05]."""
+    agrees(
+        routine(
+            "FOR I = 1 TO 5",
+            "IF $IN[1] THEN",
+            "I = 7 ;> KRL410?",
+            "ENDIF",
+            "FOR I = 1 TO 2 ;> KRL410?",
+            "ENDFOR",
+            "ENDFOR",
+            "I = 3",
+        )
+    )
+
+
+def test_itself(agrees: Agrees) -> None:
+    """What is assigned to itself is a slip; behind ON_ERROR_PROCEED a question."""
+    agrees(routine("I = 1", "I = (i) ;> KRL411?", "ON_ERROR_PROCEED", "I = I", "$BASE = $BASE"))
+
+
+def test_waits(agrees: Agrees) -> None:
+    """Nothing changes the variables of a routine while it waits."""
+    agrees(
+        routine(
+            "B = $IN[1]",
+            "WAIT FOR B ;> KRL412?",
+            "WAIT FOR FALSE ;> KRL412?",
+            "WAIT FOR TRUE",
+            "WAIT FOR B OR $IN[2]",
+            "WAIT FOR $FLAG[1]",
+            "WAIT FOR $FLAG[2] AND $IN[1]",
+            "WAIT FOR $FLAG[2] == TRUE ;> KRL413-",
+            "WAIT FOR NOT $FLAG[2]",
+            "$FLAG[1] = TRUE",
+        )
+    )
+
+
+INTERRUPTS = """DEF NEG()
+  INTERRUPT DECL 10 WHEN $IN[1] DO WORK() {mark}
+  INTERRUPT DECL 11 WHEN $IN[2] DO WORK()
+  INTERRUPT ON 11
+END
+DEF WORK()
+  HALT
+END
+"""
+
+
+@pytest.mark.parametrize("switch", ["INTERRUPT ON 10", "INTERRUPT ON", "INTERRUPT ON N"])
+def test_interrupts_of_a_project(agrees: Agrees, switch: str) -> None:
+    """An interrupt may be switched on in another file, by number, with all, or by a variable."""
+    agrees(INTERRUPTS.format(mark=";> KRL516?"), with_data=True)
+    other = f"DEF OTHER()\n{switch}\nEND\n"
+    data = "DEFDAT OTHER\nDECL INT N=10\nENDDAT\n"
+    agrees({"NEG.src": INTERRUPTS.format(mark=""), "OTHER.src": other, "OTHER.dat": data})
+
+
+@pytest.mark.parametrize(
+    ("other", "mark"),
+    [
+        ("HALT", ";> KRL515-"),
+        ("$OUT[5] = FALSE", ""),
+        ("$OUT[5] = $IN[1]", ""),
+        ("$OUT[$ADVANCE] = FALSE", ""),
+        ("$OUT[6] = FALSE", ";> KRL515-"),
+        ("PULSE($OUT[5], TRUE, 0.5)", ""),
+    ],
+)
+def test_outputs_of_a_project(agrees: Agrees, other: str, mark: str) -> None:
+    """An output may be reset in another file, and under the name of a signal."""
+    files = {
+        "NEG.src": f"DEF NEG()\nSIGNAL LAMP $OUT[5]\nLAMP = TRUE {mark}\nEND\n",
+        "OTHER.src": f"DEF OTHER()\n{other}\nEND\n",
+    }
+    agrees(files, with_data=True)
+
+
+@pytest.mark.parametrize(
+    ("body", "mark"),
+    [
+        ("$OUT[1] = N > 0", ";> KRL302?"),
+        ("IF $IN[1] THEN\n$OUT[1] = N > 0\nENDIF", ""),
+        ("N = 1\n$OUT[1] = N > 0", ""),
+        ('IF VARSTATE("N") == #INITIALIZED THEN\n$OUT[1] = N > 0\nENDIF', ""),
+        ("OTHER(N)", ""),
+    ],
+)
+def test_arguments_left_out(agrees: Agrees, body: str, mark: str) -> None:
+    """An argument may be left out where the routine can do without it [SCO-13]."""
+    called = f"DEF CALLED(M:IN, N:IN)\nDECL INT M, N\n{body}\n$OUT[2] = M > 0\nEND\n"
+    text = "DEF OTHER(N:IN)\nDECL INT N\n$OUT[3] = N > 0\nEND\n"
+    files = {"NEG.src": f"DEF NEG()\nCALLED(1) {mark}\nCALLED(1, 2)\nEND\n", "CALLED.src": called}
+    agrees({**files, "OTHER.src": text})
+
+
+def test_folds(agrees: Agrees) -> None:
+    """Every fold is closed, and nothing is closed that is no fold."""
+    agrees("DEF NEG()\n;FOLD A ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
+    agrees("DEF NEG()\n;ENDFOLD ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
