@@ -32,10 +32,12 @@ from interp.robot.kinematics.machine_data import (
     with_axis_limits_of,
 )
 from interp.robot.models import default_machine, model_file
+from interp.robot.models.stand_in import fitting_arm
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import RobotName, make_robot
 from interp.robot.simulation.robot import Robot
 from interp.robot.simulation.tracking import PathRecord, Tracking
+from interp.standins.uses import FOLDER
 from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
@@ -203,7 +205,10 @@ def _machine_or_other(program: CheckedProgram, profile: Profile) -> tuple[Machin
     """The arm of the project's own machine data, else one in its place and why."""
     source = _machine_data(program)
     if source is None:
-        machine = machine_of_program(program, profile)
+        units = [unit for unit in program.units.values() if unit.module.folder != FOLDER]
+        lists = [unit.source.text for unit in units if unit.module.suffix == ".dat"]
+        programs = [unit.source.text for unit in units if unit.module.suffix != ".dat"]
+        machine = fitting_arm(machine_of_program(program, profile), programs, lists)
         return machine, f"no machine data of an arm: {machine.name} stands in"
     try:
         return _understood(source), ""
