@@ -17,7 +17,7 @@ def test_far_points() -> None:
     machine = default_machine()
     found = fitting_arm(machine, [FAR], [])
     factor = found.length_b / machine.length_b
-    assert (3.8, 3.8 * machine.length_a, machine.axes) == (factor, found.length_a, found.axes)
+    assert (3.9, 3.9 * machine.length_a, machine.axes) == (factor, found.length_a, found.axes)
     assert 2600 < found.length_a + found.length_b + found.tx3p3.rows[0][3]
 
 
