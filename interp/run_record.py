@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NotRequired, TypedDict
 
 import numpy as np
@@ -38,9 +40,14 @@ class FileRecord(TypedDict):
 
 
 class LimitsRecord(TypedDict):
-    """The greatest speeds of the axes, and of the tool."""
+    """Software limit switches, greatest speeds and accelerations of the axes; speed of the tool.
 
+    0 where the machine data names no speed or acceleration.
+    """
+
+    axes: list[list[float]]
     axis_speeds: list[float]
+    axis_accelerations: list[float]
     speed: float
 
 
@@ -106,7 +113,8 @@ class ArmRecord(TypedDict):
 class PathSamples(TypedDict):
     """Set-points, one column a quantity; ``tool_measured`` where the robot measures.
 
-    ``axes`` has a column an axis in degrees or mm, robot axes first.
+    ``axes`` has a column an axis in degrees or mm, robot axes first; so have ``axis_speeds`` and
+    ``axis_accelerations``, the differences of the set-points over time. Another tool is no speed.
     """
 
     t: list[int]
@@ -114,6 +122,7 @@ class PathSamples(TypedDict):
     tool: list[list[float]]
     speed: list[float]
     axis_speeds: list[list[float]]
+    axis_accelerations: list[list[float]]
     tool_measured: NotRequired[list[list[float]]]
 
 
@@ -145,8 +154,8 @@ class RunRecord(TypedDict):
 def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRecord:
     """Outcome, trace, sources, path, limits and programmed points of a run.
 
-    Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, that of the
-    tool m/s.
+    Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, their accelerations deg/s² or
+    mm/s², the speed of the tool m/s.
     """
     outcome = run.outcome
     events = [json.loads(event.line()) for event in run.events]
@@ -246,28 +255,47 @@ def _numbers(pose: Pose) -> list[float]:
 
 def _limits(machine: MachineData) -> LimitsRecord:
     axes = (*machine.axes, *machine.externals)
-    speeds = [axis.dynamics.velocity if axis.dynamics is not None else 0.0 for axis in axes]
-    return {"axis_speeds": speeds, "speed": machine.velocity.path}
+    dynamics = [axis.dynamics for axis in axes]
+    return {
+        "axes": [[axis.lower, axis.upper] for axis in axes],
+        "axis_speeds": [0.0 if one is None else one.velocity for one in dynamics],
+        "axis_accelerations": [0.0 if one is None else one.acceleration for one in dynamics],
+        "speed": machine.velocity.path,
+    }
 
 
 def _path(path: PathRecord) -> PathSamples:
     seconds = path.times / 1e6
-    speeds = np.zeros_like(path.axes)
+    speeds = accelerations = np.zeros_like(path.axes)
     tip_speed = np.zeros(len(path.times))
     if len(path.times) > 1:
         speeds = np.gradient(path.axes, seconds, axis=0)
-        steps: Array = np.gradient(path.tips, seconds, axis=0)
-        tip_speed = np.linalg.norm(steps, axis=1) / 1000
+        accelerations = np.gradient(speeds, seconds, axis=0)
+        for rows in _same_tool(path):
+            if rows.stop - rows.start > 1:
+                steps: Array = np.gradient(path.tips[rows], seconds[rows], axis=0)
+                tip_speed[rows] = np.linalg.norm(steps, axis=1) / 1000
     record: PathSamples = {
         "t": path.times.tolist(),
         "axes": [column.round(4).tolist() for column in path.axes.T],
         "tool": path.tips.round(4).tolist(),
         "speed": tip_speed.round(6).tolist(),
         "axis_speeds": [column.round(4).tolist() for column in speeds.T],
+        "axis_accelerations": [column.round(4).tolist() for column in accelerations.T],
     }
     if path.tips_measured is not None:
         record["tool_measured"] = path.tips_measured.round(4).tolist()
     return record
+
+
+def _same_tool(path: PathRecord) -> Iterator[slice]:
+    """Rows with one tool each: where it changes the tip is another point, and has not moved."""
+    changes = [
+        time for (_, before), (time, now) in pairwise(path.placements) if before.tool != now.tool
+    ]
+    bounds = [0, *np.searchsorted(path.times, changes).tolist(), len(path.times)]
+    for first, last in pairwise(bounds):
+        yield slice(first, last)
 
 
 def _deviation(path: PathRecord) -> DeviationRecord | None:

@@ -1,13 +1,14 @@
 """The page of one run: where the arm went, how fast, what was switched when, and by which line."""
 
 from collections.abc import Mapping, Sequence
+from itertools import accumulate, chain
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from reports.embedding import embedded_json, printable
 from reports.number_format import clip
 from reports.page import render, source
-from reports.record_fields import Record, count, nested, number, records, text
+from reports.record_fields import Record, count, nested, number, records, text, texts
 from reports.run_view import run_view
 from reports.sanitizing import plain
 from support.files.atomic_write import write_atomic
@@ -15,12 +16,30 @@ from support.files.atomic_write import write_atomic
 __all__ = ["write_run_page"]
 
 _MAX_SAMPLES = 6_000
-_MAX_EVENTS = 20_000
+_MAX_EVENTS = 10_000
+_STEPS = ("line", "assign", "branch")  # of the advance run; there may be millions
 _MAX_FILES = 40
 _MAX_LINES = 5_000
-_SCRIPTS = ("page", "run-cursor", "run-scene", "run-charts", "run-signals", "run-program")
+_MAX_POINTS = 5_000
+_MAX_LINKS = 200
+_MAX_TOOLS = 1_000
+_LIBRARIES = ("vendor/uPlot.iife.min", "vendor/three.min")
+_SCRIPTS = (
+    "page",
+    "run-moment",
+    "run-player",
+    "run-arm",
+    "run-scene",
+    "run-charts",
+    "run-signals",
+    "run-program",
+)
 
+_LARGEST = 1e12
+
+T = TypeVar("T")
 Json = dict[str, Any]
+Rows = list[list[float]]
 
 
 def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
@@ -32,25 +51,42 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
 
     Raises OSError when the file cannot be written.
     """
+    view = run_view(record)
     data = embedded_json(
         {
             "end": count(nested(record, "outcome"), "time"),
-            "events": [plain(one, 200) for one in records(record, "events")[:_MAX_EVENTS]],
+            "events": [plain(one, 200) for one in _events(records(record, "events"))],
             "files": [_file(one) for one in records(record, "files")[:_MAX_FILES]],
             "path": _path(nested(record, "path")),
             "limits": _limits(nested(record, "limits")),
-            "points": [_point(one) for one in records(record, "points")],
+            "arm": _arm(nested(record, "arm")),
+            "points": [_point(one) for one in records(record, "points")[:_MAX_POINTS]],
         }
     )
-    script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
+    libraries = _LIBRARIES if view.has_path else _LIBRARIES[:1]
+    script = "\n".join(source(f"{name}.js") for name in (*libraries, *_SCRIPTS))
     page = render(
         "run.html.j2",
         script=f'"use strict";\n{{\n{script}}}\n',
-        styles=["page.css", "run.css"],
+        styles=["vendor/uPlot.min.css", "page.css", "run.css"],
         data=data,
-        view=run_view(record),
+        view=view,
     )
     return write_atomic(target, page)
+
+
+def _events(events: Sequence[Record]) -> Sequence[Record]:
+    """The first of what happened, and as many steps of the advance run as there is room for."""
+    told = [text(event, "kind") not in _STEPS for event in events]
+    room = max(0, _MAX_EVENTS - sum(told))
+    stride = 1 + (len(events) - sum(told)) // (room + 1)
+    steps = accumulate((not is_told for is_told in told), initial=0)
+    kept = [
+        event
+        for event, is_told, step in zip(events, told, steps, strict=False)
+        if is_told or (room and step % stride == 0)
+    ]
+    return kept[:_MAX_EVENTS]
 
 
 def _file(file: Record) -> Json:
@@ -62,20 +98,109 @@ def _file(file: Record) -> Json:
 
 
 def _path(path: Record) -> Json:
-    """Set-points, thinned out evenly where there are more than a page can show."""
-    times = _numbers(path.get("t"))
-    stride = 1 + len(times) // _MAX_SAMPLES
+    """Set-points, as many as a page can show.
+
+    Of a stretch where nothing moves the first and the last are kept. Of others positions are
+    thinned out evenly; of speeds, accelerations and torques the greatest of what one sample stands
+    for is kept, so that no peak is lost.
+    """
+    times = _finite(path.get("t"))
+
+    def columns(name: str) -> Rows:
+        return [_column(column, len(times)) for column in _sequence(path.get(name))]
+
+    def places(name: str) -> Rows:
+        return [_column(row, 3) for row in _sequence(path.get(name))[: len(times)]]
+
+    axes, tool, measured = columns("axes"), places("tool"), places("tool_measured")
+    samples = _samples([*axes, *zip(*tool, strict=True)] if tool else axes, len(times))
+    shown = [rows[0] for rows in samples]
+
+    def peaks(column: Sequence[float], digits: int) -> list[float]:
+        return _rounded([max((column[row] for row in rows), key=abs) for rows in samples], digits)
+
     return {
-        "t": times[::stride],
-        "tool": _rows(path.get("tool"))[::stride],
-        "measured": _rows(path.get("tool_measured"))[::stride],
-        "speed": _numbers(path.get("speed"))[::stride],
-        "axes": [_numbers(axis)[::stride] for axis in path.get("axis_speeds") or ()],
+        "t": _rounded([times[row] for row in shown], 0),
+        "axes": [_rounded([column[row] for row in shown], 2) for column in axes],
+        "tool": [_rounded(tool[row], 2) for row in shown if row < len(tool)],
+        "measured": [_rounded(measured[row], 2) for row in shown if row < len(measured)],
+        "speed": peaks(_column(path["speed"], len(times)), 4) if path.get("speed") else [],
+        "speeds": [peaks(column, 2) for column in columns("axis_speeds")],
+        "accelerations": [peaks(column, 1) for column in columns("axis_accelerations")],
+        "torques": [peaks(column, 2) for column in columns("axis_torques")],
     }
 
 
+def _samples(columns: Sequence[Sequence[float]], count: int) -> list[list[int]]:
+    """The rows that each sample stands for, those left out where nothing moves."""
+    if not count:
+        return []
+    states = list(zip(*columns, strict=False)) if columns else []
+    last = count - 1
+    moving = [
+        row
+        for row in range(count)
+        if row in (0, last)
+        or not (states[row - 1 : row] == states[row : row + 1] == states[row + 1 : row + 2])
+    ]
+    size = 1 + len(moving) // _MAX_SAMPLES
+    samples: list[list[int]] = []
+    for before, row, after in zip([0, *moving], moving, [*moving[1:], last], strict=False):
+        is_end_of_rest = row - before > 1 or after - row > 1
+        if not samples or is_end_of_rest or len(samples[-1]) == size:
+            samples.append([])
+        samples[-1].append(row)
+    step = 1 + len(samples) // (2 * _MAX_SAMPLES)
+    return [list(chain(*samples[at : at + step])) for at in range(0, len(samples), step)]
+
+
 def _limits(limits: Record) -> Json:
-    return {"axes": _numbers(limits.get("axis_speeds")), "speed": number(limits, "speed") or None}
+    return {
+        "axes": [_rounded(_column(pair, 2), 2) for pair in _sequence(limits.get("axes"))],
+        "speeds": _rounded(_finite(limits.get("axis_speeds")), 5),
+        "accelerations": _rounded(_finite(limits.get("axis_accelerations")), 5),
+        "torques": _rounded(_finite(limits.get("axis_torques")), 5),
+        "speed": number(limits, "speed") or None,
+    }
+
+
+def _arm(arm: Record) -> Json:
+    """Links, flange and frames, as `interp.run_record` has them."""
+    links = records(arm, "links")[:_MAX_LINKS]
+    return {
+        "axes": [printable(clip(name, 20)) for name in texts(arm, "axes")],
+        "links": [
+            {
+                "name": printable(clip(text(link, "name"), 40)),
+                "parent": min(_index(link, "parent"), place - 1),
+                "frame": _rounded(_column(link.get("frame"), 16), 6),
+                "joint": _index(link, "joint"),
+                "axis": _rounded(_column(link.get("axis"), 3), 6),
+                "linear": bool(link.get("linear")),
+                "shapes": [_shape(shape) for shape in records(link, "shapes")[:_MAX_LINKS]],
+            }
+            for place, link in enumerate(links)
+        ],
+        "hand": min(_index(arm, "hand"), len(links) - 1),
+        "flange": _rounded(_column(arm.get("flange"), 16), 6),
+        "tools": [
+            {
+                "t": count(frames, "t"),
+                "tool": _rounded(_column(frames.get("tool"), 16), 6),
+                "base": _rounded(_column(frames.get("base"), 16), 6),
+            }
+            for frames in records(arm, "tools")[:_MAX_TOOLS]
+        ],
+    }
+
+
+def _shape(shape: Record) -> Json:
+    return {
+        "start": _rounded(_column(shape.get("start"), 3), 2),
+        "end": _rounded(_column(shape.get("end"), 3), 2),
+        "radius": number(shape, "radius"),
+        "colour": _rounded(_column(shape.get("colour"), 4), 3),
+    }
 
 
 def _point(point: Record) -> Json:
@@ -83,20 +208,35 @@ def _point(point: Record) -> Json:
         "motion": count(point, "motion"),
         "kind": printable(clip(text(point, "kind"), 20)),
         "at": printable(clip(text(point, "at"), 400)),
-        "place": _numbers(point.get("place")),
+        "place": _rounded(_finite(point.get("place"))[:3], 3),
         "blended": bool(point.get("blended")),
     }
 
 
-def _numbers(values: Any) -> list[float]:
-    """Finite numbers to five digits behind the point; anything else counts as 0."""
-    if not isinstance(values, Sequence) or isinstance(values, str):
-        return []
+def _index(record: Record, key: str) -> int:
+    """An index, -1 where there is none."""
+    return max(count(record, key), -1) if key in record else -1
+
+
+def _sequence(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list | tuple) else ()
+
+
+def _finite(values: Any) -> list[float]:
+    """Numbers of a size that can be drawn; anything else counts as 0."""
     return [
-        round(float(one), 5) if isinstance(one, int | float) and abs(one) < float("inf") else 0.0
-        for one in values
+        one if isinstance(one, int | float) and abs(one) < _LARGEST else 0
+        for one in _sequence(values)
     ]
 
 
-def _rows(rows: Any) -> list[list[float]]:
-    return [_numbers(row) for row in rows] if isinstance(rows, Sequence) else []
+def _column(values: Any, length: int) -> list[float]:
+    """As `_finite`, of a certain length: what is missing counts as 0."""
+    column = _finite(values)[:length]
+    return column + [0] * (length - len(column))
+
+
+def _rounded(values: Sequence[float], digits: int) -> list[float]:
+    """Numbers as short as JSON can have them: 3 and not 3.0."""
+    rounded = [round(one, digits) for one in values]
+    return [int(one) if one == int(one) else one for one in rounded]

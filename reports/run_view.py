@@ -32,6 +32,7 @@ class RunView:
     is_fine: bool
     figures: tuple[Figure, ...]
     has_path: bool
+    has_motion: bool
     has_measured: bool
 
 
@@ -50,6 +51,9 @@ def run_view(record: Mapping[str, Any]) -> RunView:
         is_fine=kind == "end",
         figures=tuple(_figures(record, outcome)),
         has_path=bool(path.get("t")),
+        has_motion=any(
+            text(event, "kind") == "motion_start" for event in records(record, "events")
+        ),
         has_measured=bool(path.get("tool_measured")),
     )
 

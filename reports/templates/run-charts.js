@@ -1,134 +1,202 @@
-// Strips over one time axis: speeds against their limits. The signals and lines are in run-signals.
+// Charts over one time axis, by uPlot: position, speed, acceleration and torque with their limits.
 
 const span = { from: 0, to: end };
-const strips = [];
-const LEFT = 150;
-const RIGHT = 16;
-const across = (time, width) => LEFT + ((width - LEFT - RIGHT) * (time - span.from)) / (span.to - span.from || 1);
+const charts = [];
+const SIDE = 12;
+const isNarrow = () => byId("charts").clientWidth < 600;
+const axisWidth = () => (isNarrow() ? 62 : 130);
 
-/** A strip of a given height; `paint(root, x, width)` draws what it shows. */
-function strip(title, keys, height, paint) {
+/**
+ * A chart of `series`, each { name, hue, values, told, unit, digits } over the times of the path: what it
+ * draws, and what it says of the moment where that is not the same. `lines` are limits;
+ * `paint(chart, x)` draws what is no series. `y` is [lowest, highest], with the lowest on top where
+ * `isDown`; `ticks` are what stands beside it.
+ */
+function chart(title, { height, series = [], lines = [], y, ticks = null, keys = [], isDown = false, paint = () => {} }) {
   const holder = el("div", "plot");
-  holder.style.minHeight = `${height}px`;
-  const heading = el("h3", "", title, keys.map(([name, hue]) => {
-    const key = el("span", "key", name);
-    key.style.setProperty("--hue", `var(${hue})`);
+  const values = new Map();
+  const heading = el("h3", "", title, [...series, ...keys].map((one) => {
+    const value = el("span", "value");
+    if (one.values) values.set(one, value);
+    const key = el("span", "key", one.name, value);
+    key.style.setProperty("--hue", `var(--${one.hue})`);
     return key;
   }));
-  let cross = null;
-  let width = 0;
-  const draw = () => {
-    width = holder.clientWidth || 900;
-    const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img" });
-    root.append(svg("title", {}, title));
-    const x = (time) => Math.min(width - RIGHT, Math.max(LEFT, across(time, width)));
-    for (const [from, to] of blends) {
-      if (to >= span.from && from <= span.to) root.append(svg("rect", { class: "blend", x: x(from), width: Math.max(0.5, x(to) - x(from)), y: 0, height: height - 16 }));
-    }
-    paint(root, x, width, height);
-    ruler(root, x, height);
-    const picked = svg("rect", { class: "picked", y: 0, height: height - 16, width: 0 });
-    cross = svg("line", { class: "cross", y1: 0, y2: height - 16, x1: x(moment), x2: x(moment) });
-    const hit = svg("rect", { class: "hit", x: LEFT, y: 0, width: Math.max(1, width - LEFT - RIGHT), height });
-    root.append(picked, cross, hit);
-    pointing(hit, root, picked, width);
-    holder.replaceChildren(root);
-  };
-  followers.push((time) => {
-    if (!cross) return;
-    const at = across(time, width);
-    const isSeen = at >= LEFT - 0.5 && at <= width - RIGHT + 0.5;
-    cross.setAttribute("visibility", isSeen ? "visible" : "hidden");
-    cross.setAttribute("x1", at);
-    cross.setAttribute("x2", at);
-  });
-  strips.push(draw);
+  holder.setAttribute("role", "img");
+  holder.setAttribute("aria-label", title);
   byId("charts").append(el("div", "strip", heading, holder));
-  whenResized(holder, draw);
-}
 
-function ruler(root, x, height) {
-  const length = span.to - span.from;
-  const rough = 10 ** Math.floor(Math.log10(length / 6));
-  const step = [1, 2, 5, 10].map((n) => n * rough).find((one) => length / one <= 9);
-  const digits = Math.max(0, 6 - Math.floor(Math.log10(step) + 1e-9));
-  for (let time = Math.ceil(span.from / step) * step; time <= span.to; time += step) {
-    root.append(svg("line", { class: "grid", x1: x(time), x2: x(time), y1: 0, y2: height - 16 }),
-      svg("text", { x: x(time), y: height - 3, "text-anchor": "middle" }, `${seconds(time, Math.min(digits, 6))} s`));
+  const times = path.t.map((time) => time / 1e6);
+  const data = series.length ? [times, ...series.map((one) => one.values)] : [[0, end / 1e6], [null, null]];
+  let [shown, cursor] = [null, null];
+
+  const place = () => {
+    if (!shown) return;
+    const at = shown.valToPos(moment / 1e6, "x");
+    cursor.hidden = at < -0.5 || at > shown.over.clientWidth + 0.5;
+    cursor.style.left = `${at}px`;
+    const now = series.length ? atMoment() : null;
+    for (const [one, value] of values) value.textContent = `${now(one.told ?? one.values).toLocaleString("en-GB", { minimumFractionDigits: one.digits, maximumFractionDigits: one.digits })} ${one.unit}`;
+  };
+
+  function draw() {
+    shown?.destroy();
+    const [soft, faint] = ["soft", "faint"].map(colourOf);
+    const axis = { stroke: soft, font: "11.5px system-ui, sans-serif", grid: { stroke: faint, width: 1 }, ticks: { show: false } };
+    shown = new uPlot({
+      width: Math.max(200, holder.clientWidth),
+      height,
+      padding: [8, SIDE, 0, 0],
+      legend: { show: false },
+      cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => enlarge(0, end) } },
+      scales: { x: { time: false, range: () => [span.from / 1e6, span.to / 1e6] }, y: { range: () => y, dir: isDown ? -1 : 1 } },
+      axes: [
+        { ...axis, size: 22, gap: 4, space: 70, values: (_, marks) => marks.map((mark) => `${+mark.toFixed(6)} s`) },
+        { ...axis, size: axisWidth(), ...(ticks ? { splits: () => ticks.map(([at]) => at), values: (u) => ticks.map(([, text]) => shortened(u, text)) } : { space: 28 }) },
+      ],
+      series: [{}, ...(series.length ? series : [{ hue: "ink" }]).map((one) => ({ stroke: colourOf(one.hue), width: 1.25, dash: one.dash, points: { show: false } }))],
+      hooks: {
+        drawAxes: [bands],
+        draw: [limitLines, (u) => painted(u, (x) => paint(u, x))],
+        setSelect: [(u) => {
+          const { left, width } = u.select;
+          if (width > 6) enlarge(1e6 * u.posToVal(left, "x"), 1e6 * u.posToVal(left + width, "x"));
+          u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+        }],
+      },
+    }, data, holder);
+    cursor = el("div", "cross");
+    shown.over.append(cursor);
+    shown.over.addEventListener("pointermove", ({ offsetX, target }) => {
+      if (target === shown.over && !isPlaying()) pointAt(1e6 * shown.posToVal(offsetX, "x"), "charts");
+    });
+    shown.over.addEventListener("click", ({ offsetX }) => pointAt(1e6 * shown.posToVal(offsetX, "x"), "charts"));
+    place();
   }
+
+  /** Where two motions blend. */
+  function bands(u) {
+    painted(u, (x) => {
+      u.ctx.fillStyle = colourOf("blue-wash");
+      for (const [from, to] of blends) if (to >= span.from && from <= span.to) u.ctx.fillRect(x(from), u.bbox.top, Math.max(1, x(to) - x(from)), u.bbox.height);
+    });
+  }
+
+  function limitLines(u) {
+    painted(u, () => {
+      u.ctx.strokeStyle = colourOf("mark");
+      u.ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+      for (const value of lines) {
+        u.ctx.beginPath();
+        u.ctx.moveTo(u.bbox.left, u.valToPos(value, "y", true));
+        u.ctx.lineTo(u.bbox.left + u.bbox.width, u.valToPos(value, "y", true));
+        u.ctx.stroke();
+      }
+    });
+  }
+
+  charts.push({ draw, zoom: () => { shown.setScale("x", {}); place(); } });
+  followers.push(place);
+  whenResized(holder, draw);
+  whenRecoloured(draw);
 }
 
-/** The pointer chooses a moment, a drag a span. */
-function pointing(hit, root, picked, width) {
-  const at = (event) => span.from + ((event.clientX - root.getBoundingClientRect().left - LEFT) * (span.to - span.from)) / (width - LEFT - RIGHT);
-  let begun = null;
-  hit.addEventListener("pointermove", (event) => {
-    pointAt(at(event), "charts");
-    if (begun === null) return;
-    const [from, to] = [begun, at(event)].sort((a, b) => a - b);
-    picked.setAttribute("x", across(from, width));
-    picked.setAttribute("width", Math.max(0, across(to, width) - across(from, width)));
-  });
-  hit.addEventListener("pointerdown", (event) => {
-    begun = at(event);
-    hit.setPointerCapture(event.pointerId);
-  });
-  hit.addEventListener("pointerup", (event) => {
-    const [from, to] = [begun, at(event)].sort((a, b) => a - b);
-    begun = null;
-    picked.setAttribute("width", 0);
-    if (across(to, width) - across(from, width) > 6) enlarge(from, to);
-  });
-  hit.addEventListener("dblclick", () => enlarge(0, end));
+/** Draws within the plot of a chart; `x` of a time in pixels of its canvas. */
+function painted(u, draw) {
+  u.ctx.save();
+  u.ctx.beginPath();
+  u.ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+  u.ctx.clip();
+  u.ctx.lineWidth = devicePixelRatio;
+  u.ctx.textAlign = "left";
+  u.ctx.font = `${11.5 * devicePixelRatio}px system-ui, sans-serif`;
+  draw((time) => u.valToPos(time / 1e6, "x", true));
+  u.ctx.restore();
+}
+
+/** A text as long as there is room for beside a chart. */
+function shortened(u, text) {
+  u.ctx.save();
+  u.ctx.font = "11.5px system-ui, sans-serif";
+  const fits = (one) => u.ctx.measureText(one).width <= axisWidth() - 12;
+  let length = text.length;
+  while (length > 1 && !fits(length < text.length ? `${text.slice(0, length)}…` : text)) length -= 1;
+  u.ctx.restore();
+  return length < text.length ? `${text.slice(0, length)}…` : text;
 }
 
 function enlarge(from, to) {
   Object.assign(span, { from: Math.max(0, from), to: Math.min(end, Math.max(to, from + 1000)) });
-  for (const draw of strips) draw();
+  for (const { zoom } of charts) zoom();
 }
 
-/** The path of values over the times of the path, only as dense as there are pixels. */
-function curve(values, x, y, width) {
-  const first = Math.max(0, placeAt(path.t, span.from));
-  const last = Math.min(path.t.length - 1, placeAt(path.t, span.to) + 1);
-  const stride = Math.max(1, Math.floor((last - first) / (2 * width)));
-  let d = "";
-  for (let n = first; n <= last; n += stride) d += `${d ? "L" : "M"}${x(path.t[n]).toFixed(1)},${y(values[n]).toFixed(1)}`;
-  return d;
+/** From the lowest to the highest value, and the limits where they are near. */
+function extent(columns, bounds = []) {
+  const values = columns.flatMap((column) => [column.reduce((a, b) => Math.min(a, b), Infinity), column.reduce((a, b) => Math.max(a, b), -Infinity)]);
+  const most = Math.max(...values.map(Math.abs), 1e-3);
+  const near = bounds.filter((bound) => Math.abs(bound) <= 3 * most);
+  const [low, high] = [Math.min(0, ...values, ...near), Math.max(0, ...values, ...near)];
+  const room = (high - low) * 0.06;
+  return { y: [low - (low < 0 ? room : 0), high + room], lines: near };
 }
 
-function scale(root, y, values, unit, width) {
-  for (const value of values) {
-    root.append(svg("line", { class: "grid", x1: LEFT, x2: width - RIGHT, y1: y(value), y2: y(value) }),
-      svg("text", { x: LEFT - 8, y: y(value) + 4, "text-anchor": "end" }, `${value.toLocaleString("en-GB", { maximumFractionDigits: 2 })} ${unit}`));
-  }
-}
-
-function speedStrip() {
+function speedChart() {
   if (!path.speed.length) return;
-  const limit = page.limits.speed;
-  const most = Math.max(...path.speed, 1e-3);
-  const high = limit && limit < 3 * most ? Math.max(limit, most) * 1.08 : most * 1.15;
-  strip("Speed of the tool", limit ? [["limit", "--mark"]] : [], 110, (root, x, width, height) => {
-    const y = (value) => 6 + ((height - 26) * (high - value)) / high;
-    scale(root, y, [0, most / 2, most], "m/s", width);
-    if (limit && limit <= high) root.append(svg("line", { class: "bound", x1: LEFT, x2: width - RIGHT, y1: y(limit), y2: y(limit) }));
-    root.append(svg("path", { class: "trace", d: curve(path.speed, x, y, width) }));
-  });
+  const series = [{ name: "set-point", hue: "blue", values: path.speed, unit: "m/s", digits: 3 }];
+  const limit = limits.speed ? [{ name: `limit ${number(limits.speed)} m/s`, hue: "mark" }] : [];
+  chart("Speed of the tool [m/s]", { height: 130, series, keys: limit, ...extent([path.speed], limits.speed ? [limits.speed] : []) });
 }
 
-function axisStrip() {
-  if (!path.axes.length || !page.limits.axes.length) return;
-  const hues = path.axes.map((_, i) => `--h${i % 6}`);
-  const shares = path.axes.map((values, i) => values.map((value) => (100 * value) / (page.limits.axes[i] || 1)));
-  strip("Speed of the axes, per cent of their limits", shares.map((_, i) => [i < 6 ? `A${i + 1}` : `E${i - 5}`, hues[i]]), 150, (root, x, width, height) => {
-    const y = (value) => 6 + ((height - 26) * (110 - value)) / 220;
-    scale(root, y, [-100, 0, 100], "%", width);
-    for (const value of [-100, 100]) root.append(svg("line", { class: "bound", x1: LEFT, x2: width - RIGHT, y1: y(value), y2: y(value) }));
-    shares.forEach((values, i) => {
-      const line = svg("path", { class: "trace", d: curve(values, x, y, width) });
-      line.style.setProperty("--hue", `var(${hues[i]})`);
-      root.append(line);
-    });
+/** What is known of axes: its unit, where its values are, and how far [lowest, highest] they may go. */
+const plusMinus = (values) => values.map((value) => (value ? [-value, value] : null));
+const QUANTITIES = [
+  { title: "Position", unit: (isLinear) => (isLinear ? "mm" : "°"), digits: 1, columns: path.axes, range: limits.axes.map(([low, high]) => (high > low ? [low, high] : null)), share: "±100 % at the software limit switches" },
+  { title: "Speed", unit: (isLinear) => (isLinear ? "mm/s" : "°/s"), digits: 1, columns: path.speeds, range: plusMinus(limits.speeds), share: "per cent of the limits" },
+  { title: "Acceleration", unit: (isLinear) => (isLinear ? "mm/s²" : "°/s²"), digits: 0, columns: path.accelerations, range: plusMinus(limits.accelerations), share: "per cent of the limits" },
+  { title: "Torque", unit: (isLinear) => (isLinear ? "N" : "Nm"), digits: 1, columns: path.torques, range: plusMinus(limits.torques), share: "per cent of the limits" },
+];
+const axisName = (n) => page.arm.axes[n] ?? (n < 6 ? `A${n + 1}` : `E${n - 5}`);
+const axisHue = (n) => ({ hue: `h${n % 6}`, dash: n < 6 ? undefined : [6, 3] });
+const isLinear = (n) => page.arm.links.some((link) => link.joint === n && link.linear);
+
+/** A quantity of one axis, in its own unit. */
+function axisChart({ title, unit, digits, columns, range }, n) {
+  const values = columns[n];
+  if (!values?.length) return;
+  const bounds = range[n] ?? [];
+  const series = [{ name: axisName(n), ...axisHue(n), values, unit: unit(isLinear(n)), digits }];
+  const keys = bounds.length ? [{ name: `limits ${bounds.map(number).join(" and ")}`, hue: "mark" }] : [];
+  chart(`${title} of ${axisName(n)} [${unit(isLinear(n))}]`, { height: 150, series, keys, ...extent([values], bounds) });
+}
+
+/** A quantity of all axes, each as a share of its own limits so that one pair of lines is for all. */
+function sharesChart({ title, unit, digits, columns, range, share }) {
+  const series = columns.flatMap((values, n) => {
+    const [low, high] = range[n] ?? [0, 0];
+    if (!values.length || high <= low) return [];
+    const [middle, half] = [(low + high) / 2, (high - low) / 2];
+    return [{ name: axisName(n), ...axisHue(n), values: values.map((value) => (100 * (value - middle)) / half), told: values, unit: unit(isLinear(n)), digits }];
   });
+  if (!series.length) return;
+  const { y } = extent(series.map((one) => one.values), [-100, 100]);
+  chart(`${title} of the axes, ${share}`, { height: 160, series, lines: [-100, 100], y: [Math.min(y[0], -108), Math.max(y[1], 108)] });
+}
+
+/** The charts of the axis that is chosen, or of all. */
+function axisCharts() {
+  const choice = byId("axis");
+  const others = [charts.length, followers.length];
+  const first = byId("charts").children.length;
+  page.arm.axes.forEach((name, n) => path.axes[n] && choice.append(new Option(name, n)));
+  choice.parentElement.hidden = choice.options.length < 2;
+  choice.addEventListener("change", show);
+  function show() {
+    [charts.length, followers.length] = others;
+    [...byId("charts").children].slice(first).forEach((strip) => strip.remove());
+    for (const quantity of QUANTITIES) {
+      if (choice.value === "all") sharesChart(quantity);
+      else axisChart(quantity, Number(choice.value));
+    }
+  }
+  show();
 }

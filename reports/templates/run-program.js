@@ -1,6 +1,6 @@
 // The source with the lines of the moment, and the list of events.
 
-const mainRun = events.filter((event) => event.kind === "motion_start" && event.at);
+const mainRun = motionStarts.filter((event) => event.at);
 const advanceRun = events.filter((event) => event.at && event.task !== "submit" && event.kind !== "motion_start");
 const timesOf = (list) => list.map((event) => event.t);
 const [mainTimes, advanceTimes] = [timesOf(mainRun), timesOf(advanceRun)];
@@ -30,12 +30,15 @@ function program() {
       return row;
     }));
   }
+  const fileOf = (event) => page.files.findIndex((file) => event?.at.startsWith(`${file.path}:`));
   choice.addEventListener("change", () => open(Number(choice.value)));
   open(0);
   let marked = [];
   followers.push((time, by) => {
     for (const [row, name] of marked) row.classList.remove(name);
     marked = [];
+    const entered = by === "player" ? fileOf(mainRun[placeAt(mainTimes, time)]) : -1;
+    if (entered >= 0 && entered !== Number(choice.value)) open(entered);
     const at = [[mainRun[placeAt(mainTimes, time)]?.at, "main"], [advanceRun[placeAt(advanceTimes, time)]?.at, "ahead"]];
     for (const [place, name] of at) {
       const row = rows.get(place);
@@ -51,41 +54,51 @@ function program() {
 const shown = new Set(["t", "task", "kind", "at"]);
 const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => `${name} ${value}`).join(", ");
 
+const MORE = 500; // rows at a time
+
 function eventTable() {
   const body = byId("events").tBodies[0];
+  const [search, more] = [byId("search"), byId("more")];
   const quiet = new Set(["line", "assign", "branch"]);
-  const listed = events.filter((event) => !quiet.has(event.kind)).slice(0, 5000);
-  const rows = listed.map((event) => {
-    const bad = ["fault", "message", "crash"].includes(event.kind) ? "bad" : "";
-    const row = el("tr", "", el("td", "num", seconds(event.t, 6)), el("td", bad, event.kind.replaceAll("_", " ") + (event.task === "submit" ? " (submit)" : "")),
-      el("td", "", event.at ?? ""), el("td", "", told(event)));
-    row.addEventListener("click", () => pointAt(event.t, "events"));
-    return row;
-  });
-  body.append(...rows);
-  const times = timesOf(listed);
-  const search = byId("search");
-  const filter = () => {
-    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    let count = 0;
-    rows.forEach((row) => {
-      const text = row.textContent.toLowerCase();
-      row.hidden = !words.every((word) => text.includes(word));
-      count += !row.hidden;
+  const listed = events.filter((event) => !quiet.has(event.kind));
+  const kindOf = (event) => event.kind.replaceAll("_", " ") + (event.task === "submit" ? " (submit)" : "");
+  const cells = (event) => [seconds(event.t, 6), kindOf(event), event.at ?? "", told(event)];
+  const texts = listed.map((event) => cells(event).join(" ").toLowerCase());
+  let [found, times, rows, now] = [[], [], [], null];
+
+  function grow() {
+    const added = found.slice(rows.length, rows.length + MORE).map((event) => {
+      const bad = ["fault", "message", "crash"].includes(event.kind) ? "bad" : "";
+      const row = el("tr", "", ...cells(event).map((text, n) => el("td", ["num", bad, "", ""][n], text)));
+      row.addEventListener("click", () => pointAt(event.t, "events"));
+      return row;
     });
-    byId("status").textContent = counted(count, "event");
-  };
-  search.addEventListener("input", filter);
-  filter();
-  let now = null;
-  followers.push((time) => {
+    rows.push(...added);
+    body.append(...added);
+    more.hidden = rows.length === found.length;
+    more.textContent = counted(found.length - rows.length, "more event");
+    mark();
+  }
+  function filter() {
+    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    found = listed.filter((_, n) => words.every((word) => texts[n].includes(word)));
+    times = timesOf(found);
+    byId("status").textContent = counted(found.length, "event");
+    rows = [];
+    body.replaceChildren();
+    grow();
+  }
+  function mark() {
     now?.classList.remove("now");
-    now = rows[placeAt(times, time)] ?? null;
+    now = rows[placeAt(times, moment)] ?? null;
     now?.classList.add("now");
-  });
+  }
+  search.addEventListener("input", filter);
+  more.addEventListener("click", grow);
+  filter();
+  followers.push(mark);
 }
 
 program();
 eventTable();
-followers.push((time) => { byId("moment").textContent = `${seconds(time, 3)} s`; });
 pointAt(0);

@@ -1,142 +1,217 @@
-// The path in space: a plain orthographic view, turned by hand.
+// The arm and the path of its tool in space, with programmed points.
+
+const POINTS = 2_000; // points that are marked, and pieces of the path without WebGL, at most
+const DIRECTIONS = { slanted: [1, -1.2, 0.8], front: [1, 0, 0.001], side: [0, -1, 0.001], above: [0, -0.001, 1] };
+
+/** What draws, and how round it can afford things to be: WebGL, or SVG where the browser has none. */
+function rendererFor(canvas) {
+  const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+  if (!context) return { renderer: new THREE.SVGRenderer(), facets: 6, light: 1 };
+  const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
+  return { renderer, facets: 16, light: Math.PI };
+}
 
 function scene() {
-  const canvas = byId("scene");
-  if (!canvas || !path.t.length) return;
-  const pen = canvas.getContext("2d");
-  const points = page.points.filter((point) => point.place.length === 3);
-  const seen = [...path.tool, ...points.map((point) => point.place)];
-  const ends = [0, 1, 2].map((i) => [Math.min(...seen.map((p) => p[i])), Math.max(...seen.map((p) => p[i]))]);
-  const centre = ends.map(([low, high]) => (low + high) / 2);
-  const reach = Math.max(50, Math.hypot(...ends.map(([low, high]) => high - low)));
-  const view = { turn: -0.9, tilt: 0.5, zoom: 1, x: 0, y: 0 };
-  const blended = path.t.map((time) => blends.some(([from, to]) => from <= time && time <= to));
-  let colours = {};
+  const holder = byId("scene");
+  if (!holder || !path.t.length) return;
+  const overlay = holder.querySelector("canvas");
+  const pen = overlay.getContext("2d");
+  const { renderer, facets, light } = rendererFor(document.createElement("canvas"));
+  holder.prepend(renderer.domElement);
 
-  function project([x, y, z]) {
-    const [dx, dy, dz] = [x - centre[0], y - centre[1], z - centre[2]];
-    const [c, s] = [Math.cos(view.turn), Math.sin(view.turn)];
-    const [across, away] = [c * dx - s * dy, s * dx + c * dy];
-    const scale = (0.8 * view.zoom * Math.min(canvas.clientWidth, canvas.clientHeight)) / reach;
-    return [canvas.clientWidth / 2 + view.x + scale * across,
-      canvas.clientHeight / 2 + view.y - scale * (Math.cos(view.tilt) * dz + Math.sin(view.tilt) * away)];
+  const world = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(30, 1, 10, 1e5);
+  camera.up.set(0, 0, 1);
+  const sun = new THREE.DirectionalLight("#fff", 0.75 * light);
+  camera.add(sun);
+  sun.position.set(-1, 2, 1);
+  world.add(camera, new THREE.AmbientLight("#fff", 0.45 * light));
+
+  const hues = ["blue", "blend", "mark", "ink", "x-axis", "y-axis", "z-axis"];
+  const lines = Object.fromEntries(hues.map((hue) => [hue, new THREE.LineBasicMaterial({ linewidth: 1.5 })]));
+  const arm = armIn(world, facets, { axes: ["x-axis", "y-axis", "z-axis"].map((hue) => lines[hue]), tool: lines.ink });
+  lines.mark.depthFunc = THREE.LessDepth; // measured and planned path are all but one: what was planned is seen
+  arm.follow();
+  const points = page.points.filter((point) => point.place.length === 3).slice(0, POINTS);
+  const toolTimes = page.arm.tools.map((frames) => frames.t);
+  const tool = [0, 1, 2].map((i) => path.tool.map((place) => place[i]));
+  const trace = new THREE.Box3().setFromPoints([...path.tool, ...points.map((point) => point.place)].map((place) => new THREE.Vector3(...place)));
+  if (trace.isEmpty()) trace.expandByPoint(new THREE.Vector3());
+  tracePath();
+  const whole = trace.clone();
+  if (arm.isThere) whole.expandByObject(world);
+  const { grid, step, arrow } = ground();
+
+  /** The tool at a time, in words: where it changes the path begins anew. */
+  function toolAt(time) {
+    return String(page.arm.tools[placeAt(toolTimes, time)]?.tool);
   }
 
-  function line(rows, colour, width, keep = () => true) {
-    pen.strokeStyle = colour;
-    pen.lineWidth = width;
-    pen.beginPath();
-    let down = false;
-    rows.forEach((row, n) => {
-      if (!keep(n)) { down = false; return; }
-      const [x, y] = project(row);
-      if (down) pen.lineTo(x, y);
-      else pen.moveTo(x, y);
-      down = true;
+  function tracePath() {
+    const stride = renderer.isWebGLRenderer ? 1 : Math.ceil(path.tool.length / POINTS);
+    const add = (rows, hue) => rows.length > 1 && world.add(lineOf(rows, lines[hue]));
+    let piece = [];
+    let wasBlending = false;
+    let tool = toolAt(0);
+    path.tool.forEach((place, n) => {
+      if (n % stride && n < path.tool.length - 1) return;
+      if (toolAt(path.t[n]) !== tool) {
+        add(piece, wasBlending ? "blend" : "blue");
+        [piece, tool] = [[], toolAt(path.t[n])];
+      }
+      piece.push(place);
+      const is = isBlending(path.t[n]);
+      if (is === wasBlending && n < path.tool.length - 1) return;
+      add(piece, wasBlending ? "blend" : "blue");
+      piece = [place];
+      wasBlending = is;
     });
+    add(path.measured.filter((_, n) => n % stride === 0), "mark");
+  }
+
+  /** A grid on the ground, as wide as what there is, with lines at a round distance. */
+  function ground() {
+    const size = whole.getSize(new THREE.Vector3());
+    const distance = 10 ** Math.round(Math.log10(Math.max(size.x, size.y, 10) / 6));
+    const count = 2 * Math.ceil(Math.max(size.x, size.y) / (2 * distance) + 1);
+    const tiles = new THREE.GridHelper(count * distance, count);
+    tiles.rotation.x = Math.PI / 2;
+    const middle = whole.getCenter(new THREE.Vector3());
+    tiles.position.set(Math.round(middle.x / distance) * distance, Math.round(middle.y / distance) * distance, Math.min(0, trace.min.z));
+    const length = Math.max(distance, size.length() / 6);
+    const origin = triad(length, ["x-axis", "y-axis", "z-axis"].map((hue) => lines[hue]));
+    world.add(tiles, origin);
+    return { grid: tiles, step: distance, arrow: length };
+  }
+
+  // ------------------------------------------------------------------ looking
+
+  const controls = new THREE.OrbitControls(camera, holder);
+  holder.style.touchAction = "pan-y"; // one finger upwards moves the page
+  let shown = arm.isThere ? whole : trace;
+
+  function look(direction = null) {
+    const ball = shown.getBoundingSphere(new THREE.Sphere());
+    const narrow = Math.min(1, camera.aspect);
+    const distance = (Math.max(ball.radius, 20) * 1.02) / Math.sin((narrow * camera.fov * Math.PI) / 360);
+    const way = direction ? new THREE.Vector3(...direction) : camera.position.clone().sub(controls.target);
+    controls.target.copy(ball.center);
+    camera.position.copy(ball.center).addScaledVector(way.normalize(), distance);
+    controls.update();
+    soon();
+  }
+
+  function resize() {
+    const [width, height] = [holder.clientWidth, holder.clientHeight];
+    renderer.setPixelRatio(devicePixelRatio);
+    renderer.setSize(width, height);
+    overlay.width = width * devicePixelRatio;
+    overlay.height = height * devicePixelRatio;
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+  }
+
+  // ------------------------------------------------------------------ drawing
+
+  function recolour() {
+    for (const [hue, material] of Object.entries(lines)) material.color.set(colourOf(hue));
+    world.remove(grid);
+    grid.material.vertexColors = false;
+    grid.material.color.set(colourOf("line"));
+    world.add(grid);
+    soon();
+  }
+
+  const seenAt = (place) => {
+    const { x, y, z } = new THREE.Vector3(...place).project(camera);
+    return z < 1 ? [((1 + x) * holder.clientWidth) / 2, ((1 - y) * holder.clientHeight) / 2] : null;
+  };
+
+  function dot(at, radius, fill, ring) {
+    pen.beginPath();
+    pen.arc(...at, radius, 0, 2 * Math.PI);
+    pen.fillStyle = fill;
+    pen.fill();
+    pen.strokeStyle = ring;
     pen.stroke();
   }
 
-  function ground() {
-    const step = 10 ** Math.round(Math.log10(reach / 6));
-    const low = ends[2][0];
-    for (const [i, j] of [[0, 1], [1, 0]]) {
-      const from = Math.floor(ends[i][0] / step) - 1;
-      const to = Math.ceil(ends[i][1] / step) + 1;
-      const across = [Math.floor(ends[j][0] / step - 1) * step, Math.ceil(ends[j][1] / step + 1) * step];
-      if (to - from > 60) continue;
-      for (let n = from; n <= to; n += 1) {
-        const rows = across.map((value) => { const row = [0, 0, low]; row[i] = n * step; row[j] = value; return row; });
-        line(rows, colours.faint, 1);
+  /** Marks of points, and as many of their names as do not lie upon one another. */
+  function marks() {
+    const [ink, soft, paper, mark] = ["ink", "soft", "panel", "mark"].map(colourOf);
+    pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    pen.clearRect(0, 0, holder.clientWidth, holder.clientHeight);
+    pen.font = "11.5px system-ui, sans-serif";
+    pen.lineWidth = 1.2;
+    const taken = [];
+    const name = (text, [x, y], colour) => {
+      const box = [x, y - 10, x + pen.measureText(text).width, y + 3];
+      const isFree = taken.every(([left, top, right, bottom]) => box[2] < left || box[0] > right || box[3] < top || box[1] > bottom);
+      if (!isFree || box[0] < 0 || box[2] > holder.clientWidth || box[1] < 0) return;
+      taken.push(box);
+      pen.lineWidth = 3;
+      pen.strokeStyle = paper;
+      pen.strokeText(text, x, y);
+      pen.lineWidth = 1.2;
+      pen.fillStyle = colour;
+      pen.fillText(text, x, y);
+    };
+    const current = motionStarts[placeAt(startTimes, moment)]?.motion;
+    const seen = points.map((point) => [point, seenAt(point.place)]).filter(([, at]) => at);
+    for (const [point, at] of seen) dot(at, 3, point.blended ? paper : ink, ink);
+    const place = arm.tip() ?? (tool[0].length ? tool.map(atMoment()) : null);
+    const now = place && seenAt(place);
+    byId("place").textContent = place ? `tool at X ${place[0].toFixed(1)} Y ${place[1].toFixed(1)} Z ${place[2].toFixed(1)} mm` : "";
+    if (now) dot(now, 4.5, mark, paper);
+    "XYZ".split("").forEach((text, i) => {
+      const tip = seenAt([0, 1, 2].map((j) => (i === j ? arrow : 0)));
+      if (tip) name(text, [tip[0] + 3, tip[1]], colourOf(`${text.toLowerCase()}-axis`));
+    });
+    for (const isNow of [true, false]) {
+      for (const [point, [x, y]] of seen) {
+        if ((point.motion === current) === isNow) name(`${point.motion} ${point.kind}`, [x + 7, y - 5], isNow ? ink : soft);
       }
     }
-    const size = reach / 8;
-    const origin = [ends[0][0], ends[1][0], low];
-    "XYZ".split("").forEach((name, i) => {
-      const tip = origin.map((value, j) => value + (i === j ? size : 0));
-      line([origin, tip], colours.dim, 1.5);
-      pen.fillStyle = colours.soft;
-      pen.fillText(name, ...project(tip).map((value) => value + 3));
-    });
-    pen.fillStyle = colours.dim;
-    pen.fillText(`grid ${number(step)} mm`, 10, canvas.clientHeight - 10);
+    name(`grid ${number(step)} mm`, [10, holder.clientHeight - 10], soft);
   }
 
   function draw() {
-    const style = getComputedStyle(document.documentElement);
-    colours = Object.fromEntries(["blue", "mark", "faint", "dim", "soft", "ink", "page"].map((name) => [name, style.getPropertyValue(`--${name}`)]));
-    const dense = window.devicePixelRatio || 1;
-    canvas.width = canvas.clientWidth * dense;
-    canvas.height = canvas.clientHeight * dense;
-    pen.setTransform(dense, 0, 0, dense, 0, 0);
-    pen.font = "11.5px sans-serif";
-    pen.lineJoin = "round";
-    ground();
-    if (path.measured.length) line(path.measured, colours.mark, 1);
-    line(path.tool, colours.blue, 1.5);
-    line(path.tool, colours.blue, 4, (n) => blended[n]);
-    const labels = [];
-    for (const point of points) {
-      const [x, y] = project(point.place);
-      pen.beginPath();
-      pen.arc(x, y, 3.5, 0, 2 * Math.PI);
-      pen.fillStyle = point.blended ? colours.page : colours.ink;
-      pen.strokeStyle = colours.ink;
-      pen.lineWidth = 1.2;
-      pen.fill();
-      pen.stroke();
-      // A name that would lie upon another one is left out.
-      if (!labels.some(([a, b]) => Math.abs(a - x) < 44 && Math.abs(b - y) < 12)) {
-        labels.push([x, y]);
-        pen.fillStyle = colours.soft;
-        pen.fillText(`${point.motion} ${point.kind}`, x + 7, y - 5);
-      }
-    }
-    const now = path.tool[Math.max(0, placeAt(path.t, moment))];
-    const [x, y] = project(now);
-    pen.beginPath();
-    pen.arc(x, y, 5.5, 0, 2 * Math.PI);
-    pen.fillStyle = colours.mark;
-    pen.fill();
+    lines.mark.depthFunc = THREE.LessDepth; // measured and planned path are all but one: what was planned is seen
+  arm.follow();
+    renderer.render(world, camera);
+    marks();
   }
 
-  let waiting = false;
-  const soon = () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => { waiting = false; draw(); });
-  };
-  const look = (turn, tilt) => Object.assign(view, { turn, tilt, x: 0, y: 0, zoom: 1 }) && soon();
-  canvas.addEventListener("pointermove", (event) => {
-    if (!event.buttons) return;
-    if (event.shiftKey || event.buttons !== 1) {
-      view.x += event.movementX;
-      view.y += event.movementY;
-    } else {
-      view.turn += event.movementX / 150;
-      view.tilt = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, view.tilt + event.movementY / 150));
-    }
-    soon();
-  });
-  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    view.zoom = Math.min(200, Math.max(0.2, view.zoom * 1.0015 ** -event.deltaY));
-    soon();
-  }, { passive: false });
-  canvas.addEventListener("keydown", (event) => {
+  const soon = atNextFrame(draw);
+  controls.addEventListener("change", soon);
+  holder.addEventListener("keydown", (event) => {
     const [turn, tilt] = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] }[event.key] ?? [0, 0];
-    if (!turn && !tilt) return;
+    const nearer = { "+": 0.8, "-": 1.25 }[event.key];
+    if (!turn && !tilt && !nearer) return;
     event.preventDefault();
-    view.turn += turn;
-    view.tilt += tilt;
+    const way = camera.position.clone().sub(controls.target);
+    const height = Math.asin(way.z / way.length()) + tilt;
+    const length = way.length() * (nearer ?? 1);
+    way.applyAxisAngle(camera.up, turn);
+    way.z = 0;
+    way.setLength(length * Math.cos(Math.min(1.55, Math.max(-1.55, height))));
+    way.z = length * Math.sin(Math.min(1.55, Math.max(-1.55, height)));
+    camera.position.copy(controls.target).add(way);
+    controls.update();
     soon();
   });
-  byId("front").addEventListener("click", () => look(-Math.PI / 2, 0));
-  byId("above").addEventListener("click", () => look(-Math.PI / 2, Math.PI / 2));
-  byId("slanted").addEventListener("click", () => look(-0.9, 0.5));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", soon);
+  for (const [id, direction] of Object.entries(DIRECTIONS)) byId(id).addEventListener("click", () => look(direction));
+  const parts = { "all-of-it": whole, "path-only": trace };
+  for (const [id, box] of Object.entries(parts)) {
+    byId(id).addEventListener("click", () => {
+      shown = box;
+      look();
+    });
+  }
+  whenRecoloured(recolour);
   followers.push(soon);
-  whenResized(canvas, draw);
+  whenResized(holder, () => { resize(); soon(); });
+  recolour();
+  look(DIRECTIONS.slanted);
 }
 scene();

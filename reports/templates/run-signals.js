@@ -2,84 +2,100 @@
 // program's lines beside the time axis.
 
 const ROW = 20;
+const MARKED = new Set(["trigger", "interrupt_enter", "interrupt_leave", "brake", "resume", "message", "fault", "collision"]);
+const SWITCHING = new Set(["in", "out", "anout"]);
+
+/** Steps from event to event: `level` of each in pixels, from the first to the end of the run. */
+function steps(u, x, list, level) {
+  u.ctx.beginPath();
+  list.forEach((event, n) => {
+    const y = level(event);
+    u.ctx[n ? "lineTo" : "moveTo"](x(event.t), y);
+    u.ctx.lineTo(x(list[n + 1]?.t ?? end), y);
+  });
+  u.ctx.stroke();
+}
 
 /** The lines that moved the arm, and those that were executed, as steps over time. */
-function lineStrip() {
-  const motions = events.filter((event) => event.kind === "motion_start" && event.at);
+function lineChart() {
+  const motions = motionStarts.filter((event) => event.at);
   const ahead = events.filter((event) => ["line", "motion_planned"].includes(event.kind) && event.at && event.task !== "submit");
   if (!motions.length && !ahead.length) return;
-  const numbers = [...motions, ...ahead].map((event) => Number(event.at.split(":").at(-1)));
-  const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
-  strip("Program lines", [["main run", "--blue"], ["advance run", "--mark"]], 130, (root, x, width, height) => {
-    const y = (line) => 8 + ((height - 30) * (line - low)) / (high - low || 1);
-    for (const line of [...new Set([low, Math.round((low + high) / 2), high])]) {
-      root.append(svg("line", { class: "grid", x1: LEFT, x2: width - RIGHT, y1: y(line), y2: y(line) }),
-        svg("text", { x: LEFT - 8, y: y(line) + 4, "text-anchor": "end" }, `line ${line}`));
-    }
-    for (const [list, hue] of [[ahead, "--mark"], [motions, "--blue"]]) {
-      let d = "";
-      for (const event of list) {
-        const at = y(Number(event.at.split(":").at(-1)));
-        d += d ? `H${x(event.t).toFixed(1)}V${at.toFixed(1)}` : `M${x(event.t).toFixed(1)},${at.toFixed(1)}`;
+  const lineOfEvent = (event) => Number(event.at.split(":").at(-1));
+  const numbers = [...motions, ...ahead].map(lineOfEvent);
+  const [low, high] = numbers.reduce(([a, b], line) => [Math.min(a, line), Math.max(b, line)], [Infinity, -Infinity]);
+  chart("Program lines", {
+    height: 140,
+    y: [low - (high - low) * 0.05 - 0.5, high + (high - low) * 0.05 + 0.5],
+    isDown: true,
+    ticks: [...new Set([low, Math.round((low + high) / 2), high])].map((line) => [line, `line ${line}`]),
+    keys: [{ name: "main run", hue: "blue" }, { name: "advance run", hue: "mark" }],
+    paint: (u, x) => {
+      for (const [list, hue] of [[ahead, "mark"], [motions, "blue"]]) {
+        u.ctx.strokeStyle = colourOf(hue);
+        steps(u, x, list, (event) => u.valToPos(lineOfEvent(event), "y", true));
       }
-      if (!d) continue;
-      const line = svg("path", { class: "trace", d: `${d}H${x(end).toFixed(1)}` });
-      line.style.setProperty("--hue", `var(${hue})`);
-      root.append(line);
-    }
+    },
   });
 }
 
 const isOn = (value) => value === true || (typeof value === "number" && value !== 0);
 const signalName = ({ signal, name, number: index, kind }) => (signal && index !== undefined ? `${signal}[${index}]` : String(signal ?? name ?? kind));
-const switching = new Set(["in", "out", "anout"]);
 
-function signalStrip() {
+function signalChart() {
   const rows = new Map();
   for (const event of events) {
-    if (!switching.has(event.kind)) continue;
+    if (!SWITCHING.has(event.kind)) continue;
     const name = signalName(event);
     if (!rows.has(name)) rows.set(name, []);
     rows.get(name).push(event);
   }
-  const marks = events.filter((event) => ["trigger", "interrupt_enter", "interrupt_leave", "brake", "resume", "message", "fault", "advance_stop"].includes(event.kind));
+  const marks = events.filter((event) => MARKED.has(event.kind));
   if (!rows.size && !marks.length) return;
   const names = [...rows.keys()].slice(0, 40);
-  strip("Signals", [["trigger, interrupt, brake, message", "--mark"]], ROW * (names.length + 1) + 24, (root, x, width, height) => {
-    for (const mark of marks) {
-      if (mark.kind === "advance_stop" || mark.t < span.from || mark.t > span.to) continue;
-      const line = svg("line", { class: "marker", x1: x(mark.t), x2: x(mark.t), y1: 2, y2: height - 16 });
-      line.append(svg("title", {}, `${mark.kind} at ${seconds(mark.t, 6)} s`));
-      root.append(line);
-    }
-    let free = -Infinity;
-    for (const mark of marks) {
-      if (mark.kind === "advance_stop" || mark.t < span.from || mark.t > span.to || x(mark.t) < free) continue;
-      const label = mark.kind.replace("_", " ");
-      root.append(svg("text", { class: "marks", x: x(mark.t) + 3, y: 12 }, label));
-      free = x(mark.t) + 7 * label.length + 8;
-    }
-    names.forEach((name, row) => {
-      const [top, base] = [ROW * (row + 1) + 3, ROW * (row + 2) - 2];
-      root.append(svg("text", { x: LEFT - 8, y: base - 3, "text-anchor": "end" }, name));
-      const list = rows.get(name);
-      const isAnalog = list.some((event) => typeof event.value === "number" && ![0, 1].includes(event.value));
-      let d = `M${x(span.from).toFixed(1)},${base}`;
-      list.forEach((event, n) => {
-        const y = isOn(event.value) ? top : base;
-        d += `H${x(event.t).toFixed(1)}V${y}`;
-        if (isOn(event.value)) {
-          const to = x(list[n + 1]?.t ?? end);
-          root.append(svg("rect", { class: "high", x: x(event.t), y: top, width: Math.max(0.5, to - x(event.t)), height: base - top }));
-        }
-        if (isAnalog && event.t >= span.from && event.t <= span.to) root.append(svg("text", { x: x(event.t) + 3, y: base - 3 }, String(event.value)));
+  chart("Signals", {
+    height: ROW * (names.length + 1) + 30,
+    y: [-names.length, 1],
+    ticks: names.map((name, row) => [-row - 0.5, name]),
+    keys: marks.length ? [{ name: "trigger, interrupt, brake, message", hue: "mark" }] : [],
+    paint: (u, x) => {
+      const dense = devicePixelRatio;
+      u.ctx.textBaseline = "middle";
+      names.forEach((name, row) => {
+        const list = rows.get(name);
+        const [top, base] = [0.2, 0.9].map((share) => u.valToPos(-row - share, "y", true));
+        u.ctx.fillStyle = colourOf("blue-bar");
+        list.forEach((event, n) => isOn(event.value) && u.ctx.fillRect(x(event.t), top, Math.max(1, x(list[n + 1]?.t ?? end) - x(event.t)), base - top));
+        u.ctx.strokeStyle = u.ctx.fillStyle = colourOf("ink");
+        const before = isOn(list[0].value) ? { t: 0, value: false } : { t: 0, value: list[0].value };
+        steps(u, x, [before, ...list], (event) => (isOn(event.value) ? top : base));
+        if (list.some((event) => typeof event.value === "number" && ![0, 1].includes(event.value))) inTurn(u, x, list, (event) => String(event.value), (top + base) / 2);
       });
-      root.append(svg("path", { class: "level", d: `${d}H${x(span.to).toFixed(1)}` }));
-    });
+      u.ctx.strokeStyle = u.ctx.fillStyle = colourOf("mark");
+      u.ctx.lineWidth = 1.5 * dense;
+      for (const mark of marks) u.ctx.fillRect(x(mark.t), u.bbox.top, 1.5 * dense, u.bbox.height);
+      inTurn(u, x, marks, (mark) => mark.kind.replace("_", " "), u.valToPos(0.5, "y", true));
+    },
   });
 }
 
-lineStrip();
-signalStrip();
-speedStrip();
-axisStrip();
+/** Texts beside their events, as many as do not lie upon one another. */
+function inTurn(u, x, list, word, y) {
+  const gap = 4 * devicePixelRatio;
+  let free = u.bbox.left;
+  for (const event of list) {
+    const width = u.ctx.measureText(word(event)).width;
+    const isLast = x(event.t) + gap + width > u.bbox.left + u.bbox.width;
+    const at = isLast ? x(event.t) - gap - width : x(event.t) + gap;
+    if (at < free || event.t < span.from || event.t > span.to) continue;
+    u.ctx.fillText(word(event), at, y);
+    free = at + width + gap;
+  }
+}
+
+lineChart();
+signalChart();
+speedChart();
+axisCharts();
+byId("charts").hidden = !charts.length;
+byId("no-charts").hidden = charts.length > 0;

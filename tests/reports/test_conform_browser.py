@@ -1,6 +1,5 @@
-"""The pages of a run, of the judge and of a nightly run in a real browser."""
+"""The pages of the conformance cases and of a nightly run in a real browser."""
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from selenium.webdriver.common.by import By
 
 from reports.conform_page import write_conformance_page
 from reports.nightly_page import write_nightly_page
-from reports.run_page import write_run_page
 
 pytestmark = pytest.mark.browser
 
@@ -36,30 +34,6 @@ def _events() -> list[Json]:
         {"t": time, "task": "robot", "kind": kind, "at": f"a.src:{2 + time // 450_000}", **fields}
         for time, kind, fields in told
     ]
-
-
-def run_record() -> Json:
-    """A run of a second, as `interp.run_record` tells it."""
-    times = list(range(0, 912_000, 12_000))
-    tool = [[500 + n, 10 * math.sin(n / 9), 600.0] for n in range(len(times))]
-    return {
-        "main": "a.src",
-        "executor": "tree",
-        "robot": "kinematic",
-        "outcome": {"kind": "end", "time": 900_000},
-        "events": _events(),
-        "files": [{"path": "a.src", "text": f"DEF A()\nLIN P1 C_DIS\nLIN P2 ; {HOSTILE}\nEND\n"}],
-        "path": {
-            "t": times,
-            "tool": tool,
-            "speed": [0.2] * len(times),
-            "axis_speeds": [[10.0] * len(times)] * 6,
-        },
-        "limits": {"axis_speeds": [100.0] * 6, "speed": 2.0},
-        "points": [
-            {"motion": 1, "kind": "LIN", "place": tool[30], "blended": True, "at": "a.src:2"}
-        ],
-    }
 
 
 def conform_record() -> Json:
@@ -121,22 +95,6 @@ def _is_sound(browser: webdriver.Chrome) -> bool:
     """Nothing foreign ran, and the browser had nothing to complain about."""
     log = browser.get_log("browser")
     return browser.execute_script("return window.hacked") is None and not log
-
-
-def test_the_page_of_a_run_follows_the_pointer(
-    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
-) -> None:
-    """A click on an event marks its moment in the program; all charts are drawn."""
-    opened(write_run_page(run_record(), tmp_path / "run.html"), "")
-    charts = browser.find_elements(By.CSS_SELECTOR, "#charts .strip h3")
-    titles = " ".join(chart.text for chart in charts)
-    for title in ("Program lines", "Signals", "Speed of the tool", "Speed of the axes"):
-        assert title in titles
-    rows = browser.find_elements(By.CSS_SELECTOR, "#events tbody tr")
-    browser.execute_script("arguments[0].click()", rows[5])
-    assert "0.450 s" == browser.find_element(By.ID, "moment").text
-    assert "3" == browser.find_element(By.CSS_SELECTOR, "#program .main .no").text
-    assert _is_sound(browser)
 
 
 def test_the_judge_shows_what_was_seen_beside_what_was_expected(

@@ -1,0 +1,80 @@
+// The arm as three.js draws it: links along their chain, the tool, and the frames in force.
+
+/** A frame of sixteen numbers, row by row. */
+const frameOf = (numbers) => new THREE.Matrix4().set(...numbers);
+
+/** A group that stands still in a frame. */
+function fixed(numbers) {
+  const group = new THREE.Group();
+  group.matrixAutoUpdate = false;
+  if (numbers) group.matrix.copy(frameOf(numbers));
+  return group;
+}
+
+function lineOf(points, material) {
+  return new THREE.Line(new THREE.BufferGeometry().setFromPoints(points.map((point) => new THREE.Vector3(...point))), material);
+}
+
+/** The three axes of a frame, in the colours that everybody gives them. */
+function triad(size, colours) {
+  const group = fixed();
+  colours.forEach((material, i) => group.add(lineOf([[0, 0, 0], [0, 0, 0].map((_, j) => (i === j ? size : 0))], material)));
+  return group;
+}
+
+/** A rod, with round ends where it `moves`; `facets` is how round. */
+function rod({ start, end: tip, radius, colour }, facets, moves) {
+  const [from, to] = [new THREE.Vector3(...start), new THREE.Vector3(...tip)];
+  const length = from.distanceTo(to);
+  let shape = new THREE.CylinderGeometry(radius, radius, length, 2 * facets);
+  if (length < 1) shape = new THREE.SphereGeometry(radius, 2 * facets, facets);
+  else if (moves) shape = new THREE.CapsuleGeometry(radius, length, facets >> 1, 2 * facets);
+  const mesh = new THREE.Mesh(shape, new THREE.MeshLambertMaterial({ color: new THREE.Color().setRGB(...colour.slice(0, 3), "srgb") }));
+  mesh.position.copy(from).lerp(to, 0.5);
+  if (length >= 1) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), to.sub(from).normalize());
+  return mesh;
+}
+
+/**
+ * The arm in `scene`: `follow()` puts it where it is at the moment; `tip()` is then where its tool is, in mm
+ * in $WORLD, null where there is no arm.
+ */
+function armIn(scene, facets, lines) {
+  const { links, hand, flange, tools } = page.arm;
+  const joints = links.map(() => new THREE.Group());
+  links.forEach((link, n) => {
+    const frame = fixed(link.frame);
+    frame.add(joints[n]);
+    joints[n].add(...link.shapes.map((shape) => rod(shape, facets, link.joint >= 0)));
+    (joints[link.parent] ?? scene).add(frame);
+  });
+  const toolTimes = tools.map((frames) => frames.t);
+  const [tool, base] = [triad(80, lines.axes), triad(120, lines.axes)];
+  const wrist = fixed(flange);
+  const stem = lineOf([[0, 0, 0], [0, 0, 0]], lines.tool);
+  wrist.add(stem, tool);
+  joints[hand]?.add(wrist);
+  if (tools.length) scene.add(base);
+  const axes = links.map((link) => new THREE.Vector3(...link.axis));
+
+  function follow() {
+    const at = atMoment();
+    links.forEach((link, n) => {
+      if (!path.axes[link.joint]) return;
+      const value = at(path.axes[link.joint]);
+      if (link.linear) joints[n].position.copy(axes[n]).multiplyScalar(value);
+      else joints[n].quaternion.setFromAxisAngle(axes[n], (value * Math.PI) / 180);
+    });
+    const frames = tools[Math.max(0, placeAt(toolTimes, moment))];
+    if (!frames) return;
+    tool.matrix.copy(frameOf(frames.tool));
+    base.matrix.copy(frameOf(frames.base));
+    stem.geometry.setFromPoints([new THREE.Vector3(), new THREE.Vector3().setFromMatrixPosition(tool.matrix)]);
+  }
+  function tip() {
+    if (!joints[hand] || !tools.length) return null;
+    tool.updateWorldMatrix(true, false);
+    return new THREE.Vector3().setFromMatrixPosition(tool.matrixWorld).toArray();
+  }
+  return { follow, tip, isThere: links.length > 0 };
+}

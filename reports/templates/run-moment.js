@@ -1,0 +1,72 @@
+// The moment that all parts of the page show, and what of the run stands at it.
+
+const byId = (id) => document.getElementById(id);
+const { events, path, limits } = page;
+const end = Math.max(page.end, path.t.at(-1) ?? 0, events.at(-1)?.t ?? 0, 1);
+const seconds = (time, digits = 3) => (time / 1e6).toFixed(digits);
+
+const followers = [];
+let moment = 0;
+/** All parts show the moment `time`; `by` says who asked, so that it need not follow itself. */
+function pointAt(time, by = null) {
+  moment = Math.min(end, Math.max(0, Math.round(time)));
+  for (const follow of followers) follow(moment, by);
+}
+
+/** The last place in a rising list of times that is not after `time`; -1 before the first. */
+function placeAt(times, time) {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+/** A function of columns of the path: their values at the moment, between two samples in proportion. */
+function atMoment() {
+  const last = path.t.length - 1;
+  const place = Math.min(Math.max(0, placeAt(path.t, moment)), last);
+  const next = Math.min(place + 1, last);
+  const share = next > place ? (moment - path.t[place]) / (path.t[next] - path.t[place]) : 0;
+  return (values) => values[place] + (values[next] - values[place]) * share;
+}
+
+/** What calls `act` once at the next frame, however often it is called before. */
+function atNextFrame(act) {
+  let isWaiting = false;
+  return () => {
+    if (isWaiting) return;
+    isWaiting = true;
+    requestAnimationFrame(() => { isWaiting = false; act(); });
+  };
+}
+
+/** Calls `draw` now and whenever the width of the holder changes. */
+function whenResized(holder, draw) {
+  let drawn = holder.clientWidth;
+  draw();
+  new ResizeObserver(() => {
+    if (holder.clientWidth === drawn) return;
+    drawn = holder.clientWidth;
+    draw();
+  }).observe(holder);
+}
+
+/** Calls `draw` whenever light turns to dark or back. */
+const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+/** A colour of the style sheet. */
+const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+const motionStarts = events.filter((event) => event.kind === "motion_start");
+const startTimes = motionStarts.map((event) => event.t);
+
+/** The spans in which two motions blend. */
+const blends = [];
+for (const event of events) {
+  if (event.kind === "blend_start") blends.push([event.t, end]);
+  else if (event.kind === "blend_end" && blends.length) blends.at(-1)[1] = event.t;
+}
+const blendStarts = blends.map(([from]) => from);
+const isBlending = (time) => time <= (blends[placeAt(blendStarts, time)]?.[1] ?? -1);
