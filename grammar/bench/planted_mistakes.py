@@ -9,6 +9,7 @@ out is no mistake [SCO-13].
 
 from __future__ import annotations
 
+import itertools
 import random
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -38,7 +39,11 @@ KINDS = (
     "token doubled",
     "argument added",
     "literal of another type",
+    "words swapped",
+    "number out of range",
+    "end of a block dropped",
 )
+_CLOSERS = frozenset("ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH ENDSPLINE END ENDFCT".split())
 # A line is drawn again so often until a kind of mistake can be made in it.
 _TRIES = 200
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
@@ -74,6 +79,13 @@ def damaged(
             return token.start, token.end, "" if kind == "token dropped" else f"{token.text} " * 2
         case "argument added":
             return _more_arguments(tokens, chance)
+        case "words swapped":
+            return _swapped(tokens, chance)
+        case "number out of range":
+            return _too_large(tokens, chance)
+        case "end of a block dropped":
+            is_closer = tokens[0].text.upper() in _CLOSERS
+            return (tokens[0].start, tokens[-1].end, "") if is_closer else None
         case _:
             literals = [t for t in tokens if _type_of(t)]
             if not literals:
@@ -120,6 +132,33 @@ def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> tuple[int
         return None
     at, is_empty = chance.choice(ends)
     return at, at, "0" if is_empty else ", 0"
+
+
+def _swapped(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
+    """Two words or signs beside one another change places; of operands, the operator stays."""
+    places = [
+        (left, right)
+        for left, right in itertools.pairwise(tokens)
+        if left.text.upper() != right.text.upper()
+    ]
+    if not places:
+        return None
+    left, right = chance.choice(places)
+    return left.start, right.end, f"{right.text} {left.text}"
+
+
+def _too_large(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
+    """An index, or the number of an interrupt, far beyond all limits."""
+    numbers = [
+        token
+        for before, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
+        if token.text.isdecimal()
+        and (before.text == "[" or after.text == "]" or before.text.upper() == "DECL")
+    ]
+    if not numbers or any(token.text == "{" for token in tokens):
+        return None
+    token = chance.choice(numbers)
+    return token.start, token.end, chance.choice(("99999", "0"))
 
 
 # ------------------------------------------------------------------------------ projects
@@ -235,6 +274,7 @@ def _trial(
         text = source.text[:start] + new + source.text[end:]
         found = project.with_text(path, text)
         line = source.text.count("\n", 0, start) + 1
+        likely = {line} if new else {line, _next_code(source, line)}
         return {
             "kind": kind,
             "path": path,
@@ -242,9 +282,15 @@ def _trial(
             "was": source.text[start:end],
             "is": new,
             "findings": len(found),
-            "in_place": any(one.path == path and one.region.line == line for one in found),
+            "in_place": any(one.path == path and one.region.line in likely for one in found),
         }
     return None
+
+
+def _next_code(source: Source, line: int) -> int:
+    """The next line that is neither blank nor a comment: what is missing is missed there."""
+    later = range(line + 1, len(source.lines) + 1)
+    return next((n for n in later if source.line(n).split(";")[0].strip()), line)
 
 
 def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

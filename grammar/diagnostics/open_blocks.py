@@ -11,10 +11,10 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from grammar.blocks import BLOCKS, CLOSERS
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.syntax.source import Source
 
-__all__ = ["OpenBlock", "innermost", "lead", "open_blocks"]
+__all__ = ["OpenBlock", "innermost", "lead", "most_likely", "open_blocks"]
 
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 
@@ -60,6 +60,54 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | N
                 opened[block.word] -= 1
                 block = block.outer
     return found | {number: block for number in wanted if number > len(source.lines)}
+
+
+def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, int]:
+    """The block that was meant to be closed before line ``end``, and the line before which.
+
+    Words alone tell that a block like this one is open. Where closers are indented as what they
+    close, that tells which one, and the lines in it are indented more than the block itself.
+    """
+    inside = source.lines[block.line - 1 : end - 1]
+    opened: list[tuple[str, int]] = []
+    unclosed: list[tuple[str, int]] = []
+    for number, text in enumerate(inside, block.line):
+        word = lead(text)
+        if word in BLOCKS:
+            opened.append((word, number))
+        elif word in CLOSERS:
+            fit = [one for one in opened if one[0] in CLOSERS[word]]
+            depth = _indent(source, number)
+            alike = [one for one in fit if _indent(source, one[1]) == depth] or fit
+            meant = alike[-1] if alike else None
+            while meant is not None and opened.pop() != meant:
+                pass
+            unclosed += [one for one in fit if meant is not None and one[1] > meant[1]]
+    unclosed += [one for one in opened if one[0] == block.word]
+    lines = [line for word, line in unclosed if word == block.word]
+    if len(lines) == 1 and lines[0] != block.line:
+        block = OpenBlock(block.word, lines[0], block)
+    return block, _end_by_indent(source, block, end)
+
+
+def _end_by_indent(source: Source, block: OpenBlock, end: int) -> int:
+    """The first line in a block that is indented as the block is, if those before are more."""
+    indent = _indent(source, block.line)
+    is_indented = False
+    for number in range(block.line + 1, end):
+        text = source.line(number)
+        if not text.strip() or text.lstrip().startswith(";"):
+            continue
+        if _indent(source, number) > indent:
+            is_indented = True
+        elif BRANCHES.get(lead(text)) != block.word:
+            return number if is_indented else end
+    return end
+
+
+def _indent(source: Source, line: int) -> int:
+    text = source.line(line).expandtabs(4)
+    return len(text) - len(text.lstrip())
 
 
 def innermost(block: OpenBlock | None, words: Iterable[str]) -> OpenBlock | None:

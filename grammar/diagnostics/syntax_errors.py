@@ -16,7 +16,7 @@ from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
-from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
+from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
@@ -146,13 +146,20 @@ def _outermost(block: OpenBlock) -> OpenBlock:
 
 
 def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
-    place = f"{block.word} on line {block.line}"
-    slug = "endloop-missing" if block.word == "LOOP" else "syntax"
+    end, region = site.failure.line, None
+    before = site.text.split()[0] if site.text else "the end"
+    if block.word not in ("DEF", "DEFFCT", "DEFDAT"):
+        block, line = most_likely(site.source, block, end)
+        if line != end:
+            shown = site.source.line(line)
+            begin, before = len(shown) - len(shown.lstrip()), f"line {line}"
+            region = Region(line, 1 + begin, line, 1 + len(shown.rstrip()))
     return _Mistake(
-        f"{place} is not closed",
-        Fix(f"write {block.closer} before {site.text.split()[0] if site.text else 'the end'}"),
+        f"{block.word} on line {block.line} is not closed",
+        Fix(f"write {block.closer} before {before}"),
         reason=f"{block.closer} is missing",
-        slug=slug,
+        slug="endloop-missing" if block.word == "LOOP" else "syntax",
+        region=region,
     )
 
 

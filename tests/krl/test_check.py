@@ -240,7 +240,9 @@ def test_as_a_process() -> None:
 
 BACKUP = {
     "KRC/R1/Program/work.src": "DEF WORK()\nOPEN(1, 2)\nSHUT(1)\nEND\n",
-    "KRC/R1/TP/tools.src": "DEF TOOLS()\nEND\nGLOBAL DEF OPEN(N :IN)\nDECL INT N\nEND\n",
+    "KRC/R1/TP/tools.src": (
+        "DEF TOOLS()\nEND\nGLOBAL DEF OPEN(N :IN)\nDECL INT N\n$OUT[N] = TRUE\nEND\n"
+    ),
     "KRC/R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
     "KRC/STEU/Mada/$custom.dat": "DEFDAT $CUSTOM PUBLIC\nENDDAT\n",
 }
