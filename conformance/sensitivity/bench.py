@@ -1,22 +1,27 @@
-"""The record of `krl bench conform`: how many faults the cases find, and how fast cases run."""
+"""The record of `krl bench conform`: what mutants and planted faults cases find, and how fast."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from typing import Any, Final
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, get_args
 
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
+from conformance.sensitivity.mutant_trial import Fate, Trial
+from conformance.sensitivity.mutants import PACKAGES
 from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 from conformance.suite.case import Case
 
-__all__ = ["AIM", "measure", "record_of", "speed_of"]
+__all__ = ["AIM", "MUTANT_AIM", "measure", "mutants_record", "record_of", "speed_of"]
 
-#: The share of faults that the cases have to find.
+#: The share of planted faults that the cases have to find.
 AIM: Final = 0.95
+#: The share of mutants that have to make a case fail.
+MUTANT_AIM: Final = 0.85
 _EXECUTOR: Final = "tree"
 
 
@@ -93,4 +98,51 @@ def _counts(verdicts: Sequence[Verdict]) -> dict[str, Any]:
         "failing": failing,
         "share": round(killed / len(verdicts), 4) if verdicts else 0.0,
         "failing_share": round(failing / len(verdicts), 4) if verdicts else 0.0,
+    }
+
+
+def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
+    """What is written of mutants, by the seed they were drawn with.
+
+    A share is that of the red ones among those that some case could notice.
+    """
+    every = [one for of_seed in trials.values() for one in of_seed]
+    return {
+        **_fates(every),
+        "aim": MUTANT_AIM,
+        "seeds": [{"seed": seed, **_fates(found)} for seed, found in trials.items()],
+        "packages": [
+            {"package": package, **_fates(own)}
+            for package in PACKAGES
+            if (own := [one for one in every if one.mutant.package == package])
+        ],
+        "trials": [
+            {
+                "mutant": one.mutant.name,
+                "package": one.mutant.package,
+                "file": one.mutant.file,
+                "line": one.mutant.line,
+                "function": one.mutant.function,
+                "operator": one.mutant.operator,
+                "source": one.mutant.source,
+                "was": one.mutant.was,
+                "now": one.mutant.now,
+                "fate": one.fate,
+                "case": one.case,
+                "why": one.why,
+                "reached": one.reached,
+                "runs": one.runs,
+            }
+            for one in every
+        ],
+    }
+
+
+def _fates(trials: Sequence[Trial]) -> dict[str, Any]:
+    counts = Counter(one.fate for one in trials)
+    counted = len(trials) - counts["invalid"] - counts["equivalent"]
+    return {
+        "mutants": len(trials),
+        **{fate: counts[fate] for fate in get_args(Fate)},
+        "share": round(counts["red"] / counted, 4) if counted else 0.0,
     }

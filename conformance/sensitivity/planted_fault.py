@@ -9,24 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
-__all__ = ["EVERY_SUITE", "Fault", "Plant", "constant", "group_in", "group_of", "on", "several"]
+__all__ = ["Fault", "Plant", "constant", "group_in", "group_of", "on", "several"]
 
 #: Plants a fault for as long as the context lasts.
 Plant = Callable[[], AbstractContextManager[None]]
 #: Makes what is planted from what was there: the function as its class has it, or a value.
 Make = Callable[[Any], Any]
 
-EVERY_SUITE: Final[tuple[str, ...]] = ()
-
 
 @dataclass(frozen=True, slots=True)
 class Fault:
     """A fault that can be planted.
 
-    ``suites`` are those that have to find it, all of them where it is empty. ``op`` is the
-    instruction that it is about, for faults of the machine. ``robot`` is the one cases run on.
+    ``suites`` are those that have to find it, all of them where it is empty. ``robot`` is the one
+    cases run on.
     """
 
     group: str
@@ -34,8 +32,6 @@ class Fault:
     suites: tuple[str, ...]
     plant: Plant
     robot: str = "kinematic"
-    executor: str = "tree"
-    op: str = ""
 
 
 def group_of(name: str, rows: Iterable[tuple[str, tuple[str, ...], Plant]]) -> tuple[Fault, ...]:

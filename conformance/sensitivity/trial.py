@@ -1,9 +1,7 @@
 """Faults against cases: each fault is tried on the cases that may find it, until one has.
 
 Cases of rules that may fail come first: a fault that they find fails the conformance run, one that
-only others find changes a verdict. A machine that diverges from the tree interpreter has failed
-whatever the rule. The observation of a case without any fault is made once a process and kept. A
-case that cannot find a fault, since its programs lack the instruction, is not run with it.
+only others find changes a verdict.
 """
 
 from __future__ import annotations
@@ -13,14 +11,11 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
-from conformance.evaluation.execution import Setup, prepared
-from conformance.evaluation.observation import Observation
-from conformance.evaluation.trace_comparison import first_divergence
+from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity import (
     advance_run_faults,
-    instruction_faults,
     interrupt_faults,
     path_faults,
     timing_faults,
@@ -29,7 +24,6 @@ from conformance.sensitivity.planted_fault import Fault, on, several
 from conformance.suite.case import Case
 from interp.controller.scheduler import Scheduler
 from interp.robot.api.control_core import ControlCore
-from interp.values.faults import LinkError
 from support.parallel.ordered_map import ordered_map
 
 __all__ = ["Verdict", "all_faults", "try_faults"]
@@ -60,7 +54,6 @@ def all_faults() -> tuple[Fault, ...]:
         *advance_run_faults.faults(),
         *interrupt_faults.faults(),
         *path_faults.faults(),
-        *instruction_faults.faults(),
     )
 
 
@@ -103,58 +96,28 @@ def _verdict_of_number(number: int, cases: tuple[Case, ...]) -> Verdict:
 
 def _verdict_of(fault: Fault, cases: Sequence[Case]) -> Verdict:
     runs = 0
-    setup = Setup(fault.executor, fault.robot)
+    setup = Setup("tree", fault.robot)
     for case in _of_suites(fault, cases):
-        if fault.op and fault.op not in _instructions(case):
-            continue
-        usual = _usual(case, setup)
-        if usual is None:
+        if not _passes(case, setup):
             continue
         runs += 1
-        verdict = _with(fault, case, setup, usual.seen)
+        verdict = _with(fault, case, setup)
         if verdict:
             return Verdict(fault.group, fault.words, case.name, verdict, runs)
     return Verdict(fault.group, fault.words, None, "", runs)
 
 
-@dataclass(frozen=True, slots=True)
-class _Usual:
-    """A case without any fault; ``seen`` is kept where a machine will be compared with it."""
-
-    seen: Observation | None
-
-
 @cache
-def _instructions(case: Case) -> frozenset[str]:
-    """The instructions that a case has on a machine; none where it cannot be compiled."""
-    program = prepared(case)
-    try:
-        return (
-            frozenset()
-            if isinstance(program, LinkError)
-            else instruction_faults.instructions(program)
-        )
-    except LinkError:
-        return frozenset()
-
-
-@cache
-def _usual(case: Case, setup: Setup) -> _Usual | None:
-    """``None`` for a case that does not pass as it is: it cannot find anything."""
+def _passes(case: Case, setup: Setup) -> bool:
+    """Whether a case passes as it is; one that does not cannot find anything."""
     (result,) = run_case(case, [setup], KnownFailures()).results
-    if result.verdict != "pass" or result.observation is None:
-        return None
-    return _Usual(None if setup.executor == "tree" else result.observation)
+    return result.verdict == "pass"
 
 
-def _with(fault: Fault, case: Case, setup: Setup, before: Observation | None) -> str:
+def _with(fault: Fault, case: Case, setup: Setup) -> str:
     """The verdict on a case with a fault where it is no longer ``pass``, else an empty text."""
     with several(fault.plant, *_ending())():
         (result,) = run_case(case, [setup], KnownFailures()).results
-    if before is not None and result.observation is not None:
-        names = ("right", "wrong")
-        if first_divergence(names, before, result.observation):
-            return "fail"
     return "" if result.verdict == "pass" else result.verdict
 
 

@@ -139,6 +139,8 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     )
     for bench in ("recover", "check", "vm", "arm", "conform"):
         arguments = ("bench", bench, *(given if bench in ("recover", "check") else ()))
+        if bench == "conform":
+            arguments += ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed)
         yield _Step(f"bench-{bench}", arguments, 0.15)
     sample = str(max(4, round(minutes / 2)))
     yield _Step(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from conformance.sensitivity.mutant_trial import is_possible
 from conformance.suite import case as cases
 from krl.cli import main
 
@@ -21,8 +22,8 @@ def test_faults_of_a_group_are_planted_and_counted(
     known = [one for one in cases.find_cases() if one.name in names]
     monkeypatch.setattr(cases, "find_cases", lambda: known)
     target = tmp_path / "bench.json"
-    words = ["bench", "conform", "--group", "the clock", "--jobs", "1", "--json", str(target)]
-    assert 0 == main(words)
+    words = ["bench", "conform", "--mutants", "0", "--group", "the clock", "--jobs", "1"]
+    assert 0 == main([*words, "--json", str(target)])
     record = json.loads(target.read_text(encoding="utf-8"))
     assert ["the clock"] == [one["group"] for one in record["groups"]]
     assert (
@@ -31,6 +32,25 @@ def test_faults_of_a_group_are_planted_and_counted(
     assert record["killed"] >= 2
     assert record["cases_per_s"] > 0
     assert "Not found: the clock: the submit program" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not is_possible(), reason="it takes a copy of a process")
+def test_mutants_are_drawn_tried_and_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each mutant of each seed is in the record; those that fail no case are in a file of rows."""
+    known = [one for one in cases.find_cases() if one.name == "control/if_else"]
+    monkeypatch.setattr(cases, "find_cases", lambda: known)
+    target, rows = tmp_path / "bench.json", tmp_path / "survivors.tsv"
+    words = ["bench", "conform", "--mutants", "2", "--seed", "5", "--seed", "6", "--group", "none"]
+    words += ["--jobs", "1", "--json", str(target), "--survivors", str(rows)]
+    assert 0 == main(words)
+    found = json.loads(target.read_text(encoding="utf-8"))["drawn"]
+    assert [5, 6] == [one["seed"] for one in found["seeds"]]
+    assert 4 == found["mutants"] == len(found["trials"])
+    left = [one for one in found["trials"] if one["fate"] not in ("red", "invalid")]
+    assert 1 + len(left) == len(rows.read_text(encoding="utf-8").splitlines())
+    assert "seed 6" in capsys.readouterr().out
 
 
 def test_an_unknown_group_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+import interp
+from conformance.sensitivity.mutants import Mutant, of_line
 from krl.cli import main
 
 CASE = """\
@@ -137,17 +139,40 @@ def test_a_planted_fault_is_found_and_shown_on_the_page(
     assert "A fault was planted" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
-def test_a_fault_of_the_machine_shows_beside_the_others(tmp_path: Path) -> None:
-    """Only the machine in Python is wrong: it parts from the tree interpreter."""
+def _on(source: str) -> list[Mutant]:
+    """The mutants of the first line of the machine's arithmetic that begins so."""
+    file = Path("interp", "bytecode", "vm", "arithmetic.py")
+    text = (Path(interp.__file__).parents[1] / file).read_text(encoding="utf-8").splitlines()
+    line = next(number for number, one in enumerate(text, 1) if one.strip().startswith(source))
+    return of_line(file.as_posix(), line)
+
+
+def test_a_change_of_the_machine_shows_beside_the_others(tmp_path: Path) -> None:
+    """Only the machine in Python is changed: it diverges from the tree interpreter."""
     both = ("control/recursion", "--executor", "tree", "--executor", "vm", "--robot", "none")
     target = tmp_path / "record.json"
-    assert 1 == run(*both, "--json", target, "--fault", "MUL_INT: the result is a little off")
+    mutant = next(
+        one for one in _on("result = stack[-1] + constant") if one.operator == "arithmetic"
+    )
+    assert 1 == run(*both, "--json", target, "--fault", mutant.name)
     record = json.loads(target.read_text(encoding="utf-8"))
-    assert "the machine: MUL_INT: the result is a little off" == record["fault"]
+    assert record["fault"].endswith("stack[-1] + constant becomes stack[-1] - constant")
     (case,) = record["cases"]
     tree, vm = case["results"]
     assert ("pass", "fail") == (tree["verdict"], vm["verdict"])
     assert vm["divergence"]
+
+
+def test_a_change_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    """A line with several changes names them; where there is none, one line says so."""
+    several = _on("result = stack[-1] + constant")
+    assert len(several) > 1
+    words = f"interp/bytecode/vm/arithmetic.py:{several[0].line}"
+    assert 2 == run("control/recursion", "--fault", words)
+    assert f"{several[1].name}: {several[1].was} becomes" in capsys.readouterr().err
+    for words in ("interp/values/values.py:1", "interp.values.values:99999", "interp.nothing:1"):
+        assert 2 == run("control/recursion", "--fault", words)
+        assert "there is no such mutant" in capsys.readouterr().err
 
 
 def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,7 +1,8 @@
-"""`krl bench conform`: how many planted faults the cases find, and how fast they run."""
+"""`krl bench conform`: how many mutants and planted faults cases find, and how fast they run."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -13,42 +14,119 @@ from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
+if TYPE_CHECKING:
+    from conformance.suite.case import Case
+
 __all__ = ["conform"]
+
+_SEED = 1
 
 
 def conform(
     json_file: JsonOption = None,
+    mutants: Annotated[
+        int, typer.Option(min=0, metavar="N", help="So many mutants are drawn with each seed.")
+    ] = 100,
+    seed: Annotated[
+        list[int] | None,
+        typer.Option(metavar="N", help="Draw with this seed; may be repeated; default: 1."),
+    ] = None,
+    most: Annotated[
+        int,
+        typer.Option(
+            "--most-cases",
+            min=1,
+            metavar="N",
+            help="Try so many cases that may fail on a mutant, where more run its lines.",
+        ),
+    ] = 60,
+    survivors: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the mutants that make no case fail here, as TSV."),
+    ] = None,
     group: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Only faults of this group; may be repeated."),
+        typer.Option(
+            metavar="NAME", help="Only planted faults of this group; may be repeated. 'none': none."
+        ),
     ] = None,
     jobs: JobsOption = None,
 ) -> int:
-    """Plant faults into the controller, the arm and the machine in Python; see which cases notice.
+    """Change what decides semantics, one place at a time, and see whether a case fails.
 
-    A fault is found by a case that passes without it and not with it. Cases a second are those of
-    all cases, with the tree interpreter and no robot, in one process.
+    Mutants are drawn by chance from the code of values, tree interpreter, controller and robot:
+    comparisons, arithmetic, connectives, conditions, constants, statements left out. Planted faults
+    are those that no such change makes. Cases a second are those of all cases, with the tree
+    interpreter and no robot, in one process.
     """
-    check_files(json_file)
+    check_files(json_file, survivors)
     with expected_extras(*ARM):
-        from conformance.sensitivity import measure, speed_of
+        from conformance.sensitivity.bench import measure, speed_of
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
-        if name not in groups:
-            raise InputError(f"--group {name}: the groups are {', '.join(groups)}")
+        if name not in (*groups, "none"):
+            raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
+    drawn = _mutants(cases, seed or [_SEED], mutants, most, all_cores(jobs)) if mutants else {}
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
         found = measure(faults, cases, all_cores(jobs), bar)
-    record = {"bench": "conform", **found, **speed}
+    record = {"bench": "conform", **found, **speed, **({"drawn": drawn} if drawn else {})}
     write_json(record, json_file)
+    if survivors is not None:
+        survivors.write_text(_rows(drawn), encoding="utf-8", newline="\n")
+    if drawn:
+        _print_mutants(drawn)
     _print(record)
     return FINE
+
+
+def _mutants(
+    cases: "list[Case]", seeds: list[int], count: int, most: int, jobs: int
+) -> dict[str, Any]:
+    from conformance.sensitivity.bench import mutants_record
+    from conformance.sensitivity.mutant_trial import is_possible, reaches_of, try_mutants
+    from conformance.sensitivity.mutants import drawn
+
+    if not is_possible():
+        raise InputError("mutants need a system that can copy a process (fork): use --mutants 0")
+    wanted = {one: drawn(one, count) for one in dict.fromkeys(seeds)}
+    every = tuple(dict.fromkeys(mutant for found in wanted.values() for mutant in found))
+    running = sum(case.phase == "run" for case in cases)
+    with progress_bar("which lines cases run", running) as bar:
+        reaches = reaches_of(cases, jobs, bar)
+    with progress_bar("trying mutants", len(every)) as bar:
+        trials = try_mutants(every, reaches, jobs, most, bar)
+    by_mutant = dict(zip(every, trials, strict=True))
+    return mutants_record(
+        {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}
+    )
+
+
+def _rows(drawn: Mapping[str, Any]) -> str:
+    """The mutants that no case has failed with, a line each."""
+    keys = ("fate", "file", "line", "function", "was", "now", "case", "reached", "why")
+    rows = [one for one in drawn.get("trials", ()) if one["fate"] not in ("red", "invalid")]
+    lines = sorted({"\t".join(str(one[key]) for key in keys) for one in rows})
+    return "\n".join(["\t".join(keys), *lines, ""])
+
+
+def _print_mutants(drawn: Mapping[str, Any]) -> None:
+    console = Console(highlight=False)
+    fates = ("red", "soft", "survived", "equivalent", "invalid")
+    table = figures(("mutants of", "drawn", *fates, "red"))
+    rows = [(one["package"], one) for one in drawn["packages"]]
+    rows += [(f"seed {one['seed']}", one) for one in drawn["seeds"]]
+    for name, row in (*rows, ("all", drawn)):
+        counts = (row["mutants"], *(row[fate] for fate in fates))
+        table.add_row(name, *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
+    console.print(table)
+    console.print(f"aim: {drawn['aim']:.0%} of those that a case could notice red")
 
 
 def _print(record: Mapping[str, Any]) -> None:

@@ -63,7 +63,8 @@ def conform(
         str | None,
         typer.Option(
             metavar="WORDS",
-            help="Plant a fault with these words in its name, and see which cases notice it.",
+            help="Plant a fault with these words in its name, or the change of a line "
+            "(interp/values/texts.py:108), and see which cases notice it.",
         ),
     ] = None,
     list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,

@@ -1,4 +1,4 @@
-"""`krl conform --fault`: a fault planted into the controller, the arm or the machine in Python."""
+"""`krl conform --fault`: a fault or a mutant in the controller, the arm or the interpreter."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from krl.errors import InputError
 
 if TYPE_CHECKING:
-    from conformance.sensitivity import Fault
+    from conformance.sensitivity.planted_fault import Fault
 
 __all__ = ["planted"]
 
@@ -18,11 +18,35 @@ _SHOWN = 12
 def planted(words: str) -> Iterator[str]:
     """Plant a fault as long as the context lasts; gives its whole name.
 
-    ``words`` are some of it, enough to tell it apart. Raises `InputError` where they are not.
+    ``words`` are some of it, enough to tell it apart, or a mutant: its name, or the file and line
+    that it alone is on. Raises `InputError` where they are not.
     """
+    if "interp" in words and ":" in words:
+        with _mutant(words) as name:
+            yield name
+        return
     fault = _chosen(words)
     with fault.plant():
         yield f"{fault.group}: {fault.words}"
+
+
+@contextmanager
+def _mutant(words: str) -> Iterator[str]:
+    from conformance.sensitivity.mutants import InvalidMutant, named, of_line, put_in_place
+
+    file, _, line = words.rpartition(":")
+    on_line = of_line(file, int(line)) if file.endswith(".py") and line.isdigit() else []
+    if len(on_line) > 1:
+        told = "; ".join(f"{one.name}: {one.was} becomes {one.now}" for one in on_line)
+        raise InputError(f"--fault {words}: which one? {told}")
+    try:
+        mutant = on_line[0] if on_line else named(words)
+        with put_in_place(mutant):
+            yield f"{mutant.file}:{mutant.line}: {mutant.was} becomes {mutant.now}"
+    except KeyError as error:
+        raise InputError(f"--fault {words}: there is no such mutant") from error
+    except InvalidMutant as error:
+        raise InputError(f"--fault {words}: {error}") from error
 
 
 def _chosen(words: str) -> "Fault":

@@ -1,0 +1,96 @@
+"""Which cases run which lines: what tells the cases that can notice a change of a line."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from types import FrameType
+from typing import Any, Final
+
+from conformance.evaluation.execution import Setup
+from conformance.evaluation.verdicts import KnownFailures
+from conformance.runner import run_case
+from conformance.sensitivity.mutants import modules
+from conformance.suite.case import Case
+from support.parallel.ordered_map import ordered_map
+
+__all__ = ["Reach", "reach_of"]
+
+#: So many cases go to a process at once.
+_SHARE: Final = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What a case runs: lines by module, and ``cost``, how many in all, one by one."""
+
+    case: Case
+    lines: Mapping[str, frozenset[int]]
+    cost: int
+
+    def has(self, module: str, lines: frozenset[int]) -> bool:
+        """Whether the case runs one of these lines of a module."""
+        return not lines.isdisjoint(self.lines.get(module, frozenset()))
+
+
+def reach_of(
+    cases: Sequence[Case],
+    setup: Setup,
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> list[Reach]:
+    """What each case runs with a setup, in the order of cases, without those that do not pass."""
+    shares = [cases[at : at + _SHARE] for at in range(0, len(cases), _SHARE)]
+    tasks = ((share, setup) for share in shares)
+    found: list[Reach] = []
+    for share, reached in zip(shares, ordered_map(_reached, tasks, jobs=jobs), strict=True):
+        found += reached
+        on_done(len(share))
+    return found
+
+
+def _reached(cases: Sequence[Case], setup: Setup) -> list[Reach]:
+    return [found for case in cases if (found := _reach(case, setup)) is not None]
+
+
+def _reach(case: Case, setup: Setup) -> Reach | None:
+    with _counted() as counts:
+        verdict = run_case(case, [setup], KnownFailures()).verdict
+    if verdict != "pass":
+        return None
+    lines: dict[str, set[int]] = {}
+    for file, line in counts:
+        lines.setdefault(_modules_by_file()[file], set()).add(line)
+    return Reach(case, {name: frozenset(one) for name, one in lines.items()}, counts.total())
+
+
+@contextmanager
+def _counted() -> Iterator[Counter[tuple[str, int]]]:
+    """How often each line of the modules is run within the context."""
+    counts: Counter[tuple[str, int]] = Counter()
+    files = _modules_by_file()
+
+    def on_line(frame: FrameType, event: str, _argument: Any) -> Any:
+        if event == "line":
+            counts[frame.f_code.co_filename, frame.f_lineno] += 1
+        return on_line
+
+    def on_call(frame: FrameType, _event: str, _argument: Any) -> Any:
+        return on_line if frame.f_code.co_filename in files else None
+
+    before = sys.gettrace()
+    sys.settrace(on_call)
+    try:
+        yield counts
+    finally:
+        sys.settrace(before)
+
+
+@cache
+def _modules_by_file() -> Mapping[str, str]:
+    return {str(import_module(name).__file__): name for name in modules()}

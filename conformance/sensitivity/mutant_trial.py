@@ -1,0 +1,222 @@
+"""Mutants against cases: which mutants make a case fail.
+
+Each mutant has a process of its own, a copy of one that has everything loaded, so that nothing it
+does outlives it. It is tried on the cases that run one of its lines, until one fails. A case that
+takes many times as long as any should has failed too.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.util import find_spec
+from operator import itemgetter
+from pathlib import Path
+from typing import Final, Literal, NoReturn
+
+from conformance.evaluation.execution import Setup
+from conformance.evaluation.verdicts import KnownFailures
+from conformance.runner import run_case
+from conformance.sensitivity.line_reach import Reach, reach_of
+from conformance.sensitivity.mutants import (
+    InvalidMutant,
+    Mutant,
+    load,
+    put_in_place,
+    uses_of,
+)
+from conformance.suite.case import Case
+from support.parallel.ordered_map import ordered_map
+
+__all__ = ["MOST", "Fate", "Trial", "equivalent", "is_possible", "reaches_of", "try_mutants"]
+
+#: Red: a case has failed. Soft: only cases whose rules may not fail have noticed. Equivalent: none
+#: can, and ``equivalent.toml`` says why. Invalid: it could not be put in place.
+Fate = Literal["red", "soft", "survived", "equivalent", "invalid"]
+
+_SETUP: Final = Setup("tree", "kinematic")
+_EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
+#: So many cases that may fail are run with a mutant that none of them notices.
+MOST: Final = 60
+#: So many seconds of computing a case may take; all of them take less than a tenth of it.
+_SECONDS: Final = 2.0
+#: So much address space in bytes a mutant may take; a usual run takes less than a quarter of it.
+_MEMORY: Final = 4 << 30
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What became of a mutant.
+
+    ``case`` is the one that noticed it, ``why`` what it said, or why none can. ``reached`` is how
+    many cases run its lines, ``runs`` how many were run.
+    """
+
+    mutant: Mutant
+    fate: Fate
+    case: str = ""
+    why: str = ""
+    reached: int = 0
+    runs: int = 0
+
+
+def is_possible() -> bool:
+    """Whether this system can copy a process and limit what it takes."""
+    return hasattr(os, "fork") and find_spec("resource") is not None
+
+
+def reaches_of(
+    cases: Sequence[Case], jobs: int = 1, on_done: Callable[[int], None] = lambda _count: None
+) -> list[Reach]:
+    """What the cases run that can notice anything, in the order in which they are tried.
+
+    Those that may fail come first; among them the cheapest of each suite, then the second of each,
+    and so on. ``on_done`` is told of the cases as they are run.
+    """
+    running = [case for case in cases if case.phase == "run"]
+    places: Counter[tuple[bool, str]] = Counter()
+    keyed = []
+    found = reach_of(running, _SETUP, jobs, on_done)
+    for one in sorted(found, key=lambda one: (one.cost, one.case.name)):
+        kind = not one.case.may_fail, one.case.suite
+        places[kind] += 1
+        keyed.append(((kind[0], places[kind], one.cost, one.case.name), one))
+    return [one for _, one in sorted(keyed, key=itemgetter(0))]
+
+
+def try_mutants(
+    mutants: Sequence[Mutant],
+    reaches: Sequence[Reach],
+    jobs: int = 1,
+    most: int = MOST,
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> list[Trial]:
+    """What becomes of each mutant, in their order; the same whatever ``jobs`` is.
+
+    Where more cases run its lines than ``most`` that may fail, only the first of them are tried.
+    ``on_done`` is told of the mutants as they are tried.
+    """
+    tasks = ((mutant, _that_may_notice(mutant, reaches), most) for mutant in mutants)
+    found: list[Trial] = []
+    for trial in ordered_map(_tried, tasks, jobs=jobs):
+        reason = equivalent().get(trial.mutant.change, "")
+        is_known = reason and trial.fate == "survived"
+        found.append(replace(trial, fate="equivalent", why=reason) if is_known else trial)
+        on_done(1)
+    return found
+
+
+@cache
+def equivalent() -> Mapping[tuple[str, ...], str]:
+    """The changes that no case can notice, and why; a change is told by what it is, not where."""
+    rows = tomllib.loads(_EQUIVALENT.read_text(encoding="utf-8")).get("mutant", ())
+    keys = ("module", "function", "source", "was", "now")
+    return {tuple(row[key] for key in keys): row["reason"] for row in rows}
+
+
+def _that_may_notice(mutant: Mutant, reaches: Sequence[Reach]) -> tuple[Case, ...]:
+    uses = uses_of(mutant)
+    return tuple(
+        one.case for one in reaches if any(one.has(module, lines) for module, lines in uses.items())
+    )
+
+
+# ------------------------------------------------------------------------- one mutant, one process
+
+
+def _tried(mutant: Mutant, cases: tuple[Case, ...], most: int) -> Trial:
+    """Try a mutant in a copy of this process; what it told last is what became of it."""
+    trial = Trial(mutant, "survived")
+    if not any(uses_of(mutant).values()):
+        return replace(trial, fate="invalid", why="it is used only while modules are loaded")
+    if not cases:
+        return trial
+    _load(cases[0])
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reading)
+        _in_copy(mutant, cases, most, writing)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as heard:
+        while heard.peek(1):
+            trial = pickle.load(heard)
+    os.waitpid(child, 0)
+    return trial
+
+
+@cache
+def _loaded() -> list[str]:
+    return []
+
+
+def _load(case: Case) -> None:
+    """Load all that cases need, once, so that every copy has it."""
+    if not _loaded():
+        load()
+        _loaded().append(run_case(case, [_SETUP]).verdict)
+
+
+def _in_copy(mutant: Mutant, cases: Sequence[Case], most: int, pipe: int) -> NoReturn:
+    try:
+        with os.fdopen(pipe, "wb", buffering=0) as told:
+            for trial in _trials(mutant, cases, most):
+                told.write(pickle.dumps(trial))
+        os._exit(0)
+    finally:
+        os._exit(1)
+
+
+def _trials(mutant: Mutant, cases: Sequence[Case], most: int) -> Iterator[Trial]:
+    """Before each case what is true if it ends the process, and at the end what became of it."""
+    import resource  # not on every system
+
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
+    signal.signal(signal.SIGPROF, _end_case)
+    reached, runs = len(cases), 0
+    try:
+        with put_in_place(mutant):
+            for runs, case in enumerate(_some(cases, most), 1):
+                fate: Fate = "red" if case.may_fail else "soft"
+                yield Trial(mutant, fate, case.name, "the process ended", reached, runs)
+                why = _why_failed(case, _SETUP)
+                if why:
+                    yield Trial(mutant, fate, case.name, why, reached, runs)
+                    return
+            yield Trial(mutant, "survived", "", "", reached, runs)
+    except InvalidMutant as error:
+        yield Trial(mutant, "invalid", "", str(error), reached)
+
+
+def _some(cases: Sequence[Case], most: int) -> Iterator[Case]:
+    """The first so many that may fail, and of the others a tenth as many."""
+    hard = [case for case in cases if case.may_fail]
+    yield from hard[:most]
+    yield from [case for case in cases if not case.may_fail][: max(1, most // 10)]
+
+
+def _why_failed(case: Case, setup: Setup) -> str:
+    """Why a case does not pass with a mutant in place; empty where it does."""
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS)
+    try:
+        results = run_case(case, [setup], KnownFailures()).results
+    except _TimeOver:
+        return f"more than {_SECONDS} seconds of computing"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+    bad = (one.reason for one in results if one.verdict not in ("pass", "skipped"))
+    return next(bad, "" if any(one.verdict == "pass" for one in results) else "it was skipped")
+
+
+class _TimeOver(BaseException):
+    """A case takes too long; nothing that runs cases catches it."""
+
+
+def _end_case(_signal: int, _frame: object) -> NoReturn:
+    raise _TimeOver

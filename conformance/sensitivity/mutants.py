@@ -1,0 +1,345 @@
+"""Mutants: one change each in what decides semantics, drawn by chance and put in place.
+
+A mutant is put in place in the running process: the code of the functions that are there is
+exchanged, and what a module-level assignment gave a name is computed again. What interpreters
+have cached is forgotten. Nothing is written to a file.
+"""
+
+from __future__ import annotations
+
+import ast
+import gc
+import inspect
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache, partial
+from importlib import import_module
+from itertools import islice
+from pathlib import Path
+from pkgutil import walk_packages
+from random import Random
+from types import CodeType, FunctionType, ModuleType
+from typing import Any, Final
+
+from conformance.sensitivity.mutation_operators import Change, Operator, changes
+
+__all__ = [
+    "PACKAGES",
+    "InvalidMutant",
+    "Mutant",
+    "all_mutants",
+    "drawn",
+    "load",
+    "modules",
+    "named",
+    "of_line",
+    "put_in_place",
+    "uses_of",
+]
+
+#: What decides semantics, by the name under which it is reported: modules, and those left out.
+PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
+    "values": (("interp.values.*",), ()),
+    "tree": (("interp.tree.*",), ()),
+    # left out: the cell around the controller, and how a run is recorded
+    "controller": (
+        ("interp.controller.*",),
+        (
+            "interp.controller.automatic_inputs",
+            "interp.controller.input_script",
+            "interp.controller.profile",
+            "interp.controller.script_player",
+            "interp.controller.trace",
+        ),
+    ),
+    # left out: files of machine data, and planning in batches, which is there to be compared with
+    "robot": (
+        (
+            "interp.robot.path.*",
+            "interp.robot.planning.*",
+            "interp.robot.api.*",
+            "interp.robot.kinematics.*",
+            "interp.robot.arm",
+        ),
+        (
+            "interp.robot.api.batch",
+            "interp.robot.kinematics.data_list",
+            "interp.robot.kinematics.machine_data",
+        ),
+    ),
+}
+_ROOT: Final = "interp"
+
+
+class InvalidMutant(ValueError):
+    """A change that cannot be put in place, as it would be another function with other names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """A change of a module; ``number`` is its place among all changes of this module.
+
+    ``lines`` are those of its statement: a case that runs none of them cannot notice it.
+    ``source`` is the line it begins on.
+    """
+
+    package: str
+    module: str
+    number: int
+    operator: Operator
+    function: str
+    line: int
+    lines: tuple[int, int]
+    was: str
+    now: str
+    source: str
+    is_module_level: bool
+
+    @property
+    def name(self) -> str:
+        """What tells it apart: module and number."""
+        return f"{self.module}:{self.number}"
+
+    @property
+    def change(self) -> tuple[str, ...]:
+        """What it is, wherever the lines of its module have moved to."""
+        return self.module, self.function, self.source, self.was, self.now
+
+    @property
+    def file(self) -> str:
+        """The file of its module, from the root of the project."""
+        return self.module.replace(".", "/") + ".py"
+
+
+def all_mutants() -> Iterator[str]:
+    """The names of all mutants there are, package by package."""
+    for module in modules():
+        yield from (f"{module}:{number}" for number in range(_count(module)))
+
+
+def drawn(seed: int, count: int) -> tuple[Mutant, ...]:
+    """So many of all mutants, drawn by chance, in the order of `all_mutants`."""
+    every = tuple(all_mutants())
+    chosen = Random(f"mutants {seed}").sample(range(len(every)), min(count, len(every)))
+    return tuple(named(every[at]) for at in sorted(chosen))
+
+
+def named(name: str) -> Mutant:
+    """The mutant of a name, ``interp.values.values:12``; raises `KeyError` where there is none.
+
+    It may be of a module that none is drawn from.
+    """
+    module, _, number = name.partition(":")
+    if module not in _every_module() or not number.isdigit() or int(number) >= _count(module):
+        raise KeyError(name)
+    tree = _tree(module)
+    one = _change(tree, int(number))
+    package = next((each for each in PACKAGES if module in _modules(each)), "")
+    source = _text(module).splitlines()[one.line - 1].strip()
+    return Mutant(
+        package,
+        module,
+        int(number),
+        one.operator,
+        one.function,
+        one.line,
+        one.lines,
+        one.was,
+        one.now,
+        source,
+        one.assignment is not None,
+    )
+
+
+def of_line(file: str, line: int) -> list[Mutant]:
+    """The mutants that begin on a line of a file, ``interp/values/values.py``."""
+    module = file.removesuffix(".py").replace("/", ".")
+    if module not in _every_module():
+        return []
+    found = enumerate(changes(_tree(module)))
+    return [named(f"{module}:{number}") for number, one in found if one.line == line]
+
+
+@cache
+def modules() -> tuple[str, ...]:
+    """The names of all modules that mutants are drawn from."""
+    return tuple(name for package in PACKAGES for name in _modules(package))
+
+
+def uses_of(mutant: Mutant) -> Mapping[str, frozenset[int]]:
+    """The lines of which a case has to run one to notice a mutant, by module.
+
+    Those of its statement, or where a module-level name was changed those that use this name.
+    """
+    if not mutant.is_module_level:
+        first, last = mutant.lines
+        return {mutant.module: frozenset(range(first, last + 1))}
+    importing = f"from {mutant.module} import"
+    return {
+        module: frozenset(
+            one.lineno
+            for function in ast.walk(_tree(module))
+            if isinstance(function, ast.FunctionDef | ast.Lambda)
+            for one in ast.walk(function)
+            if isinstance(one, ast.Name) and one.id == mutant.function
+        )
+        for module in modules()
+        if module == mutant.module or importing in _text(module)
+    }
+
+
+@cache
+def _modules(package: str) -> list[str]:
+    wanted, left_out = PACKAGES[package]
+    return [
+        name
+        for name in _every_module()
+        if any(fnmatchcase(name, one) for one in wanted) and name not in left_out
+    ]
+
+
+@cache
+def _every_module() -> tuple[str, ...]:
+    root = import_module(_ROOT)
+    found = walk_packages(root.__path__, f"{_ROOT}.")
+    return tuple(sorted(one.name for one in found if not one.ispkg))
+
+
+@cache
+def _text(module: str) -> str:
+    return Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
+
+
+def _tree(module: str) -> ast.Module:
+    return ast.parse(_text(module))
+
+
+@cache
+def _count(module: str) -> int:
+    return sum(1 for _ in changes(_tree(module)))
+
+
+def _change(tree: ast.Module, number: int) -> Change:
+    return next(islice(changes(tree), number, None))
+
+
+# ------------------------------------------------------------------------------ put in place
+
+
+@contextmanager
+def put_in_place(mutant: Mutant) -> Iterator[None]:
+    """Have a mutant in the running process as long as the context lasts.
+
+    Raises `InvalidMutant` where this cannot be done.
+    """
+    module = import_module(mutant.module)
+    tree = _tree(mutant.module)
+    change = _change(tree, mutant.number)
+    change.make()
+    undo = _reassigned(module, change) if change.assignment else _recoded(module, tree)
+    _forget()
+    try:
+        yield
+    finally:
+        for one in undo:
+            one()
+        _forget()
+
+
+def _reassigned(module: ModuleType, change: Change) -> list[Callable[[], None]]:
+    """Compute a module-level name again, for all modules that have it."""
+    value = change.assignment.value if change.assignment else None
+    assert value is not None, "it is a change of a value"
+    code = compile(ast.Expression(value), str(module.__file__), "eval")
+    name = change.function
+    before = vars(module)[name]
+    try:
+        new = eval(code, vars(module))
+    except Exception as error:
+        raise InvalidMutant(f"{type(error).__name__}: {error}") from error
+    undo: list[Callable[[], None]] = []
+    for one in [one for key, one in sys.modules.items() if key.partition(".")[0] == _ROOT]:
+        if vars(one).get(name) is before:
+            setattr(one, name, new)
+            undo.append(partial(setattr, one, name, before))
+    return undo
+
+
+def _recoded(module: ModuleType, tree: ast.Module) -> Sequence[Callable[[], None]]:
+    """Exchange the code of the functions that are no longer the same."""
+    path = str(module.__file__)
+    original = compile(_text(module.__name__), path, "exec", dont_inherit=True)
+    mutated = compile(tree, path, "exec", dont_inherit=True)
+    found = [
+        (function, new)
+        for old, new in _different(original, mutated)
+        for function in _functions().get(_key(old), ())
+    ]
+    if not found:
+        raise InvalidMutant("it compiles to the same code")
+    if any(one.__code__.co_freevars != new.co_freevars for one, new in found):
+        raise InvalidMutant("it has other variables of the functions around it")
+    undo = [partial(setattr, one, "__code__", one.__code__) for one, _ in found]
+    for one, new in found:
+        one.__code__ = new
+    return undo
+
+
+def _different(old: CodeType, new: CodeType) -> Iterator[tuple[CodeType, CodeType]]:
+    """Pairs of code of the same function, from the outside in, that are not the same."""
+    left = [one for one in new.co_consts if isinstance(one, CodeType)]
+    for one in (one for one in old.co_consts if isinstance(one, CodeType)):
+        name = one.co_qualname, one.co_firstlineno
+        other = next(
+            (each for each in left if (each.co_qualname, each.co_firstlineno) == name), None
+        )
+        if other is None:
+            continue
+        left.remove(other)
+        if one != other:
+            yield one, other
+            yield from _different(one, other)
+
+
+def _key(code: CodeType) -> tuple[Any, ...]:
+    """Which function it is of; lambdas of a line are told apart by their columns."""
+    columns = tuple(column for _, _, column, _ in code.co_positions())
+    return code.co_filename, code.co_qualname, code.co_firstlineno, columns
+
+
+def load() -> None:
+    """Import all modules and find their functions and caches; `put_in_place` is quick then."""
+    _functions()
+    _caches()
+
+
+@cache
+def _functions() -> Mapping[tuple[Any, ...], Sequence[FunctionType]]:
+    """The functions that are there, by file and place; asked for once all modules are loaded."""
+    for name in modules():
+        import_module(name)
+    found: dict[tuple[Any, ...], list[FunctionType]] = {}
+    for one in gc.get_objects():
+        if inspect.isfunction(one) and str(one.__module__).partition(".")[0] == _ROOT:
+            found.setdefault(_key(one.__code__), []).append(one)
+    return found
+
+
+def _forget() -> None:
+    """Empty the caches of interpreters and of the evaluation of cases."""
+    for one in _caches():
+        one.cache_clear()
+
+
+@cache
+def _caches() -> Sequence[Any]:
+    wrapper = type(_text)
+    return [
+        one
+        for one in gc.get_objects()
+        if type(one) is wrapper
+        and str(one.__module__).startswith((f"{_ROOT}.", "conformance.evaluation."))
+    ]

@@ -1,0 +1,215 @@
+"""Mutants: which changes there are, that they are put in place and taken out, who notices them."""
+
+import ast
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from conformance.evaluation.execution import Setup
+from conformance.sensitivity import bench, mutant_trial
+from conformance.sensitivity.line_reach import reach_of
+from conformance.sensitivity.mutant_trial import Fate, Trial, equivalent, is_possible, try_mutants
+from conformance.sensitivity.mutants import (
+    Mutant,
+    drawn,
+    modules,
+    named,
+    put_in_place,
+    uses_of,
+)
+from conformance.sensitivity.mutation_operators import changes
+from conformance.suite.case import CASES, Case, read_case
+from interp.controller import clock, interrupts
+from interp.tree import statements as tree_statements
+from interp.values import operators
+
+_SETUP = Setup("tree", "kinematic")
+needs_fork = pytest.mark.skipif(not is_possible(), reason="it takes a copy of a process")
+
+
+def _made(body: str) -> set[tuple[str, str]]:
+    tree = ast.parse(f"def f(a, b):\n    {body}\n")
+    return {(one.operator, one.now) for one in changes(tree)}
+
+
+def _changes(module: str) -> list[tuple[str, str, str]]:
+    """Function, was and now of all changes of a module."""
+    text = Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
+    return [(one.function, one.was, one.now) for one in changes(ast.parse(text))]
+
+
+def _mutant(module: str, function: str, was: str, now: str) -> Mutant:
+    """The mutant that is this change."""
+    return named(f"{module}:{_changes(module).index((function, was, now))}")
+
+
+def _case(name: str) -> Case:
+    return read_case(CASES / f"{name}.src")
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("return a < b", {("comparison", "a <= b"), ("comparison", "a >= b")}),
+        ("return a is b", {("comparison", "a is not b")}),
+        ("return a and b", {("connective", "a or b")}),
+        ("return not a", {("connective", "a")}),
+        ("return a + b", {("arithmetic", "a - b")}),
+        ("return a + 'text'", set()),
+        ("return -a", {("arithmetic", "a")}),
+        ("return True", {("constant", "False")}),
+        ("return 7", {("constant", "8"), ("constant", "6")}),
+        ("return 500.0", {("constant", "1000.0")}),
+        ("return a if b else a", {("condition", "not b")}),
+        ("return [c for c in a if c]", {("condition", "not c")}),
+        ("a.b = b", {("statement", "pass")}),
+        ("c = b", set()),
+        ("raise a", {("statement", "pass")}),
+        ("assert a < 7", set()),
+        ("return isinstance(a, int | str)", set()),
+        ("return f'{a + 1}'", set()),
+    ],
+)
+def test_changes_of_a_function(body: str, expected: set[tuple[str, str]]) -> None:
+    """Each operator makes its changes, and leaves alone what decides nothing."""
+    assert expected == _made(body)
+
+
+def test_conditions_are_not_negated_twice() -> None:
+    """Where the opposite of a comparison is a change already, its negation is none."""
+    assert {("comparison", "a != b"), ("statement", "pass")} == _made("if a == b: a()")
+    assert ("condition", "not a.b") in _made("while a.b: a()")
+
+
+def test_module_level_values_are_changed() -> None:
+    """A number that a module gives a name to is changed, under this name."""
+    (more, _less) = changes(ast.parse("_LIMIT: Final = 4\n"))
+    assert ("_LIMIT", "5") == (more.function, more.now)
+
+
+def test_the_same_seed_draws_the_same() -> None:
+    """Seeds tell draws apart, and each mutant is found again by its name."""
+    first = drawn(3, 2)
+    assert first == drawn(3, 2)
+    assert first != drawn(4, 2)
+    assert first[0] == named(first[0].name)
+
+
+def test_a_name_of_no_mutant() -> None:
+    """Neither another module nor a number that is too high names a mutant."""
+    for name in ("krl.cli:0", "interp.values.values:99999", "interp.values.values:x"):
+        with pytest.raises(KeyError):
+            named(name)
+
+
+def test_a_mutant_is_there_only_while_it_is_in_place() -> None:
+    """The clock has another next tick within the context, and the usual one behind it."""
+    mutant = _mutant(
+        "interp.controller.clock",
+        "Clock.next_tick",
+        "self.tick + self.cycle",
+        "self.tick - self.cycle",
+    )
+    with put_in_place(mutant):
+        assert -12_000 == clock.Clock(12_000).next_tick
+    assert 12_000 == clock.Clock(12_000).next_tick
+
+
+def test_functions_in_tables_are_changed_too() -> None:
+    """A table that holds a function gives the changed one."""
+    mutant = _mutant("interp.values.operators", "_quotient", "left / right", "left * right")
+    with put_in_place(mutant):
+        assert 12.0 == operators.apply("/", 6.0, 2.0)
+    assert 3.0 == operators.apply("/", 6.0, 2.0)
+
+
+def test_module_level_names_are_changed_wherever_they_are() -> None:
+    """The modules that use the name have another value, for as long as the context lasts."""
+    mutant = _mutant("interp.controller.interrupts", "_RANGES", "40", "41")
+    assert not interrupts.is_usable(40)
+    with put_in_place(mutant):
+        assert interrupts.is_usable(40)
+    assert not interrupts.is_usable(40)
+    uses = uses_of(mutant)["interp.controller.interrupts"]
+    text = Path(str(interrupts.__file__)).read_text(encoding="utf-8").splitlines()
+    assert all("_RANGES" in text[line - 1] for line in uses)
+
+
+def test_modules_decide_semantics() -> None:
+    """What only records or is only compared with is not changed."""
+    assert "interp.values.operators" in modules()
+    assert "interp.controller.trace" not in modules()
+
+
+def test_lines_that_a_case_runs() -> None:
+    """A case runs the lines of what it uses, and no others."""
+    (reach,) = reach_of([_case("control/if_else")], _SETUP)
+    text = Path(str(tree_statements.__file__)).read_text(encoding="utf-8").splitlines()
+    at = next(number for number, line in enumerate(text, 1) if "def _if(" in line)
+    assert reach.has("interp.tree.statements", frozenset(range(at, at + 12)))
+    assert not reach.has("interp.robot.path.spline", frozenset(range(1, 999)))
+
+
+@needs_fork
+@pytest.mark.parametrize(
+    ("case", "was", "now", "fate"),
+    [
+        ("data/int_division", "right == 0", "right != 0", "soft"),
+        ("data/int_division", "left < 0", "left <= 0", "survived"),
+    ],
+)
+def test_what_becomes_of_a_mutant(case: str, was: str, now: str, fate: str) -> None:
+    """A case whose rule is not sure notices a wrong division; zero has no sign to notice."""
+    mutant = _mutant("interp.values.operators", "_divided", was, now)
+    (trial,) = try_mutants([mutant], reach_of([_case(case)], _SETUP))
+    assert (fate, 1, 1) == (trial.fate, trial.reached, trial.runs)
+    assert ("" if fate == "survived" else case) == trial.case
+
+
+@needs_fork
+def test_a_mutant_that_makes_a_case_fail() -> None:
+    """It is red where the rule of the case is sure."""
+    was, now = "self.now + max(duration, 0)", "self.now - max(duration, 0)"
+    mutant = _mutant("interp.controller.clock", "Clock.tick_after", was, now)
+    (trial,) = try_mutants([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
+    assert "red" == trial.fate
+
+
+@needs_fork
+def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So much computing is more than any case may take where it may take next to none."""
+    monkeypatch.setattr(mutant_trial, "_SECONDS", 1e-6)
+    mutant = _mutant("interp.values.operators", "_divided", "left < 0", "left <= 0")
+    (trial,) = try_mutants([mutant], reach_of([_case("data/int_division")], _SETUP))
+    assert ("soft", "data/int_division") == (trial.fate, trial.case)
+    assert "seconds of computing" in trial.why
+
+
+@needs_fork
+def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
+    """It is not tried on a case that cannot notice it."""
+    mutant = _mutant("interp.values.operators", "_divided", "right == 0", "right != 0")
+    (trial,) = try_mutants([mutant], reach_of([_case("control/if_else")], _SETUP))
+    assert ("survived", 0, 0) == (trial.fate, trial.reached, trial.runs)
+
+
+def test_known_equivalent_changes_exist() -> None:
+    """Each entry is a change that can be drawn; what is no longer there is taken out."""
+    there = {
+        (module, function, was, now)
+        for module in {one[0] for one in equivalent()}
+        for function, was, now in _changes(module)
+    }
+    listed = {(module, function, was, now) for module, function, _, was, now in equivalent()}
+    assert set() == listed - there
+
+
+def test_shares_are_of_what_could_be_noticed() -> None:
+    """Equivalent and invalid mutants count neither as found nor as missed."""
+    mutant = named("interp.values.values:0")
+    fates: tuple[Fate, ...] = ("red", "red", "soft", "survived", "equivalent", "invalid")
+    record = bench.mutants_record({7: [Trial(mutant, fate) for fate in fates]})
+    assert (6, 2, 0.5) == (record["mutants"], record["red"], record["share"])
+    assert [("values", 0.5)] == [(one["package"], one["share"]) for one in record["packages"]]
+    assert [7] == [one["seed"] for one in record["seeds"]]
