@@ -17,6 +17,7 @@ _COMMANDS: Final = {
     "construct": "krl.commands.construct.app:app",
     "check": "krl.commands.check.command:check",
     "explain": "krl.commands.explain:explain",
+    "diff": "krl.commands.diff:diff",
     "format": "krl.commands.format:format_programs",
     "conform": "krl.commands.conform.command:conform",
     "fuzz": "krl.commands.fuzz:fuzz",

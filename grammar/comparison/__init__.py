@@ -1,0 +1,1 @@
+"""Two states of programs compared as a programmer wants it: routines, statements, points, data."""

@@ -1,0 +1,297 @@
+"""Two backups, or two files, compared: the record that `krl diff` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import Any
+
+from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
+from grammar.comparison.matching import likest
+from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change
+from grammar.comparison.renaming import names_in, renamed, renamings
+from grammar.syntax.source import Source
+
+__all__ = ["compare"]
+
+# Beyond this many lines exact comparison takes long, and lines that come up often are left aside.
+_LONG = 5_000
+_DRIVES = frozenset({"r1", "steu"})
+
+_Pair = tuple[Content, Content]
+Record = dict[str, Any]
+
+
+def compare(old: Sequence[Source], new: Sequence[Source]) -> Record:
+    """The differences of two states, each given by its files with paths below its root.
+
+    The record has ``files`` (numbers of those that are the ``same``, and that differ only in
+    ``noise``; paths of those ``added``, ``removed`` and ``moved``), ``names`` that were changed
+    throughout, ``routines`` (changed, added, removed, moved, renamed, with ``hunks`` of
+    statements), ``points`` and ``data``, each in the order of paths. A single file on each side is
+    the same file, whatever its name.
+    """
+    before, after = _contents(old), _contents(new)
+    pairs = _paired(before, after)
+    silent = sum(one.keys == other.keys for one, other in pairs)
+    known = [set().union(*map(names_in, side)) for side in (before, after)]
+    names = renamings(pairs, *known)
+    by_path = {one.path: renamed(one, names) for one in before}
+    before = list(by_path.values())
+    pairs = [(by_path[one.path], other) for one, other in pairs]
+    mine, theirs = {one.path for one, _ in pairs}, {other.path for _, other in pairs}
+    removed = [one for one in before if one.path not in mine]
+    added = [one for one in after if one.path not in theirs]
+    texts = {one.path: one.text for one in old}, {one.path: one.text for one in new}
+    same = sum(texts[0][one.path] == texts[1][other.path] for one, other in pairs)
+    return {
+        "files": {
+            "old": len(before),
+            "new": len(after),
+            "same": same,
+            "noise": silent - same,
+            "added": [one.path for one in added],
+            "removed": [one.path for one in removed],
+            "moved": [
+                {"old": one.path, "new": other.path}
+                for one, other in pairs
+                if _address(one.path) != _address(other.path) and len(before) + len(after) > 2
+            ],
+        },
+        "names": [{"old": was, "new": now} for was, now in sorted(names.items())],
+        "routines": list(_routines(before, after, pairs, names)),
+        "points": [one for pair in pairs for one in _data(*pair, is_point=True)],
+        "data": [one for pair in pairs for one in _data(*pair, is_point=False)],
+    }
+
+
+def _contents(sources: Sequence[Source]) -> list[Content]:
+    return [content_of(one) for one in sorted(sources, key=lambda one: one.path.casefold())]
+
+
+# ------------------------------------------------------------------------------------------- files
+
+
+def _address(path: str) -> str:
+    """The place of a file on its controller: what comes before the drive is another's affair."""
+    parts = path.casefold().split("/")
+    start = next((n for n, part in enumerate(parts) if part in _DRIVES), 0)
+    return "/".join(parts[start:])
+
+
+def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
+    if len(old) == len(new) == 1:
+        return [(old[0], new[0])]
+    pairs: list[_Pair] = []
+    left, right = list(old), list(new)
+    for address in (_address, _name):
+        there = _unique(right, address)
+        here = _unique(left, address)
+        for key, one in here.items():
+            if key in there:
+                pairs.append((one, there[key]))
+        done = {one.path for one, _ in pairs}, {other.path for _, other in pairs}
+        left = [one for one in left if one.path not in done[0]]
+        right = [one for one in right if one.path not in done[1]]
+    lines = {one.path: one.keys for one in left}, {one.path: one.keys for one in right}
+    by_path = {one.path: one for one in left}, {one.path: one for one in right}
+    for before, after in likest(*lines, lambda a, b: _suffix(a) == _suffix(b)):
+        pairs.append((by_path[0][before], by_path[1][after]))
+    return sorted(pairs, key=lambda pair: pair[1].path.casefold())
+
+
+def _name(path: str) -> str:
+    return path.casefold().rpartition("/")[2]
+
+
+def _suffix(path: str) -> str:
+    return path.casefold().rpartition(".")[2]
+
+
+def _unique(contents: Sequence[Content], address: Any) -> dict[str, Content]:
+    found: dict[str, list[Content]] = {}
+    for one in contents:
+        found.setdefault(address(one.path), []).append(one)
+    return {key: some[0] for key, some in found.items() if len(some) == 1}
+
+
+# ---------------------------------------------------------------------------------------- routines
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A routine and its file; ``number`` tells routines of one name in a file apart."""
+
+    path: str
+    number: int
+    routine: RoutineText
+
+
+def _routines(
+    old: Sequence[Content],
+    new: Sequence[Content],
+    pairs: Sequence[_Pair],
+    names: Mapping[str, str],
+) -> Iterator[Record]:
+    left = {one.path: list(_placed(one)) for one in old}
+    right = {one.path: list(_placed(one)) for one in new}
+    found: list[tuple[_Placed, _Placed]] = []
+    for one, other in pairs:
+        there = {(each.routine.name.upper(), each.number): each for each in right[other.path]}
+        for each in list(left[one.path]):
+            name = each.routine.name.upper()
+            match = there.get((names.get(name, name), each.number))
+            if match is not None:
+                found.append((each, match))
+                left[one.path].remove(each)
+                right[other.path].remove(match)
+    gone = {_key(one): one for some in left.values() for one in some}
+    come = {_key(one): one for some in right.values() for one in some}
+    matches = likest(
+        {key: (one.routine.signature, *one.routine.keys) for key, one in gone.items()},
+        {key: (one.routine.signature, *one.routine.keys) for key, one in come.items()},
+    )
+    for before, after in matches:
+        found.append((gone.pop(before), come.pop(after)))
+    paths = {(one.path, other.path) for one, other in pairs}
+    records = [_changed(one, other, (one.path, other.path) in paths) for one, other in found]
+    records += [_alone("removed", each) for each in gone.values()]
+    records += [_alone("added", each) for each in come.values()]
+    yield from sorted(
+        filter(None, records), key=lambda one: (one["file"].casefold(), one["line"], one["name"])
+    )
+
+
+def _placed(content: Content) -> Iterator[_Placed]:
+    seen: dict[str, int] = {}
+    for routine in content.routines:
+        key = routine.name.upper()
+        seen[key] = seen.get(key, 0) + 1
+        yield _Placed(content.path, seen[key], routine)
+
+
+def _key(one: _Placed) -> tuple[str, str, int]:
+    return one.path, one.routine.name.upper(), one.number
+
+
+def _alone(kind: str, one: _Placed) -> Record:
+    routine = one.routine
+    return {
+        "kind": kind,
+        "name": routine.name,
+        "file": one.path,
+        "line": routine.head.number,
+        "statements": len(routine.body),
+        "hunks": [],
+    }
+
+
+def _changed(old: _Placed, new: _Placed, is_same_file: bool) -> Record | None:
+    """What became of a routine; ``None`` where nothing did."""
+    before, after = old.routine, new.routine
+    is_renamed = before.name.upper() != after.name.upper()
+    hunks = list(_hunks(before, after))
+    if not (hunks or is_renamed or not is_same_file):
+        return None
+    kind = "renamed" if is_renamed else "changed" if is_same_file else "moved"
+    return {
+        "kind": kind,
+        "name": after.name,
+        "file": new.path,
+        "line": after.head.number,
+        "old_name": before.name,
+        "old_file": old.path,
+        "statements": len(after.body),
+        "hunks": hunks,
+    }
+
+
+def _hunks(old: RoutineText, new: RoutineText) -> Iterator[Record]:
+    if old.signature != new.signature:
+        yield _hunk([old.head], [new.head], old.head.number, new.head.number)
+    is_long = len(old.body) + len(new.body) > _LONG
+    matcher = SequenceMatcher(None, old.keys, new.keys, autojunk=is_long)
+    for tag, first, last, start, end in matcher.get_opcodes():
+        if tag != "equal":
+            lines = old.body[first:last], new.body[start:end]
+            yield _hunk(*lines, _line(old, first), _line(new, start))
+
+
+def _line(routine: RoutineText, index: int) -> int:
+    """The line of a statement, or behind the last one."""
+    if index < len(routine.body):
+        return routine.body[index].number
+    return (routine.body[-1] if routine.body else routine.head).number + 1
+
+
+def _hunk(old: Sequence[CodeLine], new: Sequence[CodeLine], line: int, new_line: int) -> Record:
+    return {
+        "old_line": line,
+        "new_line": new_line,
+        "old": [one.text for one in old],
+        "new": [one.text for one in new],
+    }
+
+
+# -------------------------------------------------------------------------------------------- data
+
+
+def _data(old: Content, new: Content, *, is_point: bool) -> Iterator[Record]:
+    """What became of the points of a data list, or of everything else in it."""
+    before, after = _of_kind(old, is_point), _of_kind(new, is_point)
+    renamed = {}
+    if is_point:
+        gone = {key: (one.key,) for key, one in before.items() if key not in after}
+        come = {key: (one.key,) for key, one in after.items() if key not in before}
+        renamed = {now: was for was, now in likest(gone, come)}
+    for key, now in after.items():
+        was = before.get(key) or before.get(renamed.get(key, ""))
+        if was is None:
+            yield _datum("added", new.path, now, None, now.text)
+        elif key in renamed:
+            yield {**_datum("renamed", new.path, now, was.text, now.text), "old_name": was.name}
+        elif is_point:
+            yield from _point(old, new, was, now)
+        elif was.key != now.key:
+            yield _datum("changed", new.path, now, was.text, now.text)
+    for key, was in before.items():
+        if key not in after and key not in renamed.values():
+            yield _datum("removed", new.path, was, was.text, None)
+
+
+def _of_kind(content: Content, is_point: bool) -> Mapping[str, Datum]:
+    return {
+        key: one
+        for key, one in content.data.items()
+        if (one.type.upper() in POINT_TYPES) == is_point
+    }
+
+
+def _datum(kind: str, path: str, one: Datum, old: str | None, new: str | None) -> Record:
+    return {
+        "kind": kind,
+        "name": one.name,
+        "type": one.type,
+        "file": path,
+        "line": one.line,
+        "old": old,
+        "new": new,
+    }
+
+
+def _point(old: Content, new: Content, was: Datum, now: Datum) -> Iterator[Record]:
+    """A point that was taught anew, or whose tool or base is another."""
+    frames = frame_numbers(old.data, was.name.upper()), frame_numbers(new.data, now.name.upper())
+    if was.key == now.key and frames[0] == frames[1]:
+        return
+    change = point_change(was, now)
+    yield {
+        **_datum("changed", new.path, now, was.text, now.text),
+        "distance_mm": None if change is None else change.distance,
+        "angle_deg": None if change is None else change.angle,
+        "axis_deg": None if change is None else change.axis,
+        "components": {} if change is None else {k: list(v) for k, v in change.components.items()},
+        "tool": [frames[0][0], frames[1][0]],
+        "base": [frames[0][1], frames[1][1]],
+    }

@@ -1,0 +1,114 @@
+"""How far a taught point has gone: along, around, by axes; and its tool and base.
+
+Positions are in millimetres, angles in degrees: A about Z, then B about the new Y, then C about the
+new X, as KUKA has them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from grammar.comparison.content import Datum
+from grammar.syntax import ast
+
+__all__ = ["POINT_TYPES", "PointChange", "frame_numbers", "point_change"]
+
+_POSES = frozenset({"FRAME", "POS", "E3POS", "E6POS"})
+_AXES = frozenset({"AXIS", "E3AXIS", "E6AXIS"})
+POINT_TYPES = _POSES | _AXES
+
+_Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class PointChange:
+    """What is different about a point; ``None`` where it has no such thing.
+
+    ``distance`` in mm and ``angle`` in degrees are those between two poses, ``axis`` is the largest
+    difference of a robot axis in degrees. ``components`` are all that differ, old and new.
+    """
+
+    distance: float | None
+    angle: float | None
+    axis: float | None
+    components: Mapping[str, tuple[float | None, float | None]]
+
+
+def point_change(old: Datum, new: Datum) -> PointChange | None:
+    """From one value to another; ``None`` unless both are written out in numbers."""
+    before, after = _numbers(old), _numbers(new)
+    if before is None or after is None:
+        return None
+    names = dict.fromkeys([*before, *after])
+    pairs = {name: (before.get(name), after.get(name)) for name in names}
+    changed = {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
+    distance = angle = axis = None
+    if {"X", "Y", "Z"} <= before.keys() & after.keys():
+        distance = math.dist(*([one[name] for name in "XYZ"] for one in (before, after)))
+    if {"A", "B", "C"} <= before.keys() & after.keys():
+        angle = _angle(*(_rotation(*(one[name] for name in "ABC")) for one in (before, after)))
+    axes = [name for name in pairs if name[0] == "A" and name[1:].isdigit()]
+    both = [(a, b) for a, b in map(pairs.__getitem__, axes) if a is not None and b is not None]
+    if both:
+        axis = max(abs(b - a) for a, b in both)
+    return PointChange(distance, angle, axis, changed)
+
+
+def frame_numbers(data: Mapping[str, Datum], point: str) -> tuple[int | None, int | None]:
+    """Tool and base of a point that an inline form has taught: XP1 has them in FP1."""
+    form = data.get(f"F{point[1:]}") if point.startswith("X") else None
+    known = _numbers(form) if form else None
+    numbers = [(known or {}).get(name) for name in ("TOOL_NO", "BASE_NO")]
+    tool, base = (None if one is None else int(one) for one in numbers)
+    return tool, base
+
+
+def _numbers(datum: Datum) -> dict[str, float] | None:
+    """The components of an aggregate that are numbers; ``None`` for anything else."""
+    if not isinstance(datum.value, ast.Aggregate):
+        return None
+    found = {}
+    for one in datum.value.components:
+        number = _number(one.value)
+        if number is not None and one.indices is None:
+            found[one.name.key] = number
+    return found
+
+
+def _number(node: ast.Expression) -> float | None:
+    sign = 1.0
+    while isinstance(node, ast.Unary) and node.operator in ("-", "+"):
+        sign = -sign if node.operator == "-" else sign
+        node = node.operand
+    if isinstance(node, ast.IntegerLiteral | ast.RealLiteral | ast.BitLiteral):
+        return sign * float(node.value)
+    return None
+
+
+def _rotation(a: float, b: float, c: float) -> _Quaternion:
+    """The rotation of A, B, C as a unit quaternion."""
+    (sa, ca), (sb, cb), (sc, cc) = (
+        (math.sin(math.radians(one) / 2), math.cos(math.radians(one) / 2)) for one in (a, b, c)
+    )
+    return (
+        ca * cb * cc + sa * sb * sc,
+        ca * cb * sc - sa * sb * cc,
+        ca * sb * cc + sa * cb * sc,
+        sa * cb * cc - ca * sb * sc,
+    )
+
+
+def _angle(one: _Quaternion, other: _Quaternion) -> float:
+    """The angle between two orientations in degrees, exact for small ones too."""
+    w, x, y, z = one
+    v, p, q, r = other
+    # what leads from one to the other: its vector part is the sine of half the angle
+    vector = (
+        w * p - x * v - y * r + z * q,
+        w * q + x * r - y * v - z * p,
+        w * r - x * q + y * p - z * v,
+    )
+    cosine = abs(w * v + x * p + y * q + z * r)
+    return math.degrees(2 * math.atan2(math.hypot(*vector), cosine))

@@ -1,0 +1,105 @@
+"""Names that were changed throughout: told once, and not line by line.
+
+A name is renamed where lines that changed differ in it alone, always in the same way, and the old
+name is nowhere in the new state, nor the new one in the old.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from difflib import SequenceMatcher
+
+from grammar.comparison.content import CodeLine, Content, Datum, RoutineText
+
+__all__ = ["names_in", "renamed", "renamings"]
+
+_NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
+# Longer routines are compared line by line with less care.
+_LONG = 5_000
+
+
+def names_in(content: Content) -> set[str]:
+    """The names in a file, in upper case."""
+    return {name for key in _keys(content) for name in _NAME.findall(key) if name}
+
+
+def _keys(content: Content) -> Iterator[str]:
+    for routine in content.routines:
+        yield routine.name.upper()
+        yield routine.signature
+        yield from routine.keys
+    for name, datum in content.data.items():
+        yield name
+        yield datum.key
+
+
+def renamings(
+    pairs: Sequence[tuple[Content, Content]], old: set[str], new: set[str]
+) -> dict[str, str]:
+    """The new name for each that was renamed; ``old`` and ``new`` are all names of both states."""
+    votes: Counter[tuple[str, str]] = Counter()
+    for before, after in pairs:
+        for one, other in zip(before.routines, after.routines, strict=False):
+            votes.update(_votes(one.keys, other.keys, old - new, new - old))
+        votes.update(_votes(_data_keys(before), _data_keys(after), old - new, new - old))
+    found: dict[str, str] = {}
+    for (was, now), _ in sorted(votes.items(), key=lambda vote: (-vote[1], vote[0])):
+        if was not in found and now not in found.values():
+            found[was] = now
+    return found
+
+
+def _data_keys(content: Content) -> tuple[str, ...]:
+    return tuple(f"{name} {datum.key}" for name, datum in content.data.items())
+
+
+def _votes(
+    old: Sequence[str], new: Sequence[str], gone: set[str], come: set[str]
+) -> Iterator[tuple[str, str]]:
+    """Old and new name for each line that differs in names alone that are not in both states."""
+    matcher = SequenceMatcher(None, old, new, autojunk=len(old) + len(new) > _LONG)
+    for tag, first, last, start, end in matcher.get_opcodes():
+        if tag != "replace" or last - first != end - start:
+            continue
+        for before, after in zip(old[first:last], new[start:end], strict=True):
+            one, other = _NAME.sub(_split, before).split(), _NAME.sub(_split, after).split()
+            if len(one) != len(other):
+                continue
+            different = {(a, b) for a, b in zip(one, other, strict=True) if a != b}
+            if all(a in gone and b in come for a, b in different):
+                yield from different
+
+
+def _split(found: re.Match[str]) -> str:
+    return f" {found[0]} "
+
+
+def renamed(content: Content, names: Mapping[str, str]) -> Content:
+    """The file with names exchanged for others wherever they are compared."""
+    if not names:
+        return content
+    data = {}
+    for key, datum in content.data.items():
+        data[_in(key, names)] = _datum(datum, names)
+    routines = tuple(_routine(routine, names) for routine in content.routines)
+    return Content(content.path, routines, data)
+
+
+def _routine(routine: RoutineText, names: Mapping[str, str]) -> RoutineText:
+    body = tuple(_line(line, names) for line in routine.body)
+    return replace(routine, signature=_in(routine.signature, names), body=body)
+
+
+def _line(line: CodeLine, names: Mapping[str, str]) -> CodeLine:
+    return replace(line, key=_in(line.key, names))
+
+
+def _datum(datum: Datum, names: Mapping[str, str]) -> Datum:
+    return replace(datum, key=_in(datum.key, names))
+
+
+def _in(key: str, names: Mapping[str, str]) -> str:
+    return _NAME.sub(lambda found: names.get(found[1] or "", found[0]), key)

@@ -1,0 +1,176 @@
+"""`krl diff`: two backups compared as a programmer wants it."""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, shown
+from krl.output_files import check_files, write_json
+
+if TYPE_CHECKING:
+    from grammar.syntax.source import Source
+
+__all__ = ["diff"]
+
+Record = Mapping[str, Any]
+
+_LONGEST = 160
+_NOWHERE = "/dev/null"  # what git hands over for a file that is not there
+
+
+class Format(StrEnum):
+    """How differences are written."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+def diff(
+    old: Annotated[Path, typer.Argument(metavar="OLD", help="A file, folder or .zip archive.")],
+    new: Annotated[
+        Path | None, typer.Argument(metavar="[NEW]", help="The same, as it is now.")
+    ] = None,
+    format_: Annotated[
+        Format, typer.Option("--format", help="How to write the differences.")
+    ] = Format.TEXT,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write a page into this folder.")
+    ] = None,
+    textconv: Annotated[
+        bool,
+        typer.Option("--textconv", help="Print OLD alone, without what is noise: for git."),
+    ] = False,
+) -> int:
+    """Compare programs: routines moved, renamed and changed; and apart from these points and data.
+
+    Headers, comments, folds and layout make no difference, nor does letter case. Exit status 1
+    where there are differences.
+    """
+    from grammar.comparison.backups import compare
+
+    check_files(json_file)
+    if textconv:
+        if new is not None:
+            raise InputError("--textconv takes one file")
+        typer.echo("\n".join(_plain(_sources(old))))
+        return FINE
+    if new is None:
+        raise InputError("name two files, folders or archives: OLD and NEW")
+    sources = _sources(old), _sources(new)
+    if not any(sources):
+        raise InputError(f"{old}, {new}: no KRL in either")
+    record = {"old": old.as_posix(), "new": new.as_posix(), **compare(*sources)}
+    write_json(record, json_file, 1)
+    if html is not None:
+        from reports.diff_page import write_diff_page
+
+        typer.echo(f"page: {write_diff_page(record, html)}", err=True)
+    if format_ is Format.JSON:
+        typer.echo(json.dumps(record, indent=1))
+    else:
+        for line in _text(record):
+            typer.echo(shown(line))
+    files = record["files"]
+    changes = (files["added"], files["removed"], files["moved"])
+    is_changed = any(
+        (*changes, record["names"], record["routines"], record["points"], record["data"])
+    )
+    return FINDINGS if is_changed else FINE
+
+
+def _sources(root: Path) -> "list[Source]":
+    """The programs below a root, with paths that count from there."""
+    from grammar.syntax.source import Source
+    from support.files.decode import decode
+    from support.files.discovery import Found, IngestError, Skipped, discover, read
+
+    if root.as_posix() == _NOWHERE:
+        return []
+    found = []
+    with as_input_errors(IngestError):
+        for one in discover([root]):
+            data = read(one) if isinstance(one, Found) else one
+            decoded = data.reason if isinstance(data, Skipped) else decode(data)
+            if isinstance(decoded, str):
+                typer.echo(shown(f"left out {one.path}: {decoded}"), err=True)
+                continue
+            path = one.path.removeprefix(root.as_posix()).lstrip("/") or root.name
+            found.append(Source(decoded.text, path))
+    return found
+
+
+def _plain(sources: "Iterable[Source]") -> Iterator[str]:
+    """What files say, a line each, as git is to compare them."""
+    from grammar.comparison.content import content_of
+
+    for source in sources:
+        content = content_of(source)
+        for routine in content.routines:
+            if routine.name:
+                yield shown(" ".join(routine.head.text.split()))
+            yield from (shown(" ".join(line.text.split())) for line in routine.body)
+        for datum in content.data.values():
+            yield shown(f"{datum.type} {datum.name} = {datum.text}".strip())
+
+
+# -- text ------------------------------------------------------------------------------------------
+
+
+def _text(record: Record) -> Iterator[str]:
+    files = record["files"]
+    for kind in ("added", "removed"):
+        yield from (f"file {kind}: {path}" for path in files[kind])
+    yield from (f"file moved: {one['old']} -> {one['new']}" for one in files["moved"])
+    yield from (f"name changed throughout: {one['old']} -> {one['new']}" for one in record["names"])
+    for one in record["routines"]:
+        yield ""
+        yield from _routine(one)
+    for title, rows in (("points", record["points"]), ("data", record["data"])):
+        if rows:
+            yield ""
+            yield f"{title}:"
+        yield from (_datum(one) for one in rows)
+    yield ""
+    yield _summary(record)
+
+
+def _routine(one: Record) -> Iterator[str]:
+    from reports.diff_view import routine_words
+
+    name = one["name"] or "outside all routines"
+    yield f"{one['file']}:{one['line']}: {name} {routine_words(one)}"
+    for hunk in one["hunks"]:
+        yield f"  line {hunk['old_line']}, now {hunk['new_line']}"
+        for side, mark in (("old", "-"), ("new", "+")):
+            yield from (f"  {mark} {text}" for text in hunk[side])
+
+
+def _datum(one: Record) -> str:
+    from reports.diff_view import point_words
+
+    said = point_words(one)
+    if len(said) > _LONGEST:
+        said = f"{said[: _LONGEST - 1]}…"
+    return f"  {one['file']}:{one['line']}: {one['name']} {said}"
+
+
+def _summary(record: Record) -> str:
+    files = record["files"]
+    rows: Sequence[tuple[int, str]] = (
+        (len(record["names"]), "names"),
+        (len(record["routines"]), "routines"),
+        (len(record["points"]), "points"),
+        (len(record["data"]), "other data"),
+    )
+    counts = ", ".join(f"{count:,} {name}" for count, name in rows if count) or "nothing"
+    noise = (
+        f"; {files['noise']:,} files differ in comments and layout only" if files["noise"] else ""
+    )
+    return f"{files['old']:,} and {files['new']:,} files: {counts} changed{noise}"

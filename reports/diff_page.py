@@ -1,0 +1,28 @@
+"""The page of two states of programs: one file, no network, no script."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from reports.diff_view import diff_view
+from reports.embedding import embedded_json
+from reports.page import render
+from support.files.atomic_write import write_atomic
+
+__all__ = ["write_diff_page"]
+
+
+def write_diff_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html, the page of a comparison, and return its path.
+
+    ``record`` is what ``krl diff --json`` writes; every field may be absent. The page appears whole
+    or not at all. Raises OSError when the folder cannot be made or written.
+    """
+    page = render(
+        "diff.html.j2",
+        script="",
+        styles=["page.css", "diff.css"],
+        data=embedded_json({}),
+        view=diff_view(record),
+    )
+    return write_atomic(folder / "index.html", page)

@@ -1,0 +1,226 @@
+"""What is said of two states of programs: the words of `krl diff` and of its page."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from reports.embedding import printable
+from reports.number_format import clip, counted
+from reports.record_fields import Record, count, nested, records, text, texts
+
+__all__ = ["DiffView", "PointRow", "diff_view", "point_words", "routine_words"]
+
+_MOST = 2_000
+_LONGEST = 400
+#: An angle below this is what rounding leaves.
+_SMALLEST_ANGLE = 0.005
+#: Components that distance and angle stand for.
+_SUMMED = frozenset("X Y Z A B C A1 A2 A3 A4 A5 A6".split())
+
+
+@dataclass(frozen=True, slots=True)
+class RoutineRow:
+    """A routine: what became of it, and its statements, removed ones marked "-", new ones "+"."""
+
+    place: str
+    name: str
+    said: str
+    hunks: Sequence[Sequence[tuple[str, str]]]
+    statements: int
+
+
+@dataclass(frozen=True, slots=True)
+class PointRow:
+    """A point: what became of it; distance in mm, angles in degrees, empty where there is none."""
+
+    place: str
+    name: str
+    said: str
+    distance: str
+    angle: str
+    axis: str
+    frames: str
+
+
+@dataclass(frozen=True, slots=True)
+class DatumRow:
+    """Another item of a data list, old and new."""
+
+    place: str
+    name: str
+    kind: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True, slots=True)
+class DiffView:
+    """What the page shows; lists are cut, ``left_out`` says how many rows of each are missing."""
+
+    old: str
+    new: str
+    figures: Sequence[Mapping[str, Any]]
+    names: Sequence[tuple[str, str]]
+    files: Sequence[str]
+    routines: Sequence[RoutineRow]
+    points: Sequence[PointRow]
+    data: Sequence[DatumRow]
+    left_out: Mapping[str, int]
+
+
+def diff_view(record: Record) -> DiffView:
+    """The view of a record of ``krl diff``; every field may be absent."""
+    files = nested(record, "files")
+    routines, points, data = (records(record, key) for key in ("routines", "points", "data"))
+    far = sorted(points, key=lambda one: -_far(one))
+    figures = [
+        _figure("routines changed", len(routines), ""),
+        _figure("points changed", len(points), ""),
+        _figure("other data", len(data), ""),
+        _figure("names changed throughout", len(records(record, "names")), ""),
+        _figure(
+            "files now",
+            count(files, "new"),
+            f"{count(files, 'same'):,} the same; {count(files, 'noise'):,} but for comments",
+        ),
+    ]
+    return DiffView(
+        _shown(text(record, "old")),
+        _shown(text(record, "new")),
+        figures,
+        [(_shown(text(one, "old")), _shown(text(one, "new"))) for one in records(record, "names")],
+        [*_files(files)][:_MOST],
+        [_routine(one) for one in routines[:_MOST]],
+        [_point(one) for one in far[:_MOST]],
+        [_datum(one) for one in data[:_MOST]],
+        {
+            "routines": max(0, len(routines) - _MOST),
+            "points": max(0, len(points) - _MOST),
+            "data": max(0, len(data) - _MOST),
+        },
+    )
+
+
+def _figure(label: str, value: int, note: str) -> Mapping[str, Any]:
+    return {"label": label, "value": f"{value:,}", "share": None, "note": note}
+
+
+def _files(files: Record) -> Iterator[str]:
+    yield from (f"{_shown(path)} added" for path in texts(files, "added"))
+    yield from (f"{_shown(path)} removed" for path in texts(files, "removed"))
+    for one in records(files, "moved"):
+        yield f"{_shown(text(one, 'new'))} was {_shown(text(one, 'old'))}"
+
+
+def _shown(words: str) -> str:
+    return printable(clip(words, _LONGEST))
+
+
+def _place(one: Record) -> str:
+    return _shown(f"{text(one, 'file')}:{count(one, 'line')}")
+
+
+# ---------------------------------------------------------------------------------------- routines
+
+
+def routine_words(one: Record) -> str:
+    """What became of a routine."""
+    size = counted(count(one, "statements"), "statement")
+    match text(one, "kind"):
+        case "added" | "removed" as kind:
+            return f"{kind}, {size}"
+        case "moved":
+            return f"moved here from {text(one, 'old_file')}"
+        case "renamed":
+            other = text(one, "old_file")
+            where = "" if other == text(one, "file") else f" in {other}"
+            return f"was {text(one, 'old_name')}{where}"
+    return "changed"
+
+
+def _routine(one: Record) -> RoutineRow:
+    hunks = [
+        [(mark, _shown(line)) for key, mark in (("old", "-"), ("new", "+"))
+         for line in texts(hunk, key)]
+        for hunk in records(one, "hunks")
+    ]  # fmt: skip
+    name = text(one, "name") or "outside all routines"
+    size = sum(map(len, hunks))
+    return RoutineRow(_place(one), _shown(name), _shown(routine_words(one)), hunks, size)
+
+
+# ------------------------------------------------------------------------------- points and data
+
+
+def point_words(one: Record) -> str:
+    """What became of a point or another item of a data list."""
+    match text(one, "kind"):
+        case "added":
+            return f"added: {text(one, 'new')}"
+        case "removed":
+            return f"removed: {text(one, 'old')}"
+        case "renamed":
+            return f"was {text(one, 'old_name')}"
+    if one.get("distance_mm") is None and one.get("axis_deg") is None:
+        return f"{text(one, 'old')} -> {text(one, 'new')}"
+    return ", ".join(_changes(one))
+
+
+def _changes(one: Record) -> Iterator[str]:
+    distance, angle, axis = _measures(one)
+    if distance:
+        yield f"moved {distance} mm"
+    if angle:
+        yield f"turned {angle} deg"
+    if axis:
+        yield f"an axis by {axis} deg"
+    yield from _others(one)
+    yield from filter(None, [_frames(one)])
+
+
+def _measures(one: Record) -> tuple[str, str, str]:
+    values = [one.get(key) for key in ("distance_mm", "angle_deg", "axis_deg")]
+    least = (0.0, _SMALLEST_ANGLE, 0.0)
+    distance, angle, axis = (
+        f"{value:.2f}" if isinstance(value, int | float) and value > limit else ""
+        for value, limit in zip(values, least, strict=True)
+    )
+    return distance, angle, axis
+
+
+def _others(one: Record) -> Iterator[str]:
+    for name, pair in nested(one, "components").items():
+        if name not in _SUMMED and isinstance(pair, list) and len(pair) == 2:
+            yield f"{name} {_number(pair[0])} -> {_number(pair[1])}"
+
+
+def _frames(one: Record) -> str:
+    """Tool and base, with what they were."""
+    said = []
+    for name in ("tool", "base"):
+        pair = one.get(name)
+        if isinstance(pair, list) and len(pair) == 2 and pair != [None, None]:
+            before, after = map(_number, pair)
+            said.append(f"{name} {after}" if before == after else f"{name} {before} -> {after}")
+    return ", ".join(said)
+
+
+def _number(value: object) -> str:
+    return f"{value:g}" if isinstance(value, int | float) else "none"
+
+
+def _far(one: Record) -> float:
+    value = one.get("distance_mm")
+    return float(value) if isinstance(value, int | float) else -1.0
+
+
+def _point(one: Record) -> PointRow:
+    is_measured = text(one, "kind") == "changed" and any(_measures(one))
+    said = ", ".join(_others(one)) if is_measured else point_words(one)
+    name = text(one, "name")
+    return PointRow(_place(one), _shown(name), _shown(said), *_measures(one), _shown(_frames(one)))
+
+
+def _datum(one: Record) -> DatumRow:
+    old, new = _shown(text(one, "old")), _shown(text(one, "new"))
+    return DatumRow(_place(one), _shown(text(one, "name")), text(one, "kind"), old, new)
