@@ -1,7 +1,7 @@
 """`krl diff`: two backups compared as a programmer wants it."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -162,15 +162,11 @@ def _datum(one: Record) -> str:
 
 
 def _summary(record: Record) -> str:
+    from reports.number_format import counted
+
     files = record["files"]
-    rows: Sequence[tuple[int, str]] = (
-        (len(record["names"]), "names"),
-        (len(record["routines"]), "routines"),
-        (len(record["points"]), "points"),
-        (len(record["data"]), "other data"),
-    )
-    counts = ", ".join(f"{count:,} {name}" for count, name in rows if count) or "nothing"
-    noise = (
-        f"; {files['noise']:,} files differ in comments and layout only" if files["noise"] else ""
-    )
+    nouns = {"names": "name", "routines": "routine", "points": "point", "data": "other item"}
+    found = [counted(len(record[key]), noun) for key, noun in nouns.items() if record[key]]
+    counts = ", ".join(found) or "nothing"
+    noise = f"; {files['noise']:,} differ in comments and layout only" if files["noise"] else ""
     return f"{files['old']:,} and {files['new']:,} files: {counts} changed{noise}"

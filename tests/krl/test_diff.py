@@ -31,7 +31,7 @@ def test_differences_are_told(states: tuple[str, str], capsys: pytest.CaptureFix
     said = capsys.readouterr().out
     assert "a.src:1: A changed\n  line 3, now 3\n  - N = 1\n  + N = 2\n" in said
     assert "a.dat:2: XP1 moved 12.50 mm\n" in said
-    assert said.endswith("2 and 2 files: 1 routines, 1 points changed\n")
+    assert said.endswith("2 and 2 files: 1 routine, 1 point changed\n")
 
 
 def test_the_same_is_no_difference(
