@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, NotRequired, TypedDict
@@ -14,6 +15,8 @@ from interp.controller.motion_queue import PlannedPoint
 from interp.program.load import CheckedProgram
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import links_of
+from interp.robot.simulation.observations import ObservationRecord
+from interp.robot.simulation.scene import Scene
 from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
@@ -40,15 +43,16 @@ class FileRecord(TypedDict):
 
 
 class LimitsRecord(TypedDict):
-    """Software limit switches, greatest speeds and accelerations of the axes; speed of the tool.
+    """Software limit switches, greatest speeds, accelerations and torques of the axes; tool speed.
 
-    0 where the machine data names no speed or acceleration.
+    0 where the machine data names none.
     """
 
     axes: list[list[float]]
     axis_speeds: list[float]
     axis_accelerations: list[float]
     speed: float
+    axis_torques: list[float]
 
 
 class PointRecord(TypedDict):
@@ -88,6 +92,20 @@ class LinkRecord(TypedDict):
     shapes: list[ShapeRecord]
 
 
+class ObjectRecord(TypedDict):
+    """An object of the scene: ``frame`` is its middle in $WORLD, or on the flange where ``held``.
+
+    ``shape`` is box, cylinder, sphere or mesh; ``edges`` are those of the box around it in mm, 0
+    for a mesh, whose corners lie in a file.
+    """
+
+    name: str
+    shape: str
+    frame: list[float]
+    edges: list[float]
+    held: bool
+
+
 class ToolRecord(TypedDict):
     """From time ``t`` on: $TOOL on the flange, and $BASE in $WORLD, sixteen numbers row by row."""
 
@@ -108,6 +126,7 @@ class ArmRecord(TypedDict):
     hand: int
     flange: list[float]
     tools: list[ToolRecord]
+    objects: list[ObjectRecord]
 
 
 class PathSamples(TypedDict):
@@ -115,6 +134,7 @@ class PathSamples(TypedDict):
 
     ``axes`` has a column an axis in degrees or mm, robot axes first; so have ``axis_speeds`` and
     ``axis_accelerations``, the differences of the set-points over time. Another tool is no speed.
+    ``axis_torques`` in Nm or N are those that the set-points ask for, where the robot has masses.
     """
 
     t: list[int]
@@ -124,6 +144,7 @@ class PathSamples(TypedDict):
     axis_speeds: list[list[float]]
     axis_accelerations: list[list[float]]
     tool_measured: NotRequired[list[list[float]]]
+    axis_torques: NotRequired[list[list[float]]]
 
 
 class DeviationRecord(TypedDict):
@@ -147,6 +168,7 @@ class RunRecord(TypedDict):
     limits: LimitsRecord
     arm: ArmRecord
     points: list[PointRecord]
+    observations: list[ObservationRecord]
     path: NotRequired[PathSamples]
     deviation: NotRequired[DeviationRecord | None]
 
@@ -177,7 +199,8 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
             program, {event["at"].rpartition(":")[0] for event in events if event["at"]}
         ),
         "limits": _limits(run.machine),
-        "arm": _arm(run.machine, run.path),
+        "arm": _arm(run.machine, run.path, setup.scene or Scene()),
+        "observations": [one.record() for one in run.observations],
         "points": [
             {
                 "motion": point.number,
@@ -216,7 +239,7 @@ def _tip(point: PlannedPoint, machine: MachineData) -> list[float]:
     return [round(value, 4) for value in tip.position]
 
 
-def _arm(machine: MachineData, path: PathRecord | None) -> ArmRecord:
+def _arm(machine: MachineData, path: PathRecord | None, scene: Scene) -> ArmRecord:
     frames = () if path is None else path.placements
     return {
         "axes": [axis.name for axis in (*machine.axes, *machine.externals)],
@@ -240,11 +263,21 @@ def _arm(machine: MachineData, path: PathRecord | None) -> ArmRecord:
             }
             for link in links_of(machine)
         ],
-        "hand": len(machine.axes),
+        "hand": len(machine.chain.joints),
         "flange": _numbers(machine.chain.end),
         "tools": [
             {"t": time, "tool": _numbers(placement.tool), "base": _numbers(placement.base)}
             for time, placement in frames
+        ],
+        "objects": [
+            {
+                "name": one.name,
+                "shape": one.shape,
+                "frame": _numbers(one.frame),
+                "edges": list(one.edges),
+                "held": one.is_held,
+            }
+            for one in scene.objects
         ],
     }
 
@@ -256,11 +289,13 @@ def _numbers(pose: Pose) -> list[float]:
 def _limits(machine: MachineData) -> LimitsRecord:
     axes = (*machine.axes, *machine.externals)
     dynamics = [axis.dynamics for axis in axes]
+    torques = (*machine.torques, *(math.inf,) * (len(axes) - len(machine.torques)))
     return {
         "axes": [[axis.lower, axis.upper] for axis in axes],
         "axis_speeds": [0.0 if one is None else one.velocity for one in dynamics],
         "axis_accelerations": [0.0 if one is None else one.acceleration for one in dynamics],
         "speed": machine.velocity.path,
+        "axis_torques": [torque if torque < math.inf else 0.0 for torque in torques],
     }
 
 
@@ -285,6 +320,8 @@ def _path(path: PathRecord) -> PathSamples:
     }
     if path.tips_measured is not None:
         record["tool_measured"] = path.tips_measured.round(4).tolist()
+    if path.torques is not None:
+        record["axis_torques"] = [column.round(2).tolist() for column in path.torques.T]
     return record
 
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from grammar.syntax.source import Source
 from interp.controller.controller import Controller
@@ -35,12 +34,17 @@ from interp.robot.models import default_machine, model_file
 from interp.robot.models.stand_in import fitting_arm
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import RobotName, make_robot
+from interp.robot.simulation.observations import Observation, Observer
 from interp.robot.simulation.robot import Robot
+from interp.robot.simulation.scene import Scene
 from interp.robot.simulation.tracking import PathRecord, Tracking
 from interp.standins.uses import FOLDER
 from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
+
+if TYPE_CHECKING:
+    from interp.robot.simulation.robot_files import RobotFile
 
 __all__ = [
     "EXECUTORS",
@@ -68,7 +72,8 @@ class RunSetup:
     assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
     ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand before it
     counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another
-    robot than ``robot`` names, of the machine and the cycle in µs. ``is_tolerant``: where another
+    robot than ``robot`` names, of the machine and the cycle in µs. ``scene`` is what stands around
+    the arm, ``robot_file`` an arm in place of that of the project. ``is_tolerant``: where another
     arm stands in for one whose machine data is not understood, or a declaration for one that the
     project lacks, the controller skips motions that cannot be planned and predefined routines that
     are not simulated.
@@ -88,6 +93,8 @@ class RunSetup:
     patience: int = HOUR
     limits: Limits | None = None
     make_robot: Callable[[MachineData, int], Robot] | None = None
+    scene: Scene | None = None
+    robot_file: RobotFile | None = None
     is_tolerant: bool = False
 
 
@@ -96,8 +103,9 @@ class RunResult:
     """What came of a run: how it ended, the trace, and where the arm went.
 
     ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
-    ``start`` are those that were used; ``machine_note`` says why the machine is not the project's
-    own, where it had to be told.
+    ``start`` are those that were used; ``observations`` what the arm touched, with a scene or
+    MuJoCo, and where it was asked for more torque than it bears; ``machine_note`` says why the
+    machine is not the project's own, where it had to be told.
     """
 
     outcome: RunOutcome
@@ -107,6 +115,7 @@ class RunResult:
     start: tuple[float, ...]
     controller: Controller
     machine_note: str = ""
+    observations: tuple[Observation, ...] = ()
 
 
 def run_program(
@@ -128,7 +137,9 @@ def run_program(
     program, profile, note = prepared.program, setup.profile, ""
     program.start(prepared.routine)  # what is wrong with it is said alike for all executors
     values = system_values(program)
-    if setup.machine is not None:
+    if setup.robot_file is not None:
+        machine = setup.robot_file.machine
+    elif setup.machine is not None:
         machine = setup.machine
     elif setup.is_tolerant:
         machine, note = _machine_or_other(program, profile)
@@ -144,8 +155,11 @@ def run_program(
         arm = PlannedArm(machine, start, is_selected=not profile.is_tolerant)
     except Fault as fault:
         raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
-    robot = (setup.make_robot or partial(make_robot, setup.robot))(machine, profile.cycle)
-    tracking = Tracking(arm, robot, machine, profile.cycle, start)
+    if setup.make_robot is not None:
+        robot = setup.make_robot(machine, profile.cycle)
+    else:
+        robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
+    tracking = Tracking(arm, robot, machine, profile.cycle, start, _observer(machine, setup))
     trace = Trace(take, is_full=setup.is_full)
     sink, submit_sink = trace.sink(), trace.sink("submit")
     limits = setup.limits or Limits(per_slice=profile.statements)
@@ -171,7 +185,26 @@ def run_program(
     )
     outcome = _run(controller, setup, on_time)
     path = tracking.record() if robot.step else None
-    return RunResult(outcome, trace.events, path, machine, tuple(start), controller, note)
+    return RunResult(
+        outcome,
+        trace.events,
+        path,
+        machine,
+        tuple(start),
+        controller,
+        note,
+        tracking.observations(),
+    )
+
+
+def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
+    """Who looks for contacts, where there is something to touch."""
+    if setup.scene is None and (setup.robot != "mujoco" or setup.make_robot is not None):
+        return None
+    from interp.robot.simulation.cell import Cell
+    from interp.robot.simulation.contacts import ContactCheck
+
+    return ContactCheck(Cell(machine, setup.scene or Scene(), setup.robot_file))
 
 
 #: Virtual time in µs from one report of progress to the next.

@@ -342,7 +342,7 @@ class MotionQueue:
         if queued.target is not None:
             self._positions.keep("FOR", queued.target)
         if self._tracking is not None:
-            self._tracking.placed(self._state.clock.now, planned.motion.settings.placement)
+            self._tracking.begun(self._state.clock.now, planned.motion)
 
     def _ended(self, event: CoreEvent, queued: _QueuedMotion) -> None:
         state = self._state

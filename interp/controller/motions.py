@@ -6,6 +6,7 @@ is no complete PTP 1443.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
@@ -25,17 +26,20 @@ from interp.port.requests import (
 )
 from interp.robot.arm import (
     Approximation,
+    Load,
     Motion,
     Place,
     Settings,
     SplinePart,
     Target,
 )
+from interp.values.poses import IDENTITY
 from interp.values.values import ArrayValue, StructureValue
 
 __all__ = ["MotionBuilder", "PlannedMotion", "is_complete", "target_of"]
 
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
+_LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 _KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})
 _JOINT: Final = frozenset({"PTP", "SPTP"})
 
@@ -70,6 +74,17 @@ def is_complete(target: Target) -> bool:
 def _numbers(value: Any, default: float) -> tuple[float, ...]:
     found: list[Any] = list(value) if isinstance(value, ArrayValue) else []
     return tuple(float(default if one is None else one) for one in found)
+
+
+def _load(value: Any) -> Load | None:
+    """A load that has a mass; -1 kg stands for one that is unknown."""
+    mass = value.get("M") if isinstance(value, StructureValue) else None
+    if not isinstance(mass, int | float) or not 0.0 < mass < math.inf:
+        return None
+    inertia: Any = value.get("J")
+    about = [inertia.get(name) or 0.0 for name in "XYZ"] if inertia is not None else [0.0] * 3
+    x, y, z = (max(float(one), 0.0) for one in about)
+    return Load(float(mass), pose_of(value.get("CM")) or IDENTITY, (x, y, z))
 
 
 def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
@@ -233,6 +248,7 @@ class MotionBuilder:
             self._state.mode == "T1",
             word_of(self._variables.read(("$CP_VEL_TYPE",))),
             word_of(self._variables.read(("$TARGET_STATUS",))),
+            {name: load for name in _LOADS if (load := _load(values.get(name))) is not None},
         )
 
     def _places(self, built: PlannedMotion, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:

@@ -19,13 +19,14 @@ import numpy.typing as npt
 
 from interp.port.requests import At, SplineRange
 from interp.robot.kinematics.placement import Placement
-from interp.values.poses import Pose
+from interp.values.poses import IDENTITY, Pose
 
 __all__ = [
     "Approximation",
     "Arm",
     "ArmEvent",
     "EventKind",
+    "Load",
     "Motion",
     "Place",
     "Position",
@@ -51,6 +52,19 @@ class Approximation:
 
 
 @dataclass(frozen=True, slots=True)
+class Load:
+    """A mass in kg at ``centre``, in mm, with its own inertia about X, Y and Z in kg m² [TYP-14].
+
+    ``centre`` counts in front of the flange for $LOAD and $LOAD_A3 (with axes 4 to 6 at 0), of the
+    robot's foot for $LOAD_A1 (with A1 at 0) and $LOAD_A2 (with A2 at -90).
+    """
+
+    mass: float
+    centre: Pose = IDENTITY
+    inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Settings:
     """The advance values of the motion parameters, as they stood when a motion was planned.
 
@@ -58,7 +72,8 @@ class Settings:
     ``rotation`` the pairs ORI1 and ORI2 of both in deg/s and deg/s² [MOT-04]. ``axis_velocity``,
     ``axis_acceleration`` and ``axis_jerk`` are per cent of the machine data, robot axes first, then
     external ones [MOT-02]. ``is_reduced`` is T1 [MOT-07]. ``speed_type`` is $CP_VEL_TYPE, as
-    delivered [MOT-08]; ``target_status`` is $TARGET_STATUS [POS-09].
+    delivered [MOT-08]; ``target_status`` is $TARGET_STATUS [POS-09]. ``loads`` are those of $LOAD,
+    $LOAD_A1, $LOAD_A2 and $LOAD_A3 that have a mass, by these names.
     """
 
     placement: Placement = field(default_factory=Placement)
@@ -75,6 +90,7 @@ class Settings:
     is_reduced: bool = False
     speed_type: str = "#VAR_T1"
     target_status: str = "#SOURCE"
+    loads: Mapping[str, Load] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

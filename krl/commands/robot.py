@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.errors import FINE, InputError, as_input_errors
+from krl.errors import FINE, InputError
 from krl.extras import ARM, expected_extras
+from krl.robot_options import read_machine_file
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
@@ -81,22 +82,10 @@ class _Point:
 
 def _arm(path: Path) -> "Kinematics":
     """The arm of a $machine.dat; imports are late because they take longer than most commands."""
-    from interp.robot.kinematics.data_list import DataListError
-    from interp.robot.kinematics.machine_data import MachineDataError, read_machine
-    from support.files.decode import decode
-    from support.files.untrusted import read_bytes
-
-    source = decode(read_bytes(path))
-    if isinstance(source, str):
-        raise InputError(f"{path}: not machine data: {source}")
-    with as_input_errors(DataListError, MachineDataError):
-        machine = read_machine(source.text, str(path))
     with expected_extras(*ARM):
         from interp.robot.kinematics.arms import kinematics_of
-    try:
-        return kinematics_of(machine)
-    except MachineDataError as error:
-        raise InputError(f"{path}: {error}") from error
+
+        return kinematics_of(read_machine_file(path))
 
 
 def _answer(arm: "Kinematics", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:

@@ -1,5 +1,6 @@
 """`krl run`: a program on the controller, with an arm that moves."""
 
+import json
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -18,6 +19,7 @@ from krl.output_files import check_files
 from krl.program_loading import load_program
 from krl.progress import progress_bar
 from krl.project_settings import settings_of
+from krl.robot_options import robot_options
 from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
@@ -116,6 +118,24 @@ def run(
     video: Annotated[
         Path | None, typer.Option(metavar="FILE.gif", help="Film the MuJoCo arm; .webp goes too.")
     ] = None,
+    machine: Annotated[
+        Path | None,
+        typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
+    ] = None,
+    urdf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
+    ] = None,
+    mjcf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
+    ] = None,
+    scene: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
+    ] = None,
+    observations: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.jsonl", help="Write contacts and excessive torques here."),
+    ] = None,
     motion: Annotated[
         Motion,
         typer.Option(help="Plan motions as they come, or as the paper did in batches."),
@@ -141,9 +161,10 @@ def run(
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
     The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
-    its end or to a HALT, 1 after a fault, where its time or budget was used up, or where a motion
-    was skipped. What the project lacks, a routine behind an inline form for instance, stands in and
-    is listed; motions that cannot be planned for want of it are skipped.
+    its end or to a HALT, 1 after a fault, where its time or budget was used up, where a motion was
+    skipped, where the arm touched something or could not bear a torque. What the project lacks,
+    a routine behind an inline form for instance, stands in and is listed; motions that cannot
+    be planned for want of it are skipped.
     """
     with _expected_errors():
         from interp.controller.automatic_inputs import OPERATOR
@@ -160,6 +181,8 @@ def run(
         if is_auto and io_script is None:
             typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
         _check_targets(trace, path, html, video, robot)
+        check_files(observations)
+        own = robot_options(machine, urdf, mjcf, scene, has_robot=robot is not Robot.NONE)
         program, left = load_program(file, strict=strict, stands_in=not strict)
         if is_auto and submit is None:
             submit = submit_of(program)
@@ -174,6 +197,9 @@ def run(
             motion=motion.value,
             until=round((max_time or (_AUTO_SECONDS if is_auto else _SECONDS)) * 1e6),
             is_tolerant=not strict,
+            machine=own.machine,
+            robot_file=own.file,
+            scene=own.scene,
         )
         for why in left[:_MOST_TOLD]:
             typer.echo(one_line(f"left out: {why}"), err=True)
@@ -181,13 +207,15 @@ def run(
             typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html, video)
+        if observations is not None:
+            _write_observations(done, observations)
     for line in _notes(done, program, setup):
         typer.echo(one_line(line), err=True)
     typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
     if html is not None:
         typer.echo(one_line(f"page: {html}"))
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped_motions
-    return FINE if is_fine else FINDINGS
+    return FINE if is_fine and not done.observations else FINDINGS
 
 
 def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
@@ -205,6 +233,10 @@ def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> I
         yield f"motion skipped: {at.file}:{at.line}: {error}"
     if len(skipped) > _MOST_TOLD:
         yield f"motion skipped: {len(skipped) - _MOST_TOLD} more"
+    for seen in done.observations[:_MOST_TOLD]:
+        yield f"{seen.kind}: {seen}"
+    if len(done.observations) > _MOST_TOLD:
+        yield f"seen: {len(done.observations) - _MOST_TOLD} more"
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"
 
@@ -307,18 +339,28 @@ def _write(
 
         write_run_page(_record(done, program, setup), html)
     if video is not None and done.path is not None:
-        _film(done, video)
+        _film(done, setup, video)
 
 
-def _film(done: "RunResult", target: Path) -> None:
+def _write_observations(done: "RunResult", target: Path) -> None:
+    """One observation a line, in the order in which they began."""
+    lines = (json.dumps(one.record()) + "\n" for one in done.observations)
+    with atomic_path(target) as part:
+        part.write_text("".join(lines), encoding="utf-8", newline="\n")
+
+
+def _film(done: "RunResult", setup: "RunSetup", target: Path) -> None:
+    from interp.robot.simulation.cell import Cell
+    from interp.robot.simulation.scene import Scene
     from interp.robot.simulation.video import VideoError, frame_count, write_video
 
     assert done.path is not None
+    cell = Cell(done.machine, setup.scene or Scene(), setup.robot_file)
     shown = done.path.axes if done.path.axes_measured is None else done.path.axes_measured
     try:
         filming = progress_bar("filming", frame_count(done.path.times))
         with filming as bar, atomic_path(target) as part:
-            write_video(part, done.machine, done.path.times, shown, on_frame=bar)
+            write_video(part, cell, done.path.times, shown, on_frame=bar)
     except VideoError as error:
         raise InputError(str(error)) from error
 

@@ -125,7 +125,9 @@ class MachineData:
 
     ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
     motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
-    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``palletising`` is ``None``
+    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``torques`` are the
+    most that the robot axes bear, in Nm (N for linear ones); none where they are unknown, infinite
+    where one is. ``palletising`` is ``None``
     for an arm whose axes are all free. ``own_chain`` is that of an arm which was described joint by
     joint; lengths and frames of the wrist mean nothing then.
     """
@@ -148,6 +150,7 @@ class MachineData:
     acceleration: CartesianLimits
     t1_speed: float
     t1_reduction: float
+    torques: tuple[float, ...] = ()
     palletising: Palletising | None = None
     own_chain: Chain | None = None
 

@@ -7,10 +7,14 @@ arm with masses that follows as well as it can.
 
 from __future__ import annotations
 
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.robot import KinematicRobot, NoRobot, Robot
+from interp.robot.simulation.scene import Scene
+
+if TYPE_CHECKING:
+    from interp.robot.simulation.robot_files import RobotFile
 
 __all__ = ["ROBOTS", "RobotName", "make_robot"]
 
@@ -18,10 +22,20 @@ RobotName = Literal["none", "kinematic", "mujoco"]
 ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
 
 
-def make_robot(name: RobotName, machine: MachineData, cycle: int) -> Robot:
-    """A robot by its name. Raises `ImportError` for ``mujoco`` where MuJoCo is not installed."""
+def make_robot(
+    name: RobotName,
+    machine: MachineData,
+    cycle: int,
+    scene: Scene | None = None,
+    file: RobotFile | None = None,
+) -> Robot:
+    """A robot by its name; one with masses is that of ``file``, where there is one.
+
+    Raises `ImportError` for ``mujoco`` where MuJoCo is not installed.
+    """
     if name == "mujoco":
+        from interp.robot.simulation.cell import Cell
         from interp.robot.simulation.mujoco import MujocoRobot
 
-        return MujocoRobot(machine)
+        return MujocoRobot(Cell(machine, scene or Scene(), file))
     return KinematicRobot(cycle) if name == "kinematic" else NoRobot()

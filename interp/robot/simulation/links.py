@@ -70,7 +70,8 @@ def links_of(machine: MachineData) -> tuple[Link, ...]:
     mass = _KNOWN_MASS * scale**3
     inertia = mass * (reach_of(machine) / 1000.0) ** 2
     links = [Link("foot", None, machine.robroot, shapes=_foot(machine, mass))]
-    joints = zip(machine.chain.joints, _ROTORS, _shapes(machine, mass), strict=True)
+    bodies = _shapes(machine, mass) if machine.own_chain is None else _rods(machine, mass)
+    joints = zip(machine.chain.joints, _ROTORS, bodies, strict=False)
     for place, (joint, rotor, shapes) in enumerate(joints):
         links.append(
             Link(
@@ -88,7 +89,10 @@ def links_of(machine: MachineData) -> tuple[Link, ...]:
 
 
 def reach_of(machine: MachineData) -> float:
-    """From axis 1 to the wrist centre of the stretched arm, in mm."""
+    """From axis 1 to the wrist centre of the stretched arm, in mm; to the last joint of a chain."""
+    if machine.own_chain is not None:
+        lengths = [math.hypot(*joint.frame.position) for joint in machine.own_chain.joints[1:]]
+        return max(sum(lengths), math.hypot(*machine.own_chain.end.position), 1.0)
     forward, aside, up = machine.tx3p3.position
     return abs(machine.length_a) + machine.length_b + math.hypot(forward, aside, up)
 
@@ -98,6 +102,9 @@ _ROTORS = (0.012, 0.012, 0.008, 0.001, 0.001, 0.0006)
 
 
 def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:
+    if machine.own_chain is not None:
+        top = machine.own_chain.joints[0].frame.position
+        return (Capsule(_ORIGIN, top, 0.1 * reach_of(machine), 0.22 * mass, DARK),)
     middle = _scaled(machine.tiroro.position, 0.5)
     return (Capsule(_ORIGIN, middle, 0.105 * reach_of(machine), 0.22 * mass, DARK),)
 
@@ -128,6 +135,17 @@ def _shapes(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...
             for start, end, radius, share, colour in link
         )
         for link in shares
+    )
+
+
+def _rods(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
+    """A rod from each joint to the next, thinner towards the flange."""
+    joints, reach = machine.chain.joints, reach_of(machine)
+    ends = [*(joint.frame.position for joint in joints[1:]), machine.chain.end.position]
+    share = mass / len(ends)
+    return tuple(
+        (Capsule(_ORIGIN, end, (0.08 - 0.009 * place) * reach, share),)
+        for place, end in enumerate(ends)
     )
 
 

@@ -12,18 +12,16 @@ actuators, and what they are told is the torque plus the set-point times their g
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 from mujoco import rollout
 
-from interp.robot.arm import Samples
-from interp.robot.kinematics.machine_data import AxisKind, MachineData
-from interp.robot.simulation.mujoco_model import TOUCH, Box, mjcf_of
-from interp.robot.simulation.robot import RobotFault, check_samples
+from interp.robot.arm import Load, Samples
+from interp.robot.simulation.cell import Cell, put_loads
+from interp.robot.simulation.robot import Measured, RobotFault, check_samples
 
 __all__ = ["MujocoRobot"]
 
@@ -37,6 +35,7 @@ _LOST = 2.0
 but a model that is too stiff for its steps."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
+_NO_CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
 _NO_FORCES = int(
     mujoco.mjtDisableBit.mjDSBL_CONTACT
     | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
@@ -46,7 +45,7 @@ _NO_FORCES = int(
 
 
 class MujocoRobot:
-    """The arm of some machine data, among obstacles.
+    """The arm of a cell. What it touches does not stop it: `interp.robot.simulation.contacts`.
 
     It stands still from a fault on, until `stand` puts it somewhere else.
     """
@@ -54,55 +53,67 @@ class MujocoRobot:
     step = _STEP
     chunk = _CHUNK
 
-    def __init__(self, machine: MachineData, boxes: Sequence[Box] = ()) -> None:
+    def __init__(self, cell: Cell) -> None:
         _be_quiet()
-        text = mjcf_of(machine, boxes)
-        self._model = mujoco.MjModel.from_xml_string(text)
+        self._machine = cell.machine
+        self._model, self._free = cell.model(), cell.model()
         self._data = mujoco.MjData(self._model)
-        self._free = mujoco.MjModel.from_xml_string(text)
+        self._model.opt.disableflags |= _NO_CONTACT
         self._free.opt.disableflags |= _NO_FORCES
         self._free.dof_damping[:] = 0.0
         self._free_data = mujoco.MjData(self._free)
-        axes = (*machine.axes, *machine.externals)
-        is_linear = np.array([axis.kind is AxisKind.LINEAR for axis in axes])
-        self._units = np.where(is_linear, 1e-3, math.pi / 180.0)
-        self._touch = int(self._model.sensor(TOUCH).adr[0])
+        self._columns, self._units = cell.columns(self._model)
+        self._count = len(cell.machine.axes) + len(cell.machine.externals)
+        self._rest = np.zeros(self._count)
         self._stopped: RobotFault | None = None
-        self.stand([0.0] * len(axes))
+        self.stand([0.0] * self._count)
 
     @property
     def axes(self) -> Array:
         """Where it is: shape (axes,), degrees or mm."""
-        place: Array = self._data.qpos / self._units
+        place = self._rest.copy()
+        place[self._columns] = self._data.qpos / self._units
         return place
 
     def stand(self, axes: Sequence[float]) -> None:
         """It stands at axes, with nothing of what was before."""
         mujoco.mj_resetData(self._model, self._data)
-        self._data.qpos[:] = np.asarray(axes, dtype=np.float64) * self._units
+        self._rest = np.asarray(axes, dtype=np.float64)
+        self._data.qpos[:] = self._rest[self._columns] * self._units
         self._set_point = self._data.qpos.copy()
         self._speed = np.zeros_like(self._set_point)
         self._stopped = None
 
-    def follow(self, samples: Samples) -> Array:
-        """Follow set-points 1 ms apart; returns measured axes (n, axes). Raises `RobotFault`."""
+    def carry(self, loads: Mapping[str, Load]) -> None:
+        """See `interp.robot.simulation.robot.Robot.carry`."""
+        for model in (self._model, self._free):
+            put_loads(model, self._machine, loads)
+
+    def follow(self, samples: Samples) -> Measured:
+        """Follow set-points 1 ms apart; torques are those that the set-points ask for.
+
+        Raises `RobotFault`.
+        """
         check_samples(samples)
         count = len(samples.times)
         if self._stopped is not None or not count:
-            return np.tile(self.axes, (count, 1))
-        control = self._control(samples.axes * self._units)
+            return Measured(np.tile(self.axes, (count, 1)), np.zeros((count, self._count)))
+        torques, control = self._control(samples.axes[:, self._columns] * self._units)
         start = np.empty((1, mujoco.mj_stateSize(self._model, _STATE)))
         mujoco.mj_getState(self._model, self._data, start[0], _STATE)
-        states, sensors = rollout.rollout(
+        states, _ = rollout.rollout(
             self._model, self._data, initial_state=start, control=control[None]
         )
-        places: Array = states[0, :, 1 : 1 + self._model.nq] / self._units  # behind the time
-        self._check(samples, states[0], places, sensors[0, :, self._touch] > 0.0)
+        places = samples.axes.copy()  # axes that are no joints are where they are told
+        places[:, self._columns] = states[0, :, 1 : 1 + self._model.nq] / self._units
+        self._check(samples, states[0], places)
         mujoco.mj_setState(self._model, self._data, states[0, -1], _STATE)
-        return places
+        every = np.zeros((count, self._count))
+        every[:, self._columns] = torques
+        return Measured(places, every)
 
-    def _control(self, targets: Array) -> Array:
-        """What the actuators are told, for steps that end at ``targets`` (n, axes)."""
+    def _control(self, targets: Array) -> tuple[Array, Array]:
+        """Torques and what actuators are told, for steps that end at ``targets`` (n, joints)."""
         data = self._free_data
         before = np.vstack((self._set_point, targets[:-1]))
         speeds = (targets - before) / (_STEP * 1e-6)
@@ -120,55 +131,34 @@ class MujocoRobot:
         self._model.actuator_biasprm[:, 2] = -damper
         self._set_point, self._speed = targets[-1].copy(), speeds[-1].copy()
         control: Array = torques + spring * before + damper * earlier
-        return control
+        return torques, control
 
     def _inertia(self) -> Array:
-        """Of each axis in kg m² or kg, at the last set-point and with all others locked."""
-        data = self._free_data
-        inertia = np.empty(self._free.nv)
-        data.qvel[:] = 0.0
-        for axis in range(self._free.nv):
-            data.qacc[:] = 0.0
-            mujoco.mj_inverse(self._free, data)
-            still = data.qfrc_inverse[axis]
-            data.qacc[axis] = 1.0
-            mujoco.mj_inverse(self._free, data)
-            inertia[axis] = data.qfrc_inverse[axis] - still
-        return inertia
+        """Of each joint in kg m² or kg, at the last set-point and with all others free to go along.
+
+        That is the least that a spring may find; with the others locked it would be more.
+        """
+        free, data = self._free, self._free_data
+        mujoco.mj_makeM(free, data)
+        inertia = np.empty((free.nv, free.nv))
+        mujoco.mj_fullM(free, data, inertia)
+        found: Array = 1.0 / np.diag(np.linalg.inv(inertia))
+        return found
 
     # --------------------------------------------------------------------------------- what fails
 
-    def _check(
-        self, samples: Samples, states: Array, places: Array, touches: npt.NDArray[np.bool_]
-    ) -> None:
+    def _check(self, samples: Samples, states: Array, places: Array) -> None:
         off = np.abs(places - samples.axes).max(axis=1)
         lost = ~(off < _LOST)
-        failed = touches | lost
-        if not failed.any():
+        if not lost.any():
             return
-        first = int(np.argmax(failed))
+        first = int(np.argmax(lost))
         time = int(samples.times[first])
-        # A contact is found where a step begins, so the state before shows it.
         mujoco.mj_setState(self._model, self._data, states[max(first - 1, 0)], _STATE)
-        if touches[first]:
-            slug, text = "collision", self._touching()
-        else:
-            slug, text = "tracking", "the arm does not follow its set-points"
         self._data.qvel[:] = 0.0
-        self._stopped = RobotFault(slug, f"{text}, at {time / 1e6:.3f} s", time)
+        text = f"the arm does not follow its set-points, at {time / 1e6:.3f} s"
+        self._stopped = RobotFault("tracking", text, time)
         raise self._stopped
-
-    def _touching(self) -> str:
-        mujoco.mj_forward(self._model, self._data)
-        pairs = [self._data.contact[place].geom for place in range(self._data.ncon)]
-        if not pairs:
-            return "the arm touches something"
-        first, second = (self._name(int(geom)) for geom in pairs[0])
-        return f"{first} touches {second}"
-
-    def _name(self, geom: int) -> str:
-        name = self._model.geom(geom).name or self._model.body(self._model.geom_bodyid[geom]).name
-        return str(name).replace("_", " ")
 
 
 def _be_quiet() -> None:

@@ -5,8 +5,7 @@ flange of the model stands where the kinematics have it. Masses and shapes are
 those of `interp.robot.simulation.links`. What else machine data does not say is assumed:
 
 - the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
-  touches, since the data does not say what the arm stands on. What else there is are boxes.
-- there is no load on the flange.
+  touches, since the data does not say what the arm stands on.
 
 Links touch one another and the floor, except for links next to one another or next but one, whose
 shapes overlap. External axes stand beside the arm and touch nothing: machine data does not say what
@@ -17,7 +16,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from interp.robot.kinematics.chain import Point
@@ -25,25 +23,15 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import DARK, Capsule, Link, links_of, reach_of
 from interp.values.poses import IDENTITY, Pose
 
-__all__ = ["FLANGE", "TOUCH", "Box", "mjcf_of"]
+__all__ = ["FLANGE", "mjcf_of"]
 
-#: The site of the flange, and the sensor that counts contacts.
+#: The site of the flange.
 FLANGE: Final = "flange"
-TOUCH: Final = "touch"
 
 _FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
-    """An obstacle: a box with its middle at ``pose`` in $WORLD; edges in mm along X, Y and Z."""
-
-    name: str
-    pose: Pose
-    edges: Point
-
-
-def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
+def mjcf_of(machine: MachineData) -> str:
     """The text of the model; joints are called as the axes are, and so are their actuators.
 
     Joints stand in the order of the axes, external ones last. An actuator gives its joint the
@@ -76,7 +64,6 @@ def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
         f'    <geom name="floor" type="plane" size="0 0 0.05" material="tiles" '
         f'pos="0 0 {_number((machine.robroot.position[2] - reach) / 1000.0)}"/>',
         _pedestal(machine),
-        *(_box(box) for box in boxes),
         *_nested(links, None, machine, "    "),
         "  </worldbody>",
         "  <contact>",
@@ -92,9 +79,6 @@ def mjcf_of(machine: MachineData, boxes: Sequence[Box] = ()) -> str:
             for axis in axes
         ),
         "  </actuator>",
-        "  <sensor>",
-        f'    <contact name="{TOUCH}" data="found" reduce="none" num="1"/>',
-        "  </sensor>",
         "</mujoco>",
     ]
     return "\n".join(lines) + "\n"
@@ -162,14 +146,6 @@ def _pedestal(machine: MachineData) -> str:
     return (
         f'    <geom type="cylinder" fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
         f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{DARK}"/>'
-    )
-
-
-def _box(box: Box) -> str:
-    halves = _metres([edge / 2.0 for edge in box.edges])
-    return (
-        f'    <geom name="{_escaped(box.name)}" type="box" size="{halves}" {_placed(box.pose)} '
-        'rgba="0.45 0.55 0.65 1"/>'
     )
 
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.arm import Samples
+from interp.robot.arm import Load, Samples
 from interp.values.faults import Fault
 
-__all__ = ["KinematicRobot", "NoRobot", "Robot", "RobotFault", "check_samples"]
+__all__ = ["KinematicRobot", "Measured", "NoRobot", "Robot", "RobotFault", "check_samples"]
 
 
 class RobotFault(Fault):
@@ -23,6 +24,14 @@ class RobotFault(Fault):
     def __init__(self, slug: str, text: str, time: int) -> None:
         super().__init__(slug, text)
         self.time = time
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Where a robot was, in degrees or mm, and with which torques, in Nm or N: (n, axes)."""
+
+    axes: npt.NDArray[np.float64]
+    torques: npt.NDArray[np.float64]
 
 
 class Robot(Protocol):
@@ -42,11 +51,14 @@ class Robot(Protocol):
         """It stands at axes, robot axes first, in degrees (mm for linear ones)."""
         ...
 
-    def follow(self, samples: Samples) -> npt.NDArray[np.float64] | None:
+    def carry(self, loads: Mapping[str, Load]) -> None:
+        """From now on it carries these loads, by the names that `Settings.loads` has."""
+        ...
+
+    def follow(self, samples: Samples) -> Measured | None:
         """Follow set-points that are ``step`` apart and go on where the last ones ended.
 
-        Returns measured axes of shape (n, axes), in degrees or mm; ``None`` where nothing is
-        measured and the set-points stand for them. Raises `RobotFault`.
+        ``None`` where nothing is measured and the set-points stand for it. Raises `RobotFault`.
         """
         ...
 
@@ -59,6 +71,9 @@ class NoRobot:
 
     def stand(self, axes: Sequence[float]) -> None:
         """Nothing stands."""
+
+    def carry(self, loads: Mapping[str, Load]) -> None:
+        """Nothing is carried."""
 
     def follow(self, samples: Samples) -> None:
         """Nothing follows."""
@@ -74,6 +89,9 @@ class KinematicRobot:
 
     def stand(self, axes: Sequence[float]) -> None:
         """It has no state of its own."""
+
+    def carry(self, loads: Mapping[str, Load]) -> None:
+        """It has no masses."""
 
     def follow(self, samples: Samples) -> None:
         """Look at the set-points. Raises `RobotFault` where one is no number."""

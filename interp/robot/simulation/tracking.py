@@ -7,18 +7,19 @@ chunks. The record has a row each interpolation cycle, from the start on.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.arm import Arm
+from interp.robot.arm import Arm, Load, Motion
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import matrix_of
-from interp.robot.simulation.robot import Robot, RobotFault
+from interp.robot.simulation.observations import Observation, Observer, TorqueCheck
+from interp.robot.simulation.robot import Measured, Robot, RobotFault
 
 __all__ = ["PathRecord", "Tracking"]
 
@@ -33,7 +34,7 @@ class PathRecord:
     and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
     (n, 3) are X, Y, Z of the tool in $WORLD, whatever the base. The measured
     ones are ``None`` where the robot measures nothing. ``placements`` are the frames in force, each
-    with the time in µs from which on.
+    with the time in µs from which on; ``torques`` (n, axes) in Nm, ``None`` without masses.
     """
 
     times: npt.NDArray[np.int64]
@@ -44,6 +45,7 @@ class PathRecord:
     points_measured: Array | None
     tips_measured: Array | None
     placements: tuple[tuple[int, Placement], ...] = ()
+    torques: Array | None = None
 
     def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
         """The columns of a path file: t, q1…q6, e1…, x…c, and measured ones with ``_meas``."""
@@ -62,7 +64,13 @@ class Tracking:
     """
 
     def __init__(
-        self, arm: Arm, robot: Robot, machine: MachineData, cycle: int, start: Sequence[float]
+        self,
+        arm: Arm,
+        robot: Robot,
+        machine: MachineData,
+        cycle: int,
+        start: Sequence[float],
+        observer: Observer | None = None,
     ) -> None:
         if robot.step and cycle % robot.step:
             raise ValueError(f"a cycle of {cycle} µs is no multiple of {robot.step} µs")
@@ -79,13 +87,31 @@ class Tracking:
         self._times: list[npt.NDArray[np.int64]] = [np.zeros(1, dtype=np.int64)]
         self._axes: list[Array] = [np.array([stands])]
         self._measured: list[Array | None] = [None]
+        self._torques: list[Array] = [np.zeros((1, len(stands)))]
+        self._torque_check = TorqueCheck(machine)
+        self._observer = observer
+        self._begun: list[tuple[int, str]] = []
+        self._loads: Mapping[str, Load] = {}
+        #: Loads from times on that set-points were not sent for yet.
+        self._changes: list[tuple[int, Mapping[str, Load]]] = []
         self._last: Array | None = None
         robot.stand(stands)
+        if observer is not None:
+            observer.observe(self._times[0], self._axes[0])
 
     @property
     def chunk(self) -> int | None:
         """µs from one `advance` to the next, at most; ``None`` where nothing is sent."""
         return self._robot.chunk if self._robot.step else None
+
+    def begun(self, time: int, motion: Motion) -> None:
+        """A motion begins: its frames and loads are in force from now on."""
+        settings = motion.settings
+        self.placed(time, settings.placement)
+        self._begun.append((time, f"{motion.at.file}:{motion.at.line}"))
+        if settings.loads != self._loads:
+            self._loads = settings.loads
+            self._changes.append((time, settings.loads))
 
     def placed(self, time: int, placement: Placement) -> None:
         """From a time on, not before the last one told, points count in these frames."""
@@ -123,9 +149,33 @@ class Tracking:
             return PathRecord(times, axes, points, tips, None, None, None, frames)
         measured = np.concatenate(rows)
         found = self._points(times, measured)
-        return PathRecord(times, axes, points, tips, measured, *found, frames)
+        torques = np.concatenate(self._torques)
+        return PathRecord(times, axes, points, tips, measured, *found, frames, torques)
+
+    def observations(self) -> tuple[Observation, ...]:
+        """What was touched, and torques beyond their limits, in the order in which it began."""
+        seen = [*self._torque_check.observations()]
+        seen += () if self._observer is None else self._observer.observations()
+        placed = [replace(one, at=self._line_at(one.start)) for one in seen]
+        return tuple(sorted(placed, key=lambda one: (one.start, one.kind, one.parts)))
+
+    def _line_at(self, time: int) -> str:
+        """The line of the motion that ran at a time."""
+        place = bisect_right(self._begun, time, key=lambda begun: begun[0])
+        return self._begun[place - 1][1] if place else ""
 
     def _send(self, until: int) -> None:
+        """Send set-points up to a time, with the loads that are carried at theirs."""
+        step = self._robot.step
+        while self._changes and self._changes[0][0] - self._sent < step:
+            self._robot.carry(self._changes.pop(0)[1])
+        if self._changes and self._changes[0][0] + step <= until:
+            self._send_at_once(self._changes[0][0])
+            self._send(until)
+        else:
+            self._send_at_once(until)
+
+    def _send_at_once(self, until: int) -> None:
         step = self._robot.step
         times = np.arange(self._sent + step, until + 1, step, dtype=np.int64)
         self._sent = int(times[-1])
@@ -137,17 +187,22 @@ class Tracking:
             raise
         self._keep(times, samples.axes, measured)
 
-    def _keep(self, times: npt.NDArray[np.int64], axes: Array, measured: Array | None) -> None:
+    def _keep(self, times: npt.NDArray[np.int64], axes: Array, measured: Measured | None) -> None:
         if not len(times):
             return
         rows = np.flatnonzero(times % self._cycle == 0)
         self._times.append(times[rows])
         self._axes.append(axes[rows])
         if measured is not None:
-            self._last = measured[-1]
-            self._measured.append(measured[rows])
+            self._last = measured.axes[-1]
+            self._measured.append(measured.axes[rows])
+            self._torques.append(measured.torques[rows])
+            self._torque_check.check(times, measured.torques)
         else:
             self._measured.append(axes[rows])
+            self._torques.append(np.zeros_like(axes[rows]))
+        if self._observer is not None:
+            self._observer.observe(times[rows], axes[rows])
 
     def _points(self, times: npt.NDArray[np.int64], axes: Array) -> tuple[Array, Array]:
         """Of the tool, X, Y, Z, A, B, C (n, 6) in the base in force, and X, Y, Z (n, 3)."""

@@ -14,18 +14,17 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.machine_data import AxisKind, MachineData
-from interp.robot.simulation.mujoco_model import Box, mjcf_of
-
 if TYPE_CHECKING:
     from PIL.Image import Image
+
+    from interp.robot.simulation.cell import Cell
 
 __all__ = ["SUFFIXES", "VideoError", "frame_count", "write_video"]
 
@@ -47,11 +46,10 @@ def frame_count(times: npt.NDArray[np.int64], frames_per_second: int = 25) -> in
 
 def write_video(
     path: Path,
-    machine: MachineData,
+    cell: Cell,
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
     *,
-    boxes: Sequence[Box] = (),
     size: tuple[int, int] = (640, 480),
     frames_per_second: int = 25,
     on_frame: Callable[[], None] = lambda: None,
@@ -63,10 +61,11 @@ def write_video(
     Raises `VideoError` where there is no renderer, no MuJoCo, no Pillow, or another suffix.
     """
     check(path)
-    places = _places(machine, times, axes, frames_per_second)
+    places = _places(cell, times, axes, frames_per_second)
+    model = cell.xml()
     failures = []
     for renderer in _renderers():
-        frames = _Frames(mjcf_of(machine, boxes), places, size, renderer)
+        frames = _Frames(model, places, size, renderer)
         with frames:
             first = frames.next()
             if first is not None:
@@ -86,7 +85,7 @@ def check(path: Path) -> None:
 
 
 def _places(
-    machine: MachineData,
+    cell: Cell,
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
     frames_per_second: int,
@@ -95,9 +94,8 @@ def _places(
     count = frame_count(times, frames_per_second)
     wanted = times[0] + np.arange(count) * (1_000_000 / frames_per_second)
     found = np.stack([np.interp(wanted, times, column) for column in axes.T], axis=-1)
-    all_axes = (*machine.axes, *machine.externals)
-    units = [1e-3 if axis.kind is AxisKind.LINEAR else math.pi / 180.0 for axis in all_axes]
-    places: npt.NDArray[np.float64] = found * np.array(units)
+    columns, units = cell.columns(cell.model())
+    places: npt.NDArray[np.float64] = found[:, columns] * units
     return places
 
 

@@ -10,7 +10,7 @@ from grammar.syntax.source import Source
 from interp.controller import Controller, Profile, Script, Trace
 from interp.program.load import load
 from interp.robot.api.control_core import ControlCore
-from interp.robot.arm import Position
+from interp.robot.arm import Motion, Position
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
@@ -197,9 +197,9 @@ class Colliding:
             self.is_over = True
             raise RobotFault("collision", "the robot has touched the table", 1_000_000)
 
-    def placed(self, time: int, placement: Placement) -> None:
+    def begun(self, time: int, motion: Motion) -> None:
         """The frames of a motion."""
-        self.placements.append((time, placement))
+        self.placements.append((time, motion.settings.placement))
 
     def settle(self, _now: int) -> None:
         """All is sent."""

@@ -15,8 +15,8 @@ from interp.robot.kinematics.machine_data import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine
+from interp.robot.simulation.cell import Cell
 from interp.robot.simulation.factory import make_robot
-from interp.robot.simulation.mujoco_model import Box
 from interp.robot.simulation.robot import RobotFault
 from interp.robot.simulation.tracking import Tracking
 from interp.values.poses import Pose
@@ -60,10 +60,13 @@ def test_a_straight_line_at_a_metre_a_second() -> None:
     start, axes, poses = line(480.0, 900)
     steps = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1)
     assert 1.0 == pytest.approx(steps.max(), rel=1e-3)  # mm a ms
-    robot = MujocoRobot(default_machine())
+    robot = MujocoRobot(Cell(default_machine()))
     robot.stand(start)
     measured = np.concatenate(
-        [robot.follow(samples_of(axes[at : at + 120], 1_000 * at)) for at in range(0, 900, 120)]
+        [
+            robot.follow(samples_of(axes[at : at + 120], 1_000 * at)).axes
+            for at in range(0, 900, 120)
+        ]
     )
     flanges = kinematics_of(default_machine()).forward(measured)
     off = np.linalg.norm(flanges[:, :3, 3] - poses[:, :3, 3], axis=1)
@@ -72,9 +75,9 @@ def test_a_straight_line_at_a_metre_a_second() -> None:
 
 def test_it_stands_against_gravity() -> None:
     """Told to stay where it is for a second, stretched forward, it does."""
-    robot = MujocoRobot(default_machine())
+    robot = MujocoRobot(Cell(default_machine()))
     robot.stand((0.0,) * 6)
-    measured = robot.follow(samples_of(np.zeros((1000, 6))))
+    measured = robot.follow(samples_of(np.zeros((1000, 6)))).axes
     assert np.abs(measured).max() < 1e-6
 
 
@@ -83,7 +86,7 @@ def test_the_size_of_a_chunk_does_not_matter_much() -> None:
     start, axes, _ = line(200.0, 600)
     ends = []
     for size in (60, 600):
-        robot = MujocoRobot(default_machine())
+        robot = MujocoRobot(Cell(default_machine()))
         robot.stand(start)
         for at in range(0, 600, size):
             robot.follow(samples_of(axes[at : at + size], 1_000 * at))
@@ -94,31 +97,13 @@ def test_the_size_of_a_chunk_does_not_matter_much() -> None:
 def test_external_axes_follow(machine_text: Callable[..., str]) -> None:
     """A track follows in mm."""
     machine = read_machine(machine_text("INT $EX_AX_NUM=1", "$AXIS_TYPE[7]=1"))
-    robot = MujocoRobot(machine)
+    robot = MujocoRobot(Cell(machine))
     robot.stand((*HOME, 100.0))
     axes = np.tile((*HOME, 100.0), (500, 1))
     axes[:, 6] += 400.0 * smooth(500)
-    measured = robot.follow(samples_of(axes))
+    measured = robot.follow(samples_of(axes)).axes
     assert 500.0 == pytest.approx(measured[-1, 6], abs=0.05)
     np.testing.assert_allclose(measured[:, :6], axes[:, :6], atol=1e-3)
-
-
-def test_a_collision_stops_the_arm() -> None:
-    """What is touched and when is said, and from then on the arm stands."""
-    start, axes, poses = line(480.0, 900)
-    ahead = Pose.from_matrix(poses[500])
-    robot = MujocoRobot(default_machine(), [Box("crate", ahead, (20.0, 20.0, 20.0))])
-    robot.stand(start)
-    with pytest.raises(RobotFault, match=r"crate touches link 6|link 6 touches crate") as caught:
-        robot.follow(samples_of(axes))
-    assert "collision" == caught.value.slug
-    assert 300_000 < caught.value.time < 501_000
-    stands = robot.axes
-    np.testing.assert_allclose(stands, axes[caught.value.time // 1_000 - 1], atol=0.5)
-    later = robot.follow(samples_of(axes[:50], 900_000))
-    np.testing.assert_array_equal(later, np.tile(stands, (50, 1)))
-    robot.stand(start)
-    assert 10 == len(robot.follow(samples_of(axes[:10])))
 
 
 @pytest.mark.parametrize("name", ["kinematic", "mujoco"])
@@ -136,7 +121,7 @@ def test_a_set_point_that_is_no_number(name: str) -> None:
 
 def test_a_jump_is_a_fault() -> None:
     """Set-points that leap 90 degrees in a step are followed by no arm."""
-    robot = MujocoRobot(default_machine())
+    robot = MujocoRobot(Cell(default_machine()))
     robot.stand(HOME)
     axes = np.tile(HOME, (200, 1))
     axes[100:, 0] = 90.0 * (-1.0) ** np.arange(100)
@@ -153,7 +138,7 @@ def test_a_planned_line_at_a_metre_a_second() -> None:
     home = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)
-    tracking = Tracking(arm, MujocoRobot(machine), machine, 12_000, home)
+    tracking = Tracking(arm, MujocoRobot(Cell(machine)), machine, 12_000, home)
     core.load(
         0,
         Transaction(motions.ptp(x=0, y=-280, z=0, a=0, b=0, c=180, s=2, t=2), motions.lin(y=280)),
@@ -180,7 +165,7 @@ def test_any_path_up_to_a_metre_a_second() -> None:
     home = (0.0, -90.0, 90.0, 0.0, 90.0, 0.0)
     arm = PlannedArm(machine, home)
     core = ControlCore(arm, lambda *_: None, 12_000)
-    tracking = Tracking(arm, MujocoRobot(machine), machine, 12_000, home)
+    tracking = Tracking(arm, MujocoRobot(Cell(machine)), machine, 12_000, home)
     work = [
         motions.ptp(a1=-90, a2=-60, a3=90, a4=90, a5=60, a6=200),
         motions.ptp(a1=-30, a2=-90, a3=90, a4=0, a5=90, a6=0),

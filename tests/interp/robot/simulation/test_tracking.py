@@ -14,7 +14,7 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import make_robot
-from interp.robot.simulation.robot import KinematicRobot, NoRobot, RobotFault
+from interp.robot.simulation.robot import KinematicRobot, Measured, NoRobot, RobotFault
 from interp.robot.simulation.tracking import Tracking
 from interp.values.poses import IDENTITY, Pose
 
@@ -50,7 +50,7 @@ class Lagging(KinematicRobot):
         failing = samples.times >= 100_000
         if failing.any():
             raise RobotFault("collision", "a touches b", int(samples.times[np.argmax(failing)]))
-        return samples.axes - 0.5
+        return Measured(samples.axes - 0.5, np.zeros_like(samples.axes))
 
 
 @pytest.fixture

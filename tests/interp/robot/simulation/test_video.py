@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from interp.robot.models import default_machine
+from interp.robot.simulation.cell import Cell
 from interp.robot.simulation.video import VideoError, frame_count, write_video
 
 pytest.importorskip("mujoco")
@@ -22,7 +23,12 @@ def test_a_video(tmp_path: Path, suffix: str) -> None:
     path, told = tmp_path / f"arm{suffix}", []
     try:
         write_video(
-            path, default_machine(), TIMES, AXES, size=(160, 120), on_frame=lambda: told.append(1)
+            path,
+            Cell(default_machine()),
+            TIMES,
+            AXES,
+            size=(160, 120),
+            on_frame=lambda: told.append(1),
         )
     except VideoError as error:
         pytest.skip(str(error))
@@ -43,7 +49,7 @@ def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where nothing can be drawn, one line says so."""
     monkeypatch.setenv("MUJOCO_GL", "nothing-of-the-kind")
     with pytest.raises(VideoError, match="no renderer works here") as caught:
-        write_video(tmp_path / "arm.gif", default_machine(), TIMES, AXES, size=(16, 12))
+        write_video(tmp_path / "arm.gif", Cell(default_machine()), TIMES, AXES, size=(16, 12))
     assert "\n" not in str(caught.value)
     assert not (tmp_path / "arm.gif").exists()
 
@@ -51,4 +57,4 @@ def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_another_form(tmp_path: Path) -> None:
     """A suffix that nothing writes is told, with those that something does."""
     with pytest.raises(VideoError, match=r"one of \.gif, \.webp, \.png"):
-        write_video(tmp_path / "arm.mp4", default_machine(), TIMES, AXES)
+        write_video(tmp_path / "arm.mp4", Cell(default_machine()), TIMES, AXES)

@@ -1,0 +1,308 @@
+"""Robots of the user's own: URDF and MJCF files, as machine data and as a model for MuJoCo.
+
+The arm is the row of joints from the base to where it branches, into the fingers of a gripper for
+instance. Its joints are A1 to A6 in their order, and count as the file has them: no sense is turned
+over. Joints that are not the arm's stay where they are. The flange is a site or body behind the
+last joint named ``flange``, ``tool0`` or ``attachment_site``, else the frame of the last body. What
+such files do not say, speeds of MJCF for instance, is as assumed for machine data.
+"""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.chain import Chain, Joint
+from interp.robot.kinematics.machine_data import (
+    ROBOT_AXES,
+    Axis,
+    AxisKind,
+    CartesianLimits,
+    Dynamics,
+    MachineData,
+    WristLink,
+)
+from interp.values.poses import IDENTITY, Pose
+from support.files.untrusted import read_bytes
+
+__all__ = ["RobotFile", "RobotFileError", "read_robot"]
+
+Array = npt.NDArray[np.float64]
+
+_FLANGES: Final = ("flange", "tool0", "attachment_site")
+_KINDS: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+_RUN_UP_TIME = 0.4  # seconds to full speed, as for machine data
+_FILTER_TIME = 0.1
+
+
+class RobotFileError(Exception):
+    """The file describes no arm; its text is one line for a person."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotFile:
+    """An arm from a file: ``joints`` are the names of those of A1, A2 and so on.
+
+    ``spec`` is the model with all other joints taken out, to be copied and completed.
+    """
+
+    machine: MachineData
+    spec: Any
+    joints: tuple[str, ...]
+
+
+def read_robot(path: Path) -> RobotFile:
+    """The arm of a URDF or MJCF file. Raises `RobotFileError` and `OSError`."""
+    data = read_bytes(path)
+    try:
+        tree = ET.fromstring(data)
+    except ET.ParseError as error:
+        line, column = error.position
+        raise RobotFileError(f"{path}:{line}: not XML, at column {column + 1}") from None
+    if tree.tag not in {"robot", "mujoco"}:
+        raise RobotFileError(f"{path}: neither URDF nor MJCF: <{tree.tag}>")
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.compiler.fusestatic = False
+        _leave_out_missing_meshes(spec, path)
+        model = spec.compile()
+    except (ValueError, RuntimeError) as error:
+        raise RobotFileError(f"{path}: {' '.join(str(error).split())}") from None
+    joints = _arm_joints(model, path)
+    names = tuple(model.joint(joint).name for joint in joints)
+    if not all(names):
+        raise RobotFileError(f"{path}: a joint of the arm has no name")
+    hand = int(model.jnt_bodyid[joints[-1]])
+    chain = _chain(model, joints, hand)
+    machine = _machine(model, joints, chain, _speeds(tree), path)
+    return RobotFile(machine, _completed(spec, names), names)
+
+
+def _leave_out_missing_meshes(spec: Any, path: Path) -> None:
+    """Shapes whose files are not there, as with the packages of a URDF, are left out."""
+    folder = path.parent / (spec.meshdir or "")
+    missing = {
+        mesh.name for mesh in spec.meshes if mesh.file and not (folder / mesh.file).is_file()
+    }
+    for geom in list(spec.geoms):
+        if geom.meshname in missing:
+            spec.delete(geom)
+    for mesh in list(spec.meshes):
+        if mesh.name in missing:
+            spec.delete(mesh)
+
+
+def _completed(spec: Any, joints: tuple[str, ...]) -> Any:
+    """The model with nothing in it that moves but the arm."""
+    kept = set(joints)
+    parts: Iterable[Any] = (
+        *spec.actuators,
+        *spec.sensors,
+        *spec.keys,
+        *spec.tendons,
+        *spec.equalities,
+        *(joint for joint in spec.joints if joint.name not in kept),
+    )
+    for part in parts:
+        spec.delete(part)
+    return spec
+
+
+def _arm_joints(model: Any, path: Path) -> list[int]:
+    """The joints of the arm from the base outwards."""
+    moved = {body: _joints_of(model, body) for body in range(model.nbody)}
+    beyond = [
+        sum(len(moved[other]) for other in _below(model, body)) for body in range(model.nbody)
+    ]
+    body, found = 0, [*moved[0]]
+    while True:
+        children = [
+            c for c in range(1, model.nbody) if model.body_parentid[c] == body and c != body
+        ]
+        going_on = [child for child in children if beyond[child]]
+        if len(going_on) != 1:
+            if not found and going_on:
+                going_on = [max(going_on, key=lambda child: beyond[child])]
+            else:
+                break
+        body = going_on[0]
+        found += moved[body]
+    if not found:
+        raise RobotFileError(f"{path}: no joint moves anything")
+    if any(int(model.jnt_type[joint]) not in _KINDS for joint in found):
+        raise RobotFileError(f"{path}: a joint of the arm neither turns nor slides")
+    if len(found) > ROBOT_AXES:
+        raise RobotFileError(f"{path}: {len(found)} joints in a row; an arm has six at most")
+    return found
+
+
+def _joints_of(model: Any, body: int) -> list[int]:
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    return list(range(first, first + count))
+
+
+def _below(model: Any, body: int) -> Iterable[int]:
+    """A body and all that it carries."""
+    for other in range(model.nbody):
+        above = other
+        while above not in (body, 0):
+            above = int(model.body_parentid[above])
+        if above == body:
+            yield other
+
+
+def _chain(model: Any, joints: list[int], hand: int) -> Chain:
+    """The chain of joints, each with its frame where it turns, in mm."""
+    made: list[Joint] = []
+    before, anchor = 0, np.eye(4)
+    for number, joint in enumerate(joints, start=1):
+        body = int(model.jnt_bodyid[joint])
+        here = _moved_by(model.jnt_pos[joint])
+        frame = np.linalg.inv(anchor) @ _between(model, before, body) @ here
+        axis = model.jnt_axis[joint] / np.linalg.norm(model.jnt_axis[joint])
+        is_linear = int(model.jnt_type[joint]) == _KINDS[1]
+        x, y, z = (float(part) for part in axis)
+        made.append(Joint(f"A{number}", _pose(frame), (x, y, z), bool(is_linear)))
+        before, anchor = body, here
+    return Chain(tuple(made), _pose(np.linalg.inv(anchor) @ _flange(model, hand)))
+
+
+def _flange(model: Any, hand: int) -> Array:
+    """The flange in the frame of the last body."""
+    for name in _FLANGES:
+        site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
+        body = int(model.site_bodyid[site]) if site >= 0 else -1
+        if body >= 0 and _is_below(model, body, hand):
+            return _between(model, hand, body) @ _matrix(
+                model.site_pos[site], model.site_quat[site]
+            )
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        if body >= 0 and _is_below(model, body, hand):
+            return _between(model, hand, body)
+    return np.eye(4)
+
+
+def _is_below(model: Any, body: int, above: int) -> bool:
+    while body not in (above, 0):
+        body = int(model.body_parentid[body])
+    return body == above
+
+
+def _between(model: Any, above: int, body: int) -> Array:
+    """A body in the frame of one above it, while all joints are at zero."""
+    pose = np.eye(4)
+    while body != above:
+        pose = _matrix(model.body_pos[body], model.body_quat[body]) @ pose
+        body = int(model.body_parentid[body])
+    return pose
+
+
+def _matrix(place: Array, quaternion: Array) -> Array:
+    turn = np.empty(9)
+    mujoco.mju_quat2Mat(turn, quaternion)
+    pose = _moved_by(place)
+    pose[:3, :3] = turn.reshape(3, 3)
+    return pose
+
+
+def _moved_by(place: Array) -> Array:
+    pose = np.eye(4)
+    pose[:3, 3] = 1000.0 * np.asarray(place)
+    return pose
+
+
+def _pose(matrix: Array) -> Pose:
+    return Pose.from_matrix(matrix.tolist())
+
+
+def _speeds(tree: ET.Element) -> dict[str, float]:
+    """The greatest speeds of joints, rad/s or m/s; MuJoCo does not read them."""
+    found: dict[str, float] = {}
+    for joint in tree.iter("joint"):
+        limit = joint.find("limit")
+        try:
+            speed = float(limit.get("velocity", "")) if limit is not None else 0.0
+        except ValueError:
+            speed = 0.0
+        if 0.0 < speed < math.inf:
+            found[joint.get("name", "")] = speed
+    return found
+
+
+def _machine(
+    model: Any, joints: list[int], chain: Chain, speeds: dict[str, float], path: Path
+) -> MachineData:
+    """Machine data of the arm; axes that it lacks stay at 0."""
+    axes = []
+    for number in range(1, ROBOT_AXES + 1):
+        if number > len(joints):
+            axes.append(Axis(f"A{number}", AxisKind.ROTARY, 1, 0.0, 0.0, None, 90.0))
+            continue
+        joint = joints[number - 1]
+        is_linear = chain.joints[number - 1].is_linear
+        unit = 1000.0 if is_linear else math.degrees(1.0)
+        lower, upper = -math.inf, math.inf
+        if model.jnt_limited[joint]:
+            lower, upper = (float(end) * unit for end in model.jnt_range[joint])
+        speed = speeds.get(model.joint(joint).name, 0.0) * unit
+        gain = speed / _RUN_UP_TIME
+        axes.append(
+            Axis(
+                name=f"A{number}",
+                kind=AxisKind.LINEAR if is_linear else AxisKind.ROTARY,
+                direction=1,
+                lower=lower,
+                upper=upper,
+                dynamics=Dynamics(speed, gain, gain / _FILTER_TIME) if speed else None,
+                approximation=90.0,
+            )
+        )
+    most = [_torque(model, joint) for joint in joints]
+    return MachineData(
+        name=_name(path),
+        version="",
+        axes=tuple(axes),
+        externals=(),
+        robroot=IDENTITY,
+        tiroro=IDENTITY,
+        length_a=0.0,
+        length_b=0.0,
+        tx3p3=IDENTITY,
+        dh_4=WristLink(0.0, 0.0, 0.0),
+        dh_5=WristLink(0.0, 0.0, 0.0),
+        tflwp=IDENTITY,
+        coupling={},
+        singul_pos=(0, 0, 0),
+        velocity=CartesianLimits(3.0, 400.0, 400.0),
+        acceleration=CartesianLimits(10.0, 1000.0, 1000.0),
+        t1_speed=0.25,
+        t1_reduction=0.07,
+        torques=(*most, *(math.inf,) * (ROBOT_AXES - len(most))),
+        own_chain=chain,
+    )
+
+
+def _torque(model: Any, joint: int) -> float:
+    """The most that drives a joint, Nm or N: of the joint itself, or of its actuators."""
+    if model.jnt_actfrclimited[joint]:
+        return float(np.abs(model.jnt_actfrcrange[joint]).max())
+    drives = [
+        float(np.abs(model.actuator_forcerange[place]).max() * abs(model.actuator_gear[place, 0]))
+        for place in range(model.nu)
+        if model.actuator_trntype[place] == mujoco.mjtTrn.mjTRN_JOINT
+        and model.actuator_trnid[place, 0] == joint
+        and model.actuator_forcelimited[place]
+    ]
+    return max(drives, default=math.inf)
+
+
+def _name(path: Path) -> str:
+    return path.stem[:60]

@@ -1,0 +1,79 @@
+"""Options that bring an arm and what stands around it, for commands that run programs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from krl.errors import InputError
+
+if TYPE_CHECKING:
+    from interp.robot.kinematics.machine_data import MachineData
+    from interp.robot.simulation.robot_files import RobotFile
+    from interp.robot.simulation.scene import Scene
+
+__all__ = ["OwnRobot", "read_machine_file", "robot_options"]
+
+
+@dataclass(frozen=True, slots=True)
+class OwnRobot:
+    """What the options brought; ``None`` where they say nothing."""
+
+    machine: "MachineData | None" = None
+    file: "RobotFile | None" = None
+    scene: "Scene | None" = None
+
+
+def robot_options(
+    machine: Path | None,
+    urdf: Path | None,
+    mjcf: Path | None,
+    scene: Path | None,
+    *,
+    has_robot: bool,
+) -> OwnRobot:
+    """What --machine, --urdf, --mjcf and --scene name. Raises `InputError`."""
+    named = [file for file in (machine, urdf, mjcf) if file is not None]
+    if len(named) > 1:
+        raise InputError("--machine, --urdf and --mjcf: only one of them can be the arm")
+    if scene is not None and not has_robot:
+        raise InputError("--scene: the robot none is nowhere; say --robot kinematic or mujoco")
+    made = OwnRobot()
+    if machine is not None:
+        made = OwnRobot(machine=read_machine_file(machine))
+    elif named:
+        from interp.robot.simulation.robot_files import RobotFileError, read_robot
+
+        try:
+            made = OwnRobot(file=read_robot(named[0]))
+        except RobotFileError as error:
+            raise InputError(str(error)) from error
+    if scene is None:
+        return made
+    from interp.robot.simulation.scene import SceneError, read_scene
+
+    try:
+        return OwnRobot(made.machine, made.file, read_scene(scene))
+    except SceneError as error:
+        raise InputError(str(error)) from error
+
+
+def read_machine_file(path: Path) -> "MachineData":
+    """The arm of a $machine.dat whose kinematics can be solved. Raises `InputError`."""
+    from interp.robot.kinematics.arms import kinematics_of
+    from interp.robot.kinematics.data_list import DataListError
+    from interp.robot.kinematics.machine_data import MachineDataError, read_machine
+    from support.files.decode import decode
+    from support.files.untrusted import read_bytes
+
+    source = decode(read_bytes(path))
+    if isinstance(source, str):
+        raise InputError(f"{path}: not machine data: {source}")
+    try:
+        machine = read_machine(source.text, str(path))
+    except (DataListError, MachineDataError) as error:
+        raise InputError(str(error)) from error
+    try:
+        kinematics_of(machine)
+    except MachineDataError as error:
+        raise InputError(f"{path}: {error}") from error
+    return machine
