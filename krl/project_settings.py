@@ -43,6 +43,7 @@ class Settings:
     ignored_in: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     baseline: Path | None = None
     complete: bool = False
+    packages: tuple[str, ...] = ()
     profile: str | None = None
 
     def leaves_out(self, found: "Found") -> bool:
@@ -183,6 +184,7 @@ def _table(key: str, value: object) -> Mapping[str, object]:
 _READ: Final[Mapping[str, tuple[str, Callable[[str, object], Any]]]] = {
     "profile": ("profile", _text),
     "complete": ("complete", _truth),
+    "packages": ("packages", _texts),
     "select": ("select", _codes),
     "ignore": ("ignore", _codes),
     "exclude": ("exclude", _texts),

@@ -192,7 +192,8 @@ class _Checked:
 
     def _check(self, paths: Iterable[str]) -> None:
         wanted = set(paths)
-        for project in link(program.file for program in self.programs.values()).projects:
+        files = [program.file for program in self.programs.values()]
+        for project in link(files, packages=frozenset()).projects:
             for module in project.modules:
                 if module.path in wanted:
                     self.findings[module.path] = self._findings(project, module)

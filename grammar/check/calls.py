@@ -10,6 +10,7 @@ from __future__ import annotations
 from grammar.check.signal_direction import side_of
 from grammar.check.type_checker import TypeChecker
 from grammar.semantics.assignability import passable
+from grammar.semantics.package_scope import PackageScope
 from grammar.semantics.scopes import Found, Scope, SystemScope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
 from grammar.semantics.types import UNKNOWN, Type, Verdict
@@ -34,7 +35,9 @@ def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
 
 
 def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
-    """Whether the parameters are known from recollection only."""
+    """Whether the parameters are known from recollection only, or those of an option package."""
+    if isinstance(scope, PackageScope):
+        return True
     if not isinstance(scope, SystemScope):
         return False
     return scope.system.functions[symbol.name].is_unconfirmed

@@ -91,7 +91,7 @@ def _whole(project: Project) -> str:
         for one in project.modules
     ]
     kind = project.is_controller, project.is_complete, project.has_config
-    return f"{project.root} {kind} {modules}"
+    return f"{project.root} {kind} {sorted(project.packages or ())} {modules}"
 
 
 def _suggested(project: Project) -> Iterator[str]:

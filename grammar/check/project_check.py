@@ -61,12 +61,13 @@ class CheckOptions:
     """What to look for: syntax alone, or also what stops the advance run.
 
     With ``is_complete`` the files of each project are all there are; else their calls show whether
-    some are missing.
+    some are missing. ``packages`` are option packages that are there besides those that are called.
     """
 
     syntax_only: bool = False
     stops: bool = False
     is_complete: bool = False
+    packages: tuple[str, ...] = ()
 
     @property
     def wanted_codes(self) -> tuple[str, ...]:
@@ -195,7 +196,7 @@ def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list
     places = [(content.path, content.origin) for content in contents]
     found = [Needs("", "")] * len(contents)
     by_path = {path: index for index, (path, _) in enumerate(places)}
-    for project in link(_files(places, looked, {})).projects:
+    for project in _linked(_files(places, looked, {}), CheckOptions()):
         members = [by_path[module.path] for module in project.modules]
         given = [looked[index].contribution for index in members]
         for index, needed in zip(members, needs_of(project, given), strict=True):
@@ -294,7 +295,7 @@ def check_part(
     # modules are identified by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}
-    for linked in link(files, is_complete=options.is_complete or None).projects:
+    for linked in _linked(files, options):
         for module in linked.modules:
             if id(module.table) in own:
                 index, tree = own[id(module.table)]
@@ -303,6 +304,11 @@ def check_part(
                 with gc_paused(len(tree.source.text)):
                     checked[index] = _checked(linked, whole, tree, options)
     return checked
+
+
+def _linked(files: Iterable[File], options: CheckOptions) -> tuple[Project, ...]:
+    is_complete = options.is_complete or None
+    return link(files, is_complete=is_complete, packages=frozenset(options.packages)).projects
 
 
 def _files(

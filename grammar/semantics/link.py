@@ -26,6 +26,7 @@ from pathlib import PurePosixPath
 
 from grammar.diagnostics.typos import Typos
 from grammar.semantics.declared_types import DeclaredTypes
+from grammar.semantics.package_scope import PackageScope, called_packages
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import (
     Answer,
@@ -92,6 +93,7 @@ class Project:
         modules: Sequence[Module],
         system: SystemScope,
         is_complete: bool | None,
+        packages: frozenset[str] | None = None,
     ) -> None:
         self.root = root
         self.system = system
@@ -112,6 +114,10 @@ class Project:
         if is_complete is None:
             is_complete = _has_all(modules) and not any(map(self._misses, modules))
         self.is_complete = is_complete
+        self.packages = packages
+        if packages is not None:
+            self.packages = packages | called_packages(self._undeclared_calls())
+            self._add_packages(self.packages)
         self._gap.update(_gap(modules, is_complete))
         self.types = DeclaredTypes()
         self.has_config = any(_is_config(module) and module.table for module in modules)
@@ -188,6 +194,19 @@ class Project:
         find = self.scope(module).find
         return any(not isinstance(find(Space.ROUTINE, key), Found) for key in module.table.calls)
 
+    def _undeclared_calls(self) -> Iterator[str]:
+        """The routines that are called and that no file declares for everybody."""
+        names = self._names[Space.ROUTINE]
+        for module in self.modules:
+            if module.table is not None:
+                yield from (key for key in module.table.calls if key not in names)
+
+    def _add_packages(self, packages: frozenset[str]) -> None:
+        """Take what option packages declare as seen from everywhere, unless a file declares it."""
+        if packages:
+            for space, found in PackageScope(packages, self._globals.near("")).all():
+                self._names[space].setdefault(found.symbol.key, [found])
+
     def _collect(self) -> None:
         """Sort what the modules declare by whether it is seen from everywhere."""
         announced: list[Found] = []
@@ -225,19 +244,23 @@ class Workspace:
 
 
 def link(
-    files: Iterable[File], system: System | None = None, is_complete: bool | None = None
+    files: Iterable[File],
+    system: System | None = None,
+    is_complete: bool | None = None,
+    packages: frozenset[str] | None = None,
 ) -> Workspace:
     """Group files to projects. Linear in the number of files and of what they declare.
 
     ``system`` is what the controller brings along, by default that of any release, and the same for
     all projects. ``is_complete`` tells whether no file is missing; where it is not told, a project
     counts as complete when it has what every backup has and calls nothing that is not there: a
-    package that is missing may bring data as well as routines.
+    package that is missing may bring data as well as routines. ``packages`` are option packages
+    that are there besides those whose routines are called; where they are not told, none is.
     """
     projects, scope = [], SystemScope(system or System.load())
     for root, is_controller, members in _grouped(files):
         modules = [_module(file) for file in members]
-        projects.append(Project(root, is_controller, modules, scope, is_complete))
+        projects.append(Project(root, is_controller, modules, scope, is_complete, packages))
     return Workspace(tuple(projects))
 
 
@@ -245,7 +268,12 @@ def extended(project: Project, files: Iterable[File]) -> Project:
     """A project with more files, wherever these lie."""
     modules = [*project.modules, *map(_module, files)]
     return Project(
-        project.root, project.is_controller, modules, project.system, project.is_complete
+        project.root,
+        project.is_controller,
+        modules,
+        project.system,
+        project.is_complete,
+        project.packages,
     )
 
 

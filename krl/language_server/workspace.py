@@ -136,7 +136,7 @@ class OpenProject:
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:
         if self._linked is None:
-            workspace = link([one.file for one in self._files.values()])
+            workspace = link([one.file for one in self._files.values()], packages=frozenset())
             self._linked = {module.path: (at, module) for at, module in workspace.modules()}
         return self._linked
 

@@ -11,7 +11,7 @@ from krl.cli import main
 from krl.errors import InputError
 from krl.project_settings import read_settings, settings_of
 
-PROGRAM = "DEF A()\nINT N\nN = 1.5\nEXIT\nEND\n"
+PROGRAM = "DEF A()\nINT N\nN = 1.5\n$OUT[N] = TRUE\nEXIT\nEND\n"
 
 
 @pytest.fixture

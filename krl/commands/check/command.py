@@ -59,6 +59,10 @@ def check(
         bool,
         typer.Option("--complete", help="No file is missing: what nothing declares is an error."),
     ] = False,
+    packages: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAMES", help="Option packages that are there: EKI,RSI."),
+    ] = None,
     verbose: Annotated[bool, typer.Option("--verbose", help="Name the rules that say so.")] = False,
     fix: Annotated[
         bool, typer.Option("--fix", help="Mend what has one plain remedy, and check the rest.")
@@ -111,7 +115,10 @@ def check(
     agreed = _agreed(paths, settings, no_settings)
     selection = _selection(agreed, select, ignore)
     options = CheckOptions(
-        syntax_only, stops or _asks_for_stops(selection), complete or agreed.complete
+        syntax_only,
+        stops or _asks_for_stops(selection),
+        complete or agreed.complete,
+        _packages([*agreed.packages, *(packages or ())]),
     )
     known = baseline or agreed.baseline
     check_ = _Check(
@@ -217,6 +224,18 @@ class _Check:
             raise InputError(f"{first.path}: {first.reason}")
         wanted = [one for one in report.diagnostics if self.selection.keeps(one.code)]
         return report, self.agreed.adjusted(wanted)
+
+
+def _packages(given: list[str]) -> tuple[str, ...]:
+    """The option packages of the command line and the settings."""
+    from grammar.semantics.packages import load_packages
+
+    names = {name.strip().upper() for word in given for name in word.split(",") if name.strip()}
+    for name in sorted(names):
+        if name not in load_packages().names:
+            listed = ", ".join(load_packages().names)
+            raise InputError(f"{name} is no option package that is known: {listed}")
+    return tuple(sorted(names))
 
 
 def _asks_for_stops(selection: "Selection") -> bool:

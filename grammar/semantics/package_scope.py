@@ -1,0 +1,96 @@
+"""What option packages declare, as a scope: names that no file at hand has to declare.
+
+A package is there where it is named, or where a project calls one of its routines. What a file
+declares itself always counts more. Signatures come from `grammar.semantics.packages`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from grammar.semantics.packages import PackageParameter, PackageRoutine, load_packages
+from grammar.semantics.scopes import Found, Outer, Scope
+from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import (
+    Access,
+    Kind,
+    ParameterSymbol,
+    RoutineSymbol,
+    Symbol,
+    Table,
+    TypeReference,
+)
+from grammar.syntax.build import read_module
+from grammar.syntax.references import Space
+
+__all__ = ["PackageScope", "called_packages"]
+
+_NO_SPAN = (0, 0)
+
+
+def called_packages(calls: Iterable[str]) -> frozenset[str]:
+    """The packages that some of the called routines belong to."""
+    routines = load_packages().routines
+    return frozenset(routines[name].package for name in calls if name in routines)
+
+
+class PackageScope(Scope):
+    """All that some packages declare, for everybody; types are looked up outside of it."""
+
+    __slots__ = ()
+
+    def __init__(self, packages: frozenset[str], outer: Outer) -> None:
+        super().__init__(None, None, _table(packages), outer)
+
+    def all(self) -> Iterator[tuple[Space, Found]]:
+        """Each declaration with its name space."""
+        for space, symbol in self._table.symbols():
+            found = self.own(space, symbol.key)
+            assert found is not None, "a scope has what its table has"
+            yield space, found
+
+
+@cache
+def _table(packages: frozenset[str]) -> Table:
+    known = load_packages()
+    data = [one.declaration for one in known.types.values() if one.package in packages]
+    data += [
+        f"DECL GLOBAL {one.type} {one.name}"
+        for one in known.variables.values()
+        if one.package in packages
+    ]
+    module = read_module("\n".join(["DEFDAT PACKAGES PUBLIC", *data, "ENDDAT", ""]), "")
+    assert not isinstance(module, list), "the table has declarations that can be read"
+    spaces: dict[Space, dict[str, Symbol]] = {space: {} for space in Space}
+    for space, symbol in table_of(module).table.symbols():
+        spaces[space][symbol.key] = symbol
+    for routine in known.routines.values():
+        if routine.package in packages:
+            spaces[Space.ROUTINE][routine.name] = _routine(routine)
+    return Table(spaces, ())
+
+
+def _routine(routine: PackageRoutine) -> RoutineSymbol:
+    return RoutineSymbol(
+        Kind.ROUTINE,
+        routine.name,
+        _NO_SPAN,
+        Access.GLOBAL,
+        TypeReference(routine.result) if routine.result not in ("", "?") else None,
+        parameters=tuple(map(_parameter, routine.parameters)),
+        has_more=routine.has_more or routine.is_unconfirmed,
+    )
+
+
+def _parameter(parameter: PackageParameter) -> ParameterSymbol:
+    indices = (None,) if parameter.is_array else None
+    is_known = parameter.type != "?"
+    return ParameterSymbol(
+        Kind.PARAMETER,
+        parameter.name,
+        _NO_SPAN,
+        Access.ROUTINE,
+        TypeReference(parameter.type, indices) if is_known else None,
+        mode="OUT" if parameter.is_out else "IN",
+    )
