@@ -43,6 +43,7 @@ KINDS = (
     "number out of range",
     "end of a block dropped",
 )
+_DECLARING = frozenset("DECL GLOBAL CONST STRUC ENUM CHAR INT REAL BOOL SIGNAL".split())
 _CLOSERS = frozenset("ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH ENDSPLINE END ENDFCT".split())
 # A line is drawn again so often until a kind of mistake can be made in it.
 _TRIES = 200
@@ -155,7 +156,8 @@ def _too_large(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int
         if token.text.isdecimal()
         and (before.text == "[" or after.text == "]" or before.text.upper() == "DECL")
     ]
-    if not numbers or any(token.text == "{" for token in tokens):
+    is_declared = tokens[0].text.upper() in _DECLARING or tokens[1].kind == "NAME"
+    if not numbers or is_declared or any(token.text == "{" for token in tokens):
         return None
     token = chance.choice(numbers)
     return token.start, token.end, chance.choice(("99999", "0"))
@@ -231,7 +233,8 @@ def measure_planted(
 
     ``on_step`` is called once a mistake. The record has for all of them and by kind: ``planted``,
     the shares ``found`` and ``in_place``, and the ``median`` and 95th percentile ``p95`` of the
-    number of findings of a mistake that is found; ``survivors`` are the first that were not found.
+    number of findings of a mistake that is found; ``survivors`` are the first that were not found,
+    ``elsewhere`` those that were found in another place.
 
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
@@ -259,6 +262,7 @@ def measure_planted(
             for kind in KINDS
         ],
         "survivors": [one for one in done if not one["findings"]][:100],
+        "elsewhere": [one for one in done if one["findings"] and not one["in_place"]][:100],
     }
 
 
@@ -283,6 +287,7 @@ def _trial(
             "was": source.text[start:end],
             "is": new,
             "findings": len(found),
+            "first": min(((one.path, one.region.line, one.code) for one in found), default=None),
             "in_place": any(one.path == path and one.region.line in likely for one in found),
         }
     return None

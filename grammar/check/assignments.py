@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from grammar.check.constant_folding import constant
+from grammar.check.motion_limits import check_motion_limit
 from grammar.check.signal_direction import side_of
 from grammar.check.type_checker import TypeChecker
 from grammar.semantics.predefined import SystemVariable
@@ -21,6 +22,8 @@ def assign(checker: TypeChecker, node: ast.Assignment) -> None:
     variable = _system_variable(checker, node.target)
     if variable is not None and variable.limits is not None:
         _check_limits(checker, variable, variable.limits, node)
+    elif variable is not None:
+        check_motion_limit(checker, node)
 
 
 def _system_variable(checker: TypeChecker, node: ast.Expression) -> SystemVariable | None:

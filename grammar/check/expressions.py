@@ -95,6 +95,8 @@ def _subscript(checker: TypeChecker, node: ast.Subscript, _expected: Type) -> Ty
         checker.reject("wrong-indices", node, typed.verdict)
     elif isinstance(base, Array):
         _check_range(checker, node, base)
+    elif base == UNKNOWN:
+        _check_range(checker, node, Array(UNKNOWN, (None,) * len(node.indices)))
     return typed.type
 
 

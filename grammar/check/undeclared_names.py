@@ -16,6 +16,7 @@ from grammar.check.context import Context
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.typos import Typos
+from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Table
@@ -68,8 +69,35 @@ def check(context: Context) -> Iterator[Diagnostic]:
         if key not in reported:
             reported.add(key)
             yield _unknown(context, use)
+    yield from _near_system_names(context)
     if context.module.suffix != ".dat" and context.project.data_of(context.module) is None:
         yield from _data_missing(context)
+
+
+def _near_system_names(context: Context) -> Iterator[Diagnostic]:
+    """What a list of the controller declares and is one slip away from what the tables have."""
+    if not context.table.is_data:
+        return
+    known = context.system.variables
+    for key, symbol in context.table.table.spaces[Space.VALUE].items():
+        if key.startswith("$") and key not in known:
+            near = [name for name in _system_typos().meant(key) if not _is_declared(context, name)]
+            if near:
+                message = f"no system variable is called {symbol.name}"
+                fix = Fix(f"did you mean {' or '.join(near)}?")
+                yield context.finding(
+                    "unknown-system-name", symbol.span, message, severity="warning", fix=fix
+                )
+
+
+def _is_declared(context: Context, name: str) -> bool:
+    found = context.scope.find(Space.VALUE, name.upper())
+    return isinstance(found, Found) and found.module is not None
+
+
+@cache
+def _system_typos() -> Typos:
+    return Typos(name for name in System.load().variables if name.startswith("$"))
 
 
 def _data_missing(context: Context) -> Iterator[Diagnostic]:
@@ -164,6 +192,13 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     )
 
 
+#: What is written in every program, so that one slip away from it there is nothing else.
+_WORDS_OF_KRL = {
+    Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 3, is_series=False),
+    Space.VALUE: Typos(("TRUE", "FALSE"), is_series=False),
+}
+
+
 def _may_be_elsewhere(use: Use) -> bool:
     """Whether a name comes from a file that is not at hand; what several declare does not."""
     if isinstance(use.answer, MaybeElsewhere):
@@ -179,6 +214,11 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
     name = use.name.text
     if space is Space.VALUE and f"${use.name.key}" in context.system.variables:
         return (f"${name}",)
+    bare = name.rstrip("0123456789")
+    if name.startswith("$") and bare != name and bare.upper() in context.system.variables:
+        return (bare,)
+    if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
+        return meant
     return own(space).meant(name) or context.project.typos[space].meant(name)
 
 

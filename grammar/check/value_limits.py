@@ -34,6 +34,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
             match placed.statement:
                 case ast.InterruptDeclaration() as declaration:
                     yield from _interrupt(context, declaration)
+                case ast.InterruptSwitch(number=number) if number is not None:
+                    yield from _interrupt_number(context, number, is_own=False)
+                case ast.WaitSeconds(duration=duration):
+                    yield from _duration(context, duration)
                 case ast.Trigger() as trigger:
                     yield from _trigger(context, trigger)
                 case ast.Assignment() as assignment:
@@ -51,20 +55,33 @@ def _number(context: Context, node: ast.Expression | None) -> float | None:
 
 
 def _interrupt(context: Context, node: ast.InterruptDeclaration) -> Iterator[Diagnostic]:
-    number = _number(context, node.number)
-    if number is None or is_priority(number):
+    is_own = not _is_stop_message(node.condition)  # 3 is that of every program [INT-02]
+    yield from _interrupt_number(context, node.number, is_own=is_own)
+
+
+def _interrupt_number(
+    context: Context, node: ast.Expression, *, is_own: bool
+) -> Iterator[Diagnostic]:
+    number = _number(context, node)
+    if number is None or is_priority(number) or (number == 3 and not is_own):
         return
-    if number == 3 and _is_stop_message(node.condition):
-        return  # as every program does that the controller sets up [INT-02]
     message = f"an interrupt cannot have the number {number:g}"
     reason = "3 and 40 to 80 belong to the system" if 0 < number <= 80 else ""
     yield context.finding(
         "interrupt-number",
-        node.number,
+        node,
         message,
         reason=reason,
         severity="warning" if number == 3 else None,
     )
+
+
+def _duration(context: Context, node: ast.Expression) -> Iterator[Diagnostic]:
+    """WAIT SEC with less than nothing waits for nothing: the sign is a slip."""
+    seconds = _number(context, node)
+    if seconds is not None and seconds < 0:
+        message = f"WAIT SEC of {seconds:g} seconds does not wait"
+        yield context.finding("negative-wait", node, message)
 
 
 def _is_stop_message(condition: ast.Expression) -> bool:

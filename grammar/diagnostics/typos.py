@@ -28,11 +28,15 @@ class Typos:
     """Names that can be meant, indexed so that a look-up costs the length of the name.
 
     Each name is entered under itself without each of its letters, as SymSpell does: names that are
-    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out.
+    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out. Words
+    of the language are in no series, ``is_series`` false: what is near one of these is a slip.
     """
 
-    def __init__(self, names: Iterable[str], shortest: int = _SHORTEST) -> None:
+    def __init__(
+        self, names: Iterable[str], shortest: int = _SHORTEST, *, is_series: bool = True
+    ) -> None:
         self._shortest = shortest
+        self._is_series = is_series
         self._names: dict[str, str] = {}
         self._keys: dict[str, list[str]] = {}
         for name in names:
@@ -56,7 +60,7 @@ class Typos:
             right
             for shorter in _shortened(wrong)
             for right in self._keys.get(shorter, ())
-            if right != wrong and _is_slip(wrong, right)
+            if right != wrong and _is_slip(wrong, right, is_series=self._is_series)
         }
         return tuple(self._names[right] for right in sorted(near))
 
@@ -67,7 +71,7 @@ def _shortened(key: str) -> Iterator[str]:
         yield key[:index] + key[index + 1 :]
 
 
-def _is_slip(wrong: str, right: str) -> bool:
+def _is_slip(wrong: str, right: str, *, is_series: bool) -> bool:
     """Whether two names in upper case that share a key are one slip apart, and in no series."""
     pairs = enumerate(zip(wrong, right, strict=False))
     start = next((i for i, (a, b) in pairs if a != b), min(len(wrong), len(right)))
@@ -75,20 +79,26 @@ def _is_slip(wrong: str, right: str) -> bool:
         longer, shorter = (wrong, right) if len(wrong) > len(right) else (right, wrong)
         if longer[start + 1 :] != shorter[start:]:
             return False
+        if not is_series:
+            return True
         return start > 0 and not _numbers(longer, start, _SHORTEST_TO_END)
     if wrong[start + 1 :] == right[start + 1 :]:
+        if not is_series:
+            return True
         if {wrong[start : start + 3], right[start : start + 3]} == _PAIR:
             return False
         return not (_numbers(wrong, start) or _numbers(right, start))
     swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
-    return wrong[start:] == swapped and swapped[:2].isalpha()
+    return wrong[start:] == swapped and swapped[:2].replace("_", "").isalpha()
 
 
 def _numbers(name: str, index: int, shortest: int = _LONGEST) -> bool:
-    """Whether the character at an index numbers the name: no letter, or the last of a word.
+    """Whether the character at an index numbers the name: a digit, or the last of a word.
 
     The last letter of a word with so many letters numbers nothing.
     """
     word = next(word for word in _WORD.finditer(name) if word.start() <= index < word.end())
     is_last = index == word.end() - 1
+    if name[index] == "_":
+        return False
     return not word.group().isalpha() or (is_last and len(word.group()) < shortest)

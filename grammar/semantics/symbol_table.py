@@ -30,6 +30,9 @@ from grammar.syntax.walk import BODIES, bodies
 
 __all__ = ["table_of"]
 
+#: Machine data that limit what programs set; their values are kept.
+MAXIMA = frozenset({"$VEL_MA", "$ACC_MA"})
+
 
 def table_of(module: ast.Module) -> ModuleTable:
     """The tables of one file."""
@@ -173,6 +176,7 @@ class _Scope:
 
     def variable(self, declaration: ast.VariableDeclaration, declarator: ast.Declarator) -> None:
         is_constant, name = declaration.is_constant, declarator.name
+        is_kept = is_constant or name.key in MAXIMA
         self.add(
             Space.VALUE,
             Symbol(
@@ -181,7 +185,7 @@ class _Scope:
                 name.span,
                 self._access[declaration.is_global],
                 TypeReference(declaration.type.text, declarator.indices),
-                declarator.value if is_constant else None,
+                declarator.value if is_kept else None,
             ),
         )
 

@@ -92,7 +92,8 @@ class Symbol:
     """Something with a name. ``span`` is that of the name in the declaration.
 
     ``type`` is ``None`` for what has no type, and for a parameter that is declared nowhere.
-    ``value`` is the initial value of a constant, which array sizes may be made of. What the
+    ``value`` is the initial value of a constant, which array sizes may be made of, and of machine
+    data that limit what programs set. What the
     controller brings along stands in no file: its type is ``given``, its span is empty.
     """
 

@@ -39,9 +39,7 @@ def test_a_package_is_named() -> None:
 
 def test_files_count_more() -> None:
     """What a file declares is meant, and a project that declares the routine needs no package."""
-    own = (
-        "DEF M1()\nEND\nGLOBAL DEF EKI_OPEN(A:IN)\nDECL INT A\nEND\n"
-    )
+    own = "DEF M1()\nEND\nGLOBAL DEF EKI_OPEN(A:IN)\nDECL INT A\nEND\n"
     known = project(CALLS, own)
     assert frozenset() == known.packages
     found = known.scope(known.modules[0]).find(Space.ROUTINE, "EKI_OPEN")
