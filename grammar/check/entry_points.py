@@ -67,6 +67,9 @@ class _Entered:
             for routine in context.routines
             if routine.table.routine.access is not Access.MODULE
         } | {context.module.name}
+        first = context.routines[0]
+        if any(map(_sets_up, first.statements)) and not first.node.parameters:
+            self._seen_outside.discard(first.node.name.key)  # somebody selects it
 
     def maybe_by_interrupt(self, routine: RoutineBody) -> bool:
         """Whether an interrupt may lead to a routine, as far as is known."""

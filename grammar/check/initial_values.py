@@ -15,8 +15,9 @@ from grammar.check.constant_folding import integer_of
 from grammar.check.context import Context
 from grammar.check.expressions import type_checker
 from grammar.check.type_checker import TypeChecker
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.semantics.assignability import initial
+from grammar.semantics.types import CHAR, Array
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import root_variable
@@ -73,8 +74,13 @@ class _Values:
         root = root_variable(node.target)
         if root is None:
             return
-        self._check_place(root.name, node)
-        self._check_order(root, node.target)
+        if isinstance(node.target, ast.Subscript):
+            self._check_place(root.name, node)
+            self._check_order(root, node.target)
+        else:
+            message = f"a data list cannot assign to {root.name.text}"
+            fix = Fix("give the initial value in the declaration")
+            self.checker.report("misplaced-instruction", node, message, fix=fix)
 
     def _check_place(self, name: ast.Name, node: ast.Assignment) -> None:
         context = self.checker.context
@@ -99,7 +105,18 @@ class _Values:
         elif name == root.name.key and len(before) == len(here) and here < before:
             message = "the elements of an array get their initial values in ascending order"
             self.checker.report("initial-order", target, message)
+        elif self._is_gap(root.name, before if name == root.name.key else (), here):
+            message = f"an element of {root.name.text} before this one gets no value"
+            self.checker.report("initial-gap", target, message)
         self.last = root.name.key, here
+
+    def _is_gap(self, name: ast.Name, before: tuple[int, ...], here: tuple[int, ...]) -> bool:
+        """Whether a letter of a text is left out, so that what it is follows from nothing."""
+        found = self.checker.context.found(name)
+        type_ = self.checker.type_of(found) if found else None
+        if len(here) != 1 or not isinstance(type_, Array) or type_.element != CHAR:
+            return False
+        return here[0] > (before[0] if before else 0) + 1
 
 
 def _has_blank_line(between: str) -> bool:
