@@ -111,7 +111,9 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
             continue
         root = root_variable(node)
         found = checker.context.found(root.name) if root else None
-        is_given = place >= 1 and (found is None or found.module is None)
+        is_given = array.element == UNKNOWN or (
+            place >= 1 and (found is None or found.module is None)
+        )
         reach = f"to {size}" if size is not None else "upwards"
         message = f"the index {place} lies outside the array, which reaches from 1 {reach}"
         checker.report("index-out-of-range", given, message, is_unconfirmed=is_given)

@@ -21,6 +21,7 @@ from grammar.semantics.symbols import (
     Table,
     TypeReference,
 )
+from grammar.semantics.types import UNKNOWN
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 
@@ -77,7 +78,8 @@ def _routine(routine: PackageRoutine) -> RoutineSymbol:
         routine.name,
         _NO_SPAN,
         Access.GLOBAL,
-        TypeReference(routine.result) if routine.result not in ("", "?") else None,
+        # there is a value, and working programs receive it in variables of several types
+        given=UNKNOWN if routine.result else None,
         parameters=tuple(map(_parameter, routine.parameters)),
         has_more=routine.has_more or routine.is_unconfirmed,
     )
