@@ -14,7 +14,7 @@ import numpy.typing as npt
 from interp.controller.motion_queue import PlannedPoint
 from interp.program.load import CheckedProgram
 from interp.robot.kinematics.machine_data import MachineData
-from interp.robot.simulation.links import links_of
+from interp.robot.simulation.links import hand_of, links_of
 from interp.robot.simulation.observations import ObservationRecord
 from interp.robot.simulation.scene import Scene
 from interp.robot.simulation.tracking import PathRecord
@@ -235,7 +235,8 @@ def _tip(point: PlannedPoint, machine: MachineData) -> list[float]:
     """The end point of the tool; empty where it is unknown."""
     if point.position is None:
         return []
-    tip = machine.robroot @ point.position.flange @ point.tool
+    foot = machine.foot(point.position.axes[len(machine.axes) :])
+    tip = foot @ point.position.flange @ point.tool
     return [round(value, 4) for value in tip.position]
 
 
@@ -263,7 +264,7 @@ def _arm(machine: MachineData, path: PathRecord | None, scene: Scene) -> ArmReco
             }
             for link in links_of(machine)
         ],
-        "hand": len(machine.chain.joints),
+        "hand": hand_of(links_of(machine)),
         "flange": _numbers(machine.chain.end),
         "tools": [
             {"t": time, "tool": _numbers(placement.tool), "base": _numbers(placement.base)}

@@ -83,6 +83,7 @@ class FramesInForce:
             pose_of(values["$TOOL"]) or IDENTITY,
             self._robroot(),
             IpoMode(word_of(values["$IPO_MODE"])),
+            None if self._machine is None else self._machine.carrier,
         )
 
     def advance_run(self) -> Placement:
@@ -162,8 +163,9 @@ class Positions:
         """A position as $POS_ACT shows it: the point of the tool in the base, Status and Turn."""
         at = position()
         status, turn = self.status_turn(at.axes)
-        point = self._frames.main_run().point(at.flange)
-        return pose_value(point, status, turn, at.axes[ROBOT_AXES:])
+        externals = at.axes[ROBOT_AXES:]
+        point = self._frames.main_run().at(externals).point(at.flange)
+        return pose_value(point, status, turn, externals)
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
         """Status and Turn of axes; a Status of 0 where there is no machine data."""

@@ -245,7 +245,7 @@ class PredefinedRoutines:
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
         externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
-        pose = pose_value(placement.point(flange), status, turn_of(axes), externals)
+        pose = pose_value(placement.at(externals).point(flange), status, turn_of(axes), externals)
         return pose, (request.arguments[0], 0)
 
     def _inverse(self, _task: Task, request: Invoke) -> Reply:
@@ -254,20 +254,20 @@ class PredefinedRoutines:
         start = target_of(known(request.arguments[1]))
         kinematics, placement = self._kinematics()
         point = Pose.of(*(target.get(name, 0.0) for name in "XYZABC"))
+        externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
         origin = [start.get(name, 0.0) for name in _AXES]
         status, turn = target.get("S"), target.get("T")
         after = (*request.arguments[:2], 0)
         try:
             found = solve(
                 kinematics,
-                placement.flange(point),
+                placement.at(externals).flange(point),
                 status=None if status is None else int(status),
                 turn=None if turn is None else int(turn),
                 start=origin,
             )
         except Fault:
             return axes_value(origin), (*request.arguments[:2], 1)
-        externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
         return axes_value([*found.axes, *externals]), after
 
     def _kinematics(self) -> tuple[Kinematics, Placement]:

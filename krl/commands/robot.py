@@ -93,7 +93,7 @@ def _answer(arm: "Kinematics", point: _Point, tool: "Pose", base: "Pose") -> dic
     from interp.robot.kinematics.targets import solve
     from interp.values.faults import Fault
 
-    placement = Placement(point.base or base, point.tool or tool, arm.machine.robroot)
+    placement = Placement(point.base or base, point.tool or tool, arm.machine.foot((0.0,) * 6))
     answer: dict[str, object] = {"id": point.name, "reachable": False, "joints": None}
     answer |= {"s": point.status, "t": None}
     try:

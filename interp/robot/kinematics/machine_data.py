@@ -19,8 +19,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import reduce
+from operator import matmul
 from typing import Any
 
+from interp.robot.kinematics.carrier import Carrier
 from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.data_list import DataListError, Key, Value, read_data_list
 from interp.values.poses import IDENTITY, Pose
@@ -41,6 +44,8 @@ __all__ = [
 
 ROBOT_AXES = 6
 _MOST_EXTERNAL = 6
+_LINKS = ("TA1KR", "TA2A1", "TA3A2", "TFLA3")
+"""Frames of an external kinematic system, one before each of its three axes and one behind."""
 
 _UNKNOWN_JERK = 1e18  # what the files say where there is no limit
 _RUN_UP_TIME = 0.4
@@ -125,11 +130,11 @@ class MachineData:
 
     ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
     motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
-    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``torques`` are the
-    most that the robot axes bear, in Nm (N for linear ones); none where they are unknown, infinite
-    where one is. ``palletising`` is ``None``
-    for an arm whose axes are all free. ``own_chain`` is that of an arm which was described joint by
-    joint; lengths and frames of the wrist mean nothing then.
+    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``carrier`` is the external
+    kinematic system that the robot stands on [#ERSYS]. ``torques`` are the most that the robot axes
+    bear, in Nm (N for linear ones); none where they are unknown, infinite where one is.
+    ``palletising`` is ``None`` for an arm whose axes are all free. ``own_chain`` is that of an arm
+    which was described joint by joint; lengths and frames of the wrist mean nothing then.
     """
 
     name: str
@@ -150,6 +155,7 @@ class MachineData:
     acceleration: CartesianLimits
     t1_speed: float
     t1_reduction: float
+    carrier: Carrier | None = None
     torques: tuple[float, ...] = ()
     palletising: Palletising | None = None
     own_chain: Chain | None = None
@@ -162,6 +168,10 @@ class MachineData:
         every = (*self.axes, *self.externals)
         rest = (min(max(0.0, axis.lower), axis.upper) for axis in every[len(axes) :])
         return (*(float(value) for value in axes[: len(every)]), *rest)
+
+    def foot(self, externals: Sequence[float]) -> Pose:
+        """The foot of the robot in $WORLD, where external axes stand."""
+        return self.robroot if self.carrier is None else self.carrier.pose(externals)
 
     @property
     def chain(self) -> Chain:
@@ -252,11 +262,13 @@ class _Reader:
             if axis.kind is AxisKind.LINEAR:
                 raise self._error(f"$AXIS_TYPE[{i}] is 1; an arm of six rotary axes is needed")
         count = min(max(self._integer("$EX_AX_NUM", default=0), 0), _MOST_EXTERNAL)
+        externals = tuple(self._axis(ROBOT_AXES + i) for i in _numbers(count))
         return MachineData(
             name=self._text("$TRAFONAME").removeprefix("#"),
             version=self._text("$V_R1MADA"),
             axes=axes,
-            externals=tuple(self._axis(ROBOT_AXES + i) for i in _numbers(count)),
+            externals=externals,
+            carrier=self._carrier(externals),
             robroot=self._frame("$ROBROOT", default=IDENTITY),
             tiroro=self._frame("$TIRORO"),
             length_a=self._number("$LENGTH_A"),
@@ -290,6 +302,33 @@ class _Reader:
         if axis.kind is AxisKind.LINEAR or axis.dynamics is None or axis.lower > axis.upper:
             return other
         return replace(axis, direction=other.direction)
+
+    def _carrier(self, externals: Sequence[Axis]) -> Carrier | None:
+        """The external kinematic system that carries the robot, of those that $EX_KIN names."""
+        kinds = self._members("$EX_KIN", default={})
+        found = [i for i in _numbers(_MOST_EXTERNAL) if kinds.get(f"ET{i}") == "#ERSYS"]
+        if not found:
+            return None
+        name = f"$ET{found[0]}"
+        named = self._members(f"{name}_AX", default={})
+        words = [str(named.get(f"TR_A{i}", "#NONE")) for i in _numbers(3)]
+        words = words[: words.index("#NONE")] if "#NONE" in words else words
+        names = [axis.name for axis in externals]
+        columns = [names.index(word[1:]) if word[1:] in names else -1 for word in words]
+        if not columns or min(columns) < 0 or len(set(columns)) < len(columns):
+            raise self._error(f"{name}_AX names no axes that $EX_AX_NUM has")
+        frames = [self._frame(f"{name}_{part}", IDENTITY) for part in _LINKS]
+        joints = tuple(
+            Joint(
+                names[column],
+                frame,
+                (0.0, 0.0, float(externals[column].direction)),
+                externals[column].kind is AxisKind.LINEAR,
+            )
+            for column, frame in zip(columns, frames, strict=False)
+        )
+        rest = reduce(matmul, frames[len(columns) :])
+        return Carrier(Chain(joints, rest), tuple(columns), self._frame("$ERSYSROOT", IDENTITY))
 
     def _axis(self, number: int) -> Axis:
         kind = self._kind(number)

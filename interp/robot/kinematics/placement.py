@@ -9,9 +9,14 @@ the flange. What $IPO_MODE changes is the path between points, which is that of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.carrier import Carrier
 from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["IpoMode", "Placement"]
@@ -26,12 +31,30 @@ class IpoMode(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The frames in force, each with the value of its system variable."""
+    """The frames in force, each with the value of its system variable.
+
+    Where a ``carrier`` has the robot, its foot is not at ``robroot`` but where external axes have
+    brought it: `at` says where.
+    """
 
     base: Pose = IDENTITY
     tool: Pose = IDENTITY
     robroot: Pose = IDENTITY
     mode: IpoMode = IpoMode.BASE
+    carrier: Carrier | None = None
+
+    def at(self, externals: Sequence[float]) -> Placement:
+        """The frames where external axes stand, which may carry the robot."""
+        if self.carrier is None:
+            return self
+        return replace(self, robroot=self.carrier.pose(externals), carrier=None)
+
+    def befores(self, externals: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one of (4, 4) for all."""
+        if self.carrier is None:
+            return np.array(self.before.matrix, dtype=np.float64)
+        feet = np.linalg.inv(self.carrier.poses(externals)).astype(np.float64)
+        return feet @ np.array(self.base.matrix, dtype=np.float64)
 
     @property
     def before(self) -> Pose:

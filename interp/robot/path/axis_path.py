@@ -317,11 +317,17 @@ class PosePathCurve:
         axes = self.arm.inverse_along(flanges, start.tolist())
         return follow(self.arm, flanges, start.tolist()) if axes is None else axes
 
+    def _befores(self, u: Array) -> Array:
+        """What comes before the points of the path in the chain to the flange."""
+        if self.placement.carrier is None:
+            return self._before
+        return self.placement.befores(self.others.at(u))
+
     def _flanges(self, u: Array) -> Array:
         poses = poses_of(self._pose_path, u)
         if self.placement.mode is IpoMode.TCP:
             poses = _inverted(poses)
-        flanges: Array = self._before @ poses @ self._after
+        flanges: Array = self._befores(u) @ poses @ self._after
         return flanges
 
     def _points(self, start: Array) -> tuple[Array, Array]:
@@ -363,9 +369,11 @@ def tool_positions(curve: Curve, u: Array) -> Array:
     """Where the tool is in the base, or with a fixed tool the base in the tool: mm, ``(n, 3)``."""
     if curve.pose_path is not None:
         return curve.pose_path.at(u)[0]
-    flanges = curve.arm.forward(curve.axes(u)[:, :ROBOT_AXES])
+    axes = curve.axes(u)
+    flanges = curve.arm.forward(axes[:, :ROBOT_AXES])
     placement = curve.placement
-    points = matrix_of(placement.before.inverse()) @ flanges @ matrix_of(placement.tool)
+    before = placement.befores(axes[:, ROBOT_AXES:])
+    points = np.linalg.inv(before) @ flanges @ matrix_of(placement.tool)
     if placement.mode is IpoMode.TCP:
         points = _inverted(points)
     positions: Array = points[:, :3, 3]

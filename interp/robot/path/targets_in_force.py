@@ -82,7 +82,11 @@ class Programmed:
         """X, Y, Z, A, B, C of the target in given frames."""
         if self.components is not None and placement == self.placement:
             return self.components
-        return placement.point(self.flange).components
+        return self.pose_in(placement).components
+
+    def pose_in(self, placement: Placement) -> Pose:
+        """The target as a point in given frames, where its external axes have brought them."""
+        return placement.at(self.axes[ROBOT_AXES:].tolist()).point(self.flange)
 
     def externals(self, target: Target, is_relative: bool) -> Array:
         """External axes of a target. Raises `Fault` 1447 beyond their limits."""
@@ -109,7 +113,7 @@ class Programmed:
         if has_axes(target):
             axes = self._axes(target, is_relative)
             flange = Pose.from_matrix(self.arm.forward(axes[:ROBOT_AXES]).tolist())
-            return placement.point(flange).components
+            return placement.at(axes[ROBOT_AXES:].tolist()).point(flange).components
         before = self.point(placement)
         if not is_relative:
             return tuple(
@@ -129,7 +133,7 @@ class Programmed:
         components = self.components_of(target, placement, motion.is_relative, motion.reference)
         found = ptp_target(
             self.arm,
-            placement.flange(Pose.of(*components)),
+            placement.at(externals.tolist()).flange(Pose.of(*components)),
             self.axes[:ROBOT_AXES].tolist(),
             status=_bits(target, "S") if not motion.is_relative else None,
             turn=_bits(target, "T") if not motion.is_relative else None,

@@ -42,7 +42,8 @@ class WristCurve(PosePathCurve):
     ) -> None:
         (end,) = poses_of(pose_path, np.ones(1))
         try:
-            goal = ptp_target(arm, placement.flange(Pose.from_matrix(end.tolist())), start.tolist())
+            there = placement.at(others.at(np.ones(1))[0].tolist())
+            goal = ptp_target(arm, there.flange(Pose.from_matrix(end.tolist())), start.tolist())
         except Fault as error:
             text = "start and end have different configurations, which #JOINT does not allow"
             raise Fault("configuration", text, number=2829, rules=("ORI-03",)) from error
@@ -59,7 +60,8 @@ class WristCurve(PosePathCurve):
         axes = references.copy()
         axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
         positions, _ = self._pose_path.at(u)
-        wanted = positions @ self._before[:3, :3].T + self._before[:3, 3]
+        before = self._befores(u)
+        wanted = (before[..., :3, :3] @ positions[:, :, None])[:, :, 0] + before[..., :3, 3]
         shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))
         for _ in range(_ROUNDS):
             places = self._tool_at(axes + shifts[:, None])

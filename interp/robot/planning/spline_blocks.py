@@ -64,7 +64,7 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
     """SPL, SLIN and SCIRC."""
     settings = motion.settings
     placement = settings.placement
-    knot = _knot(placement.in_path(placement.point(before.flange)))
+    knot = _knot(placement.in_path(before.pose_in(placement)))
     target, segments, externals = before, [], [before.axes[ROBOT_AXES:]]
     for part in motion.parts:
         components = target.components_of(part.target, placement)

@@ -145,7 +145,7 @@ class Tracks:
 
     def _line(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         placement = motion.settings.placement
-        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        start = matrix_of(placement.in_path(before.pose_in(placement)))
         point = self._point(motion, motion.target, before)
         end = matrix_of(placement.in_path(Pose.of(*point)))
         pose_path = StraightLine(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
@@ -153,7 +153,7 @@ class Tracks:
 
     def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         placement = motion.settings.placement
-        start = matrix_of(placement.in_path(placement.point(before.flange)))
+        start = matrix_of(placement.in_path(before.pose_in(placement)))
         middle = Pose.of(*self._point(motion, motion.auxiliary or {}, before))
         auxiliary = placement.in_path(middle)
         point = self._point(motion, motion.target, before)

@@ -19,7 +19,7 @@ from interp.robot.kinematics.chain import Point
 from interp.robot.kinematics.machine_data import AxisKind, MachineData
 from interp.values.poses import Pose
 
-__all__ = ["DARK", "ORANGE", "Capsule", "Link", "links_of", "reach_of"]
+__all__ = ["DARK", "ORANGE", "Capsule", "Link", "hand_of", "links_of", "reach_of"]
 
 _KNOWN_MASS: Final = 52.0  # kg, of an arm with this reach:
 _KNOWN_REACH: Final = 901.5  # mm
@@ -47,7 +47,7 @@ class Link:
     ``frame`` where it stands there while its axis is at zero. ``joint`` is the index of its axis
     among all axes, robot axes first; ``None`` where it does not move. The axis turns it about
     ``axis`` of its own frame, or shifts it along where ``is_linear``. ``rotor`` is the inertia that
-    the drive adds, in kg m² (kg where it is linear).
+    the drive adds, in kg m² (kg where it is linear). What ``touches`` nothing is only shown.
     """
 
     name: str
@@ -58,25 +58,32 @@ class Link:
     is_linear: bool = False
     rotor: float = 0.0
     shapes: tuple[Capsule, ...] = ()
+    touches: bool = True
 
 
 def links_of(machine: MachineData) -> tuple[Link, ...]:
     """The bodies of an arm and its external axes, each behind the one that carries it.
 
-    The first is the foot; those of the robot axes follow in order, the last of them with the
-    flange. External axes stand beside the arm: machine data does not say what they carry.
+    What carries the robot comes first; then the foot, called so, and the links of the robot axes,
+    the last of which has the flange. Other external axes stand beside the arm: machine
+    data does not say what they carry.
     """
     scale = reach_of(machine) / _KNOWN_REACH
     mass = _KNOWN_MASS * scale**3
     inertia = mass * (reach_of(machine) / 1000.0) ** 2
-    links = [Link("foot", None, machine.robroot, shapes=_foot(machine, mass))]
+    links = [*_carriage(machine, scale)]
+    standing = machine.robroot if machine.carrier is None else machine.carrier.chain.end
+    links.append(
+        Link("foot", len(links) - 1 if links else None, standing, shapes=_foot(machine, mass))
+    )
+    first = len(links)
     bodies = _shapes(machine, mass) if machine.own_chain is None else _rods(machine, mass)
     joints = zip(machine.chain.joints, _ROTORS, bodies, strict=False)
     for place, (joint, rotor, shapes) in enumerate(joints):
         links.append(
             Link(
                 f"link_{place + 1}",
-                place,
+                first + place - 1,
                 joint.frame,
                 place,
                 joint.axis,
@@ -86,6 +93,11 @@ def links_of(machine: MachineData) -> tuple[Link, ...]:
             )
         )
     return (*links, *_externals(machine, scale))
+
+
+def hand_of(links: Sequence[Link]) -> int:
+    """The index of the link that has the flange."""
+    return max(place for place, link in enumerate(links) if link.name.startswith("link_"))
 
 
 def reach_of(machine: MachineData) -> float:
@@ -149,9 +161,33 @@ def _rods(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
     )
 
 
+def _carriage(machine: MachineData, scale: float) -> Iterable[Link]:
+    """What external axes carry the robot on, from the world upwards."""
+    if machine.carrier is None:
+        return
+    carrier = machine.carrier
+    radius, mass = 0.12 * reach_of(machine), _EXTERNAL_MASS * scale**3
+    for place, (joint, column) in enumerate(
+        zip(carrier.chain.joints, carrier.columns, strict=True)
+    ):
+        yield Link(
+            joint.name,
+            place - 1 if place else None,
+            joint.frame if place else carrier.root @ joint.frame,
+            len(machine.axes) + column,
+            joint.axis,
+            joint.is_linear,
+            shapes=(Capsule(_ORIGIN, _ORIGIN, radius, mass, DARK),),
+            touches=False,
+        )
+
+
 def _externals(machine: MachineData, scale: float) -> Iterable[Link]:
     reach = reach_of(machine)
+    carried = () if machine.carrier is None else machine.carrier.columns
     for number, axis in enumerate(machine.externals, start=1):
+        if number - 1 in carried:
+            continue
         is_linear = axis.kind is AxisKind.LINEAR
         direction = (1.0, 0.0, 0.0) if is_linear else (0.0, 0.0, 1.0)
         yield Link(
@@ -162,6 +198,7 @@ def _externals(machine: MachineData, scale: float) -> Iterable[Link]:
             _scaled(direction, float(axis.direction)),
             is_linear,
             shapes=(Capsule(_ORIGIN, _ORIGIN, 0.12 * reach, _EXTERNAL_MASS * scale**3, DARK),),
+            touches=False,
         )
 
 

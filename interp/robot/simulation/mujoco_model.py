@@ -20,7 +20,7 @@ from typing import Final
 
 from interp.robot.kinematics.chain import Point
 from interp.robot.kinematics.machine_data import MachineData
-from interp.robot.simulation.links import DARK, Capsule, Link, links_of, reach_of
+from interp.robot.simulation.links import DARK, Capsule, Link, hand_of, links_of, reach_of
 from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["FLANGE", "mjcf_of"]
@@ -40,7 +40,7 @@ def mjcf_of(machine: MachineData) -> str:
     """
     reach = reach_of(machine)
     links = links_of(machine)
-    names = [link.name for link in links[: len(machine.axes) + 1]]
+    names = [link.name for link in links if link.touches]
     axes = (*machine.axes, *machine.externals)
     lines = [
         f'<mujoco model="{_escaped(machine.name) or "arm"}">',
@@ -97,10 +97,10 @@ def _nested(
             lines += (
                 f'{indent}<body name="{link.name}" {_placed(link.frame)}>',
                 *_joint(link, machine, f"{indent}  "),
-                *(f"{indent}  {_geom(shape, place <= len(machine.axes))}" for shape in link.shapes),
+                *(f"{indent}  {_geom(shape, link.touches)}" for shape in link.shapes),
                 *_nested(links, place, machine, f"{indent}  "),
             )
-            if place == len(machine.axes):
+            if place == hand_of(links):
                 lines.append(
                     f'{indent}  <site name="{FLANGE}" size="0.005" {_placed(machine.chain.end)}/>'
                 )

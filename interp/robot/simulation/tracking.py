@@ -83,7 +83,7 @@ class Tracking:
         self._cycle = cycle
         self._sent = 0
         self._place_times = [0]
-        self._placements = [Placement(robroot=machine.robroot)]
+        self._placements = [Placement(robroot=machine.robroot, carrier=machine.carrier)]
         self._times: list[npt.NDArray[np.int64]] = [np.zeros(1, dtype=np.int64)]
         self._axes: list[Array] = [np.array([stands])]
         self._measured: list[Array | None] = [None]
@@ -209,12 +209,12 @@ class Tracking:
         flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
         points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
         for rows, placement in self._stretches(times):
-            before = matrix_of(placement.before.inverse())
+            before = np.linalg.inv(placement.befores(axes[rows, ROBOT_AXES:]))
             standing = flanges[rows] @ matrix_of(placement.tool)
             poses = before @ standing
             points[rows, :3] = poses[:, :3, 3]
             points[rows, 3:] = _angles(poses)
-            tips[rows] = (matrix_of(placement.robroot) @ standing)[:, :3, 3]
+            tips[rows] = (matrix_of(placement.base) @ poses)[:, :3, 3]
         return points, tips
 
     def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:

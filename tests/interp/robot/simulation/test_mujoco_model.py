@@ -13,7 +13,11 @@ from interp.robot.models.generate import generated
 from interp.robot.simulation.links import reach_of
 from interp.robot.simulation.mujoco_model import FLANGE, mjcf_of
 
-mujoco = pytest.importorskip("mujoco")
+pytest.importorskip("mujoco")
+
+import mujoco
+
+from interp.robot.simulation.cell import Cell
 
 HOME = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
 
@@ -90,6 +94,31 @@ def test_external_axes(machine_text: Callable[..., str]) -> None:
     mujoco.mj_kinematics(model, data)
     assert 0.5 == pytest.approx(float((data.body("E1").xpos - before)[0]))
     assert -np.sin(1.0) == pytest.approx(data.body("E2").xmat.reshape(3, 3)[1, 0])
+
+
+def test_a_robot_on_a_linear_unit(machine_text: Callable[..., str]) -> None:
+    """The unit carries the arm, and its joint is told by the column of its axis."""
+    machine = read_machine(
+        machine_text(
+            "INT $EX_AX_NUM=1",
+            "$AXIS_TYPE[7]=1",
+            "DECL EX_KIN $EX_KIN={ET1 #ERSYS}",
+            "DECL ET_AX $ET1_AX={TR_A1 #E1}",
+            "FRAME $ET1_TA1KR={X 10.0,Y 0.0,Z 450.0,A 0.0,B 90.0,C 0.0}",
+            "FRAME $ET1_TFLA3={X 0.0,Y 0.0,Z 0.0,A 0.0,B -90.0,C 0.0}",
+        )
+    )
+    cell = Cell(machine)
+    model = cell.model()
+    data = mujoco.MjData(model)
+    columns, units = cell.columns(model)
+    assert [6, 0, 1, 2, 3, 4, 5] == columns.tolist()
+    axes = np.array([*HOME, 700.0])
+    data.qpos[:] = axes[columns] * units
+    mujoco.mj_kinematics(model, data)
+    expected = np.array(machine.foot((700.0,)).matrix) @ kinematics_of(machine).forward(HOME)
+    np.testing.assert_allclose(data.site(FLANGE).xpos * 1000.0, expected[:3, 3], atol=1e-6)
+    assert 710.0 == pytest.approx(machine.foot((700.0,)).position[0])
 
 
 def test_an_arm_in_the_open_touches_nothing() -> None:

@@ -1,0 +1,44 @@
+"""External kinematic systems: what external axes carry, such as a robot on a linear unit.
+
+The chain is ``ETn_TA1KR · move · ETn_TA2A1 · move · ETn_TA3A2 · move · ETn_TFLA3``; each axis turns
+about the Z of the frame before it, or slides along it (KUKA, *KR C2, Machine Data* and *External
+Axes*). #ERSYS carries the robot and begins at $ERSYSROOT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from interp.robot.kinematics.chain import Chain
+from interp.values.poses import IDENTITY, Pose
+
+__all__ = ["Carrier"]
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """The frame behind up to three external axes, in $WORLD.
+
+    ``columns`` are the places of its axes among the external ones, in the order of the chain.
+    """
+
+    chain: Chain
+    columns: tuple[int, ...]
+    root: Pose = IDENTITY
+
+    def pose(self, externals: Sequence[float]) -> Pose:
+        """Where the frame is for external axes in degrees or mm."""
+        pose = self.root
+        for joint, column in zip(self.chain.joints, self.columns, strict=True):
+            way = float(externals[column]) * joint.axis[2]
+            moved = Pose.of(z=way) if joint.is_linear else Pose.of(a=way)
+            pose = pose @ joint.frame @ moved
+        return pose @ self.chain.end
+
+    def poses(self, externals: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """The same for external axes (n, axes): homogeneous matrices (n, 4, 4)."""
+        return np.array([self.pose(row).matrix for row in externals.tolist()]).reshape(-1, 4, 4)
