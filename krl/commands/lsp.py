@@ -1,6 +1,8 @@
 """`krl lsp`: the language server, for editors."""
 
+import contextlib
 import logging
+import os
 import sys
 from typing import Annotated, BinaryIO, cast
 
@@ -27,7 +29,13 @@ def lsp(
     logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.CRITICAL)
     with expected_extras():
         from krl.language_server.server import server
-    server().start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)))
+    ours = server()
+    # the server closes what it writes to; nothing else may be written there
+    with (
+        os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out,
+        contextlib.redirect_stdout(sys.stderr),
+    ):
+        ours.start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)), out)
     return FINE
 
 

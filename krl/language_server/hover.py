@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from conformance.suite.registry import registry
-from grammar.diagnostics.diagnostic import Region
+from grammar.diagnostics.diagnostic import Diagnostic, Region
+from grammar.diagnostics.explanations import explanation
 from grammar.semantics.predefined import PredefinedFunction, System, SystemVariable
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, Symbol
@@ -15,7 +16,7 @@ from grammar.syntax import ast
 from grammar.syntax.source import Source
 from krl.language_server.workspace import Looked, OpenProject
 
-__all__ = ["Definition", "Outline", "definition", "hover", "outline"]
+__all__ = ["Definition", "Outline", "definition", "found_at", "hover", "outline"]
 
 _WORD = re.compile(r"\$?[A-Za-z_][A-Za-z0-9_$]*")
 _MOST_RULES = 6
@@ -54,7 +55,7 @@ class Outline:
 
 def definition(project: OpenProject, looked: Looked, offset: int) -> Definition | None:
     """Where the name at an offset is declared; ``None`` for what no file declares."""
-    found = _found_at(looked, offset)
+    found = found_at(looked, offset)
     if found is None or found.module is None:
         return None
     source = project.source(found.module.path)
@@ -64,16 +65,44 @@ def definition(project: OpenProject, looked: Looked, offset: int) -> Definition 
 
 
 def hover(project: OpenProject, looked: Looked, offset: int) -> tuple[str, Region] | None:
-    """What to say of the word at an offset, as Markdown, and the region of that word."""
+    """What to say of the word at an offset, as Markdown, and the region of that word.
+
+    Findings there are explained first, with the number of the controller's message.
+    """
+    found = _findings(looked, offset)
     word = _word_at(looked.source, offset)
-    if word is None:
+    meant = found_at(looked, offset)
+    said = None
+    if meant is not None and meant.module is not None:
+        said = _declared(project, looked, meant)
+    elif word is not None:
+        said = _predefined(word[0].upper())
+    parts = [*map(_explained, found), *([said] if said else [])]
+    if not parts:
         return None
-    text, region = word
-    found = _found_at(looked, offset)
-    if found is not None and found.module is not None:
-        return _declared(project, looked, found), region
-    said = _predefined(text.upper())
-    return None if said is None else (said, region)
+    region = word[1] if word is not None else found[0].region
+    return "\n\n---\n\n".join(parts), region
+
+
+def _findings(looked: Looked, offset: int) -> list[Diagnostic]:
+    place = looked.source.place(offset)
+    return [
+        one
+        for one in looked.diagnostics
+        if (one.region.line, one.region.column)
+        <= place
+        <= (one.region.end_line, one.region.end_column)
+    ]
+
+
+def _explained(found: Diagnostic) -> str:
+    known = explanation(found.code)
+    if known is None:
+        return found.message
+    lines = [f"**{found.code}** {known.code.title}", known.code.explanation]
+    if known.message is not None:
+        lines.append(f"message of the controller: {known.message}")
+    return "\n\n".join([*lines, *_cited(found.rules, "")])
 
 
 def outline(looked: Looked) -> tuple[Outline, ...]:
@@ -112,7 +141,7 @@ def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
     return None
 
 
-def _found_at(looked: Looked, offset: int) -> Found | None:
+def found_at(looked: Looked, offset: int) -> Found | None:
     """What the name at an offset means, its end included: that is where a cursor often stands."""
     if looked.checked is None:
         return None

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
@@ -21,6 +22,7 @@ from grammar.semantics.symbols import Kind
 from grammar.syntax.formatter import FormatterDefect, formatter
 from grammar.syntax.source import Source
 from krl.language_server.hover import Outline, definition, hover, outline
+from krl.language_server.names import RenameError, completions, places, renaming
 from krl.language_server.workspace import Looked, OpenProject
 from krl.program_loading import project_root
 
@@ -40,6 +42,23 @@ _KINDS = {
     Kind.CHANNEL: lsp.SymbolKind.Interface,
     Kind.SIGNAL: lsp.SymbolKind.Event,
 }
+
+_COMPLETED: dict[Kind | None, lsp.CompletionItemKind] = {
+    Kind.ROUTINE: lsp.CompletionItemKind.Function,
+    Kind.EXTERNAL: lsp.CompletionItemKind.Function,
+    Kind.CONSTANT: lsp.CompletionItemKind.Constant,
+    Kind.STRUCTURE: lsp.CompletionItemKind.Struct,
+    Kind.ENUMERATION: lsp.CompletionItemKind.Enum,
+    Kind.ENUM_CONSTANT: lsp.CompletionItemKind.EnumMember,
+    Kind.MEMBER: lsp.CompletionItemKind.Field,
+}
+_AtPlace = (
+    lsp.HoverParams
+    | lsp.DefinitionParams
+    | lsp.CompletionParams
+    | lsp.ReferenceParams
+    | lsp.RenameParams
+)
 
 
 def server() -> LanguageServer:
@@ -67,9 +86,14 @@ class _Desk:
             lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: self.symbols,
             lsp.TEXT_DOCUMENT_FOLDING_RANGE: self.folds,
             lsp.TEXT_DOCUMENT_FORMATTING: self.formatting,
+            lsp.TEXT_DOCUMENT_CODE_ACTION: self.actions,
+            lsp.TEXT_DOCUMENT_REFERENCES: self.references,
+            lsp.TEXT_DOCUMENT_RENAME: self.rename,
         }
         for method, answer in answers.items():
             server.feature(method)(_plain(answer))
+        signs = lsp.CompletionOptions(trigger_characters=["$", "#", "."])
+        server.feature(lsp.TEXT_DOCUMENT_COMPLETION, signs)(_plain(self.completion))
 
     # -- what happens to files
 
@@ -184,7 +208,72 @@ class _Desk:
         )
         return [lsp.TextEdit(range=whole, new_text=text)]
 
-    def _asked(self, given: lsp.HoverParams | lsp.DefinitionParams) -> tuple[Looked, int] | None:
+    def completion(self, given: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+        """The names that can be written where one types."""
+        asked = self._asked(given)
+        found = [] if asked is None else completions(*asked)
+        return [
+            lsp.CompletionItem(
+                label=one.name,
+                kind=_COMPLETED.get(one.kind, lsp.CompletionItemKind.Variable),
+                detail=one.detail or None,
+                sort_text=f"{place:06}",  # those nearby first
+            )
+            for place, one in enumerate(found)
+        ]
+
+    def references(self, given: lsp.ReferenceParams) -> list[lsp.Location]:
+        """All places of a name."""
+        asked = self._asked(given)
+        found = [] if asked is None else places(self._project, *asked)
+        return [
+            lsp.Location(uri=uri, range=_range(source, region))
+            for path, region in found
+            if (source := self._project.source(path)) and (uri := from_fs_path(path))
+        ]
+
+    def rename(self, given: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+        """Another name in all places of one; what is wrong with it is told the editor."""
+        asked = self._asked(given)
+        if asked is None:
+            return None
+        try:
+            found = renaming(self._project, *asked, given.new_name)
+        except RenameError as error:
+            raise JsonRpcInvalidParams(str(error)) from None
+        changes: dict[str, list[lsp.TextEdit]] = {}
+        for path, region in found:
+            source, uri = self._project.source(path), from_fs_path(path)
+            if source is not None and uri is not None:
+                edit = lsp.TextEdit(range=_range(source, region), new_text=given.new_name)
+                changes.setdefault(uri, []).append(edit)
+        return lsp.WorkspaceEdit(changes=changes)
+
+    def actions(self, given: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+        """The edits of findings in a range, and comments that silence these."""
+        uri = given.text_document.uri
+        looked = self._project.look(_path(uri))
+        if looked is None:
+            return []
+        source, lines = looked.source, (given.range.start.line, given.range.end.line)
+        found = []
+        for one in looked.diagnostics:
+            if not lines[0] <= one.region.line - 1 <= lines[1]:
+                continue
+            shown = _diagnostic(source, one)
+            fix = one.fix
+            if fix is not None and fix.region is not None and fix.replacement is not None:
+                edit = lsp.TextEdit(range=_range(source, fix.region), new_text=fix.replacement)
+                found.append(_action(fix.text, uri, edit, shown, is_preferred=True))
+            if source.comment(one.region.line) is None:
+                end = len(source.line(one.region.line)) + 1
+                place = Region(one.region.line, end, one.region.line, end)
+                text = f" ; krl: ignore[{one.code}]"
+                edit = lsp.TextEdit(range=_range(source, place), new_text=text)
+                found.append(_action(f"ignore {one.code} here", uri, edit, shown))
+        return found
+
+    def _asked(self, given: _AtPlace) -> tuple[Looked, int] | None:
         """The file that is asked about, and the offset in it; ``None`` for a place it has not."""
         looked = self._project.look(_path(given.text_document.uri))
         if looked is None or given.position.line >= len(looked.source.lines):
@@ -192,6 +281,18 @@ class _Desk:
         line = looked.source.line(given.position.line + 1)
         column = _characters(line, given.position.character)
         return looked, looked.source.offset(given.position.line + 1, column + 1)
+
+
+def _action(
+    title: str, uri: str, edit: lsp.TextEdit, of: lsp.Diagnostic, *, is_preferred: bool = False
+) -> lsp.CodeAction:
+    return lsp.CodeAction(
+        title=title,
+        kind=lsp.CodeActionKind.QuickFix,
+        diagnostics=[of],
+        edit=lsp.WorkspaceEdit(changes={uri: [edit]}),
+        is_preferred=is_preferred,
+    )
 
 
 def _plain(answer: Callable[[Any], Any]) -> Callable[[Any], Any]:

@@ -13,15 +13,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grammar.check.framework import Checked, check_module, check_project
+from grammar.check.project_check import Reading, read_source
 from grammar.check.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic
-from grammar.diagnostics.syntax_errors import syntax_findings
-from grammar.semantics.link import File, Project, link, words_of
+from grammar.diagnostics.suppression import Selection
+from grammar.semantics.link import File, Project, link
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
-from grammar.syntax import ast
-from grammar.syntax.build import SyntaxFailure, read_module
 from grammar.syntax.source import Source
+from krl.errors import InputError
+from krl.project_settings import settings_of
 from support.files import discovery
 from support.files.decode import decode
 from support.files.untrusted import read_bytes
@@ -36,11 +37,10 @@ _SOUGHT = ("KSS", *(f"KRL{digit}" for digit in "01234579"))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Read:
-    """A text and its tree, or the reasons why it has none."""
+    """A text, as far as it can be read, and what others are to know of it."""
 
     source: Source
-    syntax: ast.Module | None
-    failures: tuple[SyntaxFailure, ...]
+    reading: Reading
     file: File
 
 
@@ -109,6 +109,10 @@ class OpenProject:
             self._linked = None
             self._looked.clear()
 
+    def paths(self) -> list[str]:
+        """All files, in order."""
+        return sorted(self._files)
+
     def source(self, path: str) -> Source | None:
         """The text of a file as it is known."""
         known = self._files.get(path)
@@ -124,14 +128,13 @@ class OpenProject:
         return self._looked[path]
 
     def _fresh(self, known: _Read) -> Looked:
-        source = known.source
+        source, reading = known.source, known.reading
         place = self._projects().get(source.path)
-        if known.syntax is None or place is None:
-            found: Iterable[Diagnostic] = syntax_findings(known.failures, source)
-            return Looked(source, _kept(source, found))
+        if reading.syntax is None or place is None:
+            return Looked(source, _kept(source, reading.diagnostics))
         project, module = place
         checked = check_module(project, module, source)
-        found = check_project([checked.findings], is_whole=False)
+        found = check_project([reading.completed(checked.findings)], is_whole=False)
         return Looked(source, _kept(source, found), module, project, checked)
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:
@@ -143,14 +146,23 @@ class OpenProject:
 
 def _read(path: str, text: str) -> _Read:
     source = Source(text, path)
-    syntax = read_module(text, path)
-    if isinstance(syntax, ast.Module):
-        return _Read(source, syntax, (), File(path, syntax, table=table_of(syntax)))
-    unread = File(path, None, words=words_of(source.text))
-    return _Read(source, None, tuple(syntax), unread)
+    reading = read_source(source)
+    table = None if reading.syntax is None else table_of(reading.syntax)
+    return _Read(source, reading, File(path, reading.syntax, table=table, words=reading.words))
 
 
 def _kept(source: Source, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Findings that are wanted and that no comment silences."""
+    """Findings that are wanted, by the settings of the project too, and that no comment silences.
+
+    Settings that cannot be read count as none: who checks on the command line is told of them.
+    """
     wanted = [one for one in found if one.code.startswith(_SOUGHT)]
-    return tuple(apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT))
+    kept = apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT)
+    try:
+        agreed = settings_of([Path(source.path)])
+    except InputError:
+        agreed = None
+    if agreed is None:
+        return tuple(kept)
+    selection = Selection(agreed.select, agreed.ignore)
+    return tuple(one for one in agreed.adjusted(kept) if selection.keeps(one.code))

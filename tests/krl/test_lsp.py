@@ -84,6 +84,7 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
     heard.before = [
         (one.range.start.line, one.range.start.character, one.code)
         for one in await editor.told("Cell.src", bool)
+        if one.code == "KRL101"
     ]
     for word in ("CONTINUE", "$OUT", "nParts"):
         hover = await editor.text_document_hover_async(lsp.HoverParams(**_at(uri, word)))
@@ -113,7 +114,8 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
             ],
         )
     )
-    heard.after = list(await editor.told("Cell.src", lambda found: not found))
+    await editor.told("Cell.src", lambda found: all(one.code != "KRL101" for one in found))
+    heard.after = [one for one in editor.found["Cell.src"] if one.code == "KRL101"]
     await editor.shutdown_async(None)
     editor.exit(None)
     await editor.stop()

@@ -1,0 +1,202 @@
+"""Names in an editor: all places of one, another one in its place, and those that can be written.
+
+Only what a file of the project declares has places; what the controller brings along is completed
+and never renamed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grammar.diagnostics.diagnostic import Region
+from grammar.semantics.link import words_of
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Scope
+from grammar.semantics.symbols import Access, Kind, Symbol, Table, TypeSymbol
+from grammar.semantics.types import Enumeration
+from grammar.syntax.references import Space
+from krl.language_server.hover import found_at
+from krl.language_server.workspace import Looked, OpenProject
+
+__all__ = ["Candidate", "RenameError", "completions", "places", "renaming"]
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
+_MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
+
+
+class RenameError(ValueError):
+    """A name that cannot be had; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A name that can stand somewhere: what it is, and its type if it has one."""
+
+    name: str
+    kind: Kind | None
+    detail: str = ""
+
+
+# ------------------------------------------------------------------------------- places of a name
+
+
+def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str, Region]]:
+    """All places of the name at an offset, declarations too, in the order of paths and lines.
+
+    Empty for what no file declares.
+    """
+    found = found_at(looked, offset)
+    if found is None or found.module is None:
+        return []
+    key = found.symbol.key
+    listed = set()
+    for path in project.paths():
+        source = project.source(path)
+        if source is None or key not in words_of(source.text):
+            continue
+        there = project.look(path)
+        if there is None or there.checked is None:
+            continue
+        for name, answer in there.checked.resolution.answers.items():
+            if isinstance(answer, Found) and answer.symbol is found.symbol:
+                listed.add((path, Region.of(source, name.span)))
+    return sorted(listed)
+
+
+def renaming(
+    project: OpenProject, looked: Looked, offset: int, name: str
+) -> list[tuple[str, Region]]:
+    """The places to write ``name`` at, in place of the name at an offset; raises `RenameError`."""
+    found = found_at(looked, offset)
+    if found is None or found.module is None:
+        raise RenameError("no file of the project declares it")
+    if not _NAME.fullmatch(name):
+        raise RenameError(f"{name} is no name: a letter, then at most 23 letters, digits, _ or $")
+    symbol, module = found.symbol, found.module
+    if symbol.kind is Kind.ROUTINE and symbol.key == module.name:
+        raise RenameError(f"{symbol.name} is named as its file, which has to be renamed with it")
+    if symbol.name.startswith("$"):
+        raise RenameError("names with a dollar sign belong to the controller")
+    listed = places(project, looked, offset)
+    for path in {path for path, _ in listed}:
+        there = project.look(path)
+        if there is not None and name.upper() != symbol.key and _is_taken(there, name.upper()):
+            raise RenameError(f"{path.rpartition('/')[2]} has a {name} already")
+    return listed
+
+
+def _is_taken(looked: Looked, key: str) -> bool:
+    """Whether a file uses or declares a name, or sees one."""
+    if key in words_of(looked.source.text):
+        return True
+    if looked.project is None or looked.module is None:
+        return False
+    scope = looked.project.scope(looked.module)
+    return any(isinstance(scope.find(space, key), Found) for space in _SPACES)
+
+
+_SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
+
+
+# ------------------------------------------------------------------------------------ completion
+
+
+def completions(looked: Looked, offset: int) -> list[Candidate]:
+    """The names that can be written at an offset, each once, those nearby first.
+
+    Behind ``#`` the constants of all enumerations, behind a dot the members of the structure.
+    """
+    line, column = looked.source.place(offset)
+    before = looked.source.line(line)[: column - 1]
+    if re.search(r"#\s*\w*$", before):
+        found = _constants(looked)
+    elif (chain := _MEMBER.search(before)) is not None:
+        found = _members(looked, line, chain[1])
+    else:
+        found = _visible(looked, line)
+    return list({one.name.upper(): one for one in reversed([*found])}.values())[::-1]
+
+
+def _scope(looked: Looked, line: int) -> Scope | None:
+    """What is known at a line: in its routine, if it stands in one."""
+    if looked.project is None or looked.module is None or looked.module.table is None:
+        return None
+    for routine in reversed(looked.module.table.routines):
+        if looked.source.place(routine.routine.span[0])[0] <= line:
+            return looked.project.scope(looked.module, routine)
+    return looked.project.scope(looked.module)
+
+
+def _visible(looked: Looked, line: int) -> Iterator[Candidate]:
+    scope, module, project = _scope(looked, line), looked.module, looked.project
+    if scope is not None and module is not None and project is not None and module.table:
+        if scope.routine is not None:
+            yield from _declared(scope.routine.table)
+        yield from _declared(module.table.table)
+        data = project.data_of(module)
+        if data is not None and data.table is not None:
+            yield from _declared(data.table.table)
+        for other in project.modules:
+            if other.table is not None and other not in (module, data):
+                yield from _declared(other.table.table, other.name)
+    system = System.load()
+    for variable in system.variables.values():
+        yield Candidate(variable.name, Kind.VARIABLE, str(variable.type))
+    for function in system.functions.values():
+        yield Candidate(function.name, Kind.ROUTINE)
+    for name in system.types:
+        yield Candidate(name, Kind.STRUCTURE)
+
+
+def _declared(table: Table, file: str | None = None) -> Iterator[Candidate]:
+    """What a table has; of another file's what is seen from everywhere."""
+    for _, symbol in table.symbols():
+        is_seen = file is None or symbol.access is Access.GLOBAL or symbol.key == file
+        if is_seen and symbol.kind is not Kind.LABEL:
+            yield Candidate(symbol.name, symbol.kind, _type(symbol))
+
+
+def _type(symbol: Symbol) -> str:
+    return symbol.type.name if symbol.type else "" if symbol.given is None else str(symbol.given)
+
+
+def _constants(looked: Looked) -> Iterator[Candidate]:
+    modules = looked.project.modules if looked.project else ()
+    for module in modules:
+        for _, symbol in module.table.table.symbols() if module.table else ():
+            if isinstance(symbol, TypeSymbol) and symbol.kind is Kind.ENUMERATION:
+                for member in symbol.members.values():
+                    yield Candidate(member.name, Kind.ENUM_CONSTANT, symbol.name)
+    for type_ in System.load().types.values():
+        if isinstance(type_, Enumeration):
+            for name in type_.constants:
+                yield Candidate(name, Kind.ENUM_CONSTANT, type_.name)
+
+
+def _certain(answer: Answer) -> Answer:
+    """What is meant, also where the line that one types keeps that from being certain."""
+    if isinstance(answer, MaybeElsewhere) and len(answer.candidates) == 1:
+        return answer.candidates[0]
+    return answer
+
+
+def _members(looked: Looked, line: int, chain: str) -> Iterator[Candidate]:
+    """The members of what ``A.B[1]`` is."""
+    scope = _scope(looked, line)
+    if scope is None:
+        return
+    first, *others = (re.sub(r"\[.*", "", part).upper() for part in chain.split("."))
+    found: Answer = _certain(scope.find(Space.VALUE, first))
+    for name in others:
+        structure = found.type_symbol() if isinstance(found, Found) else None
+        symbol = structure.symbol if isinstance(structure, Found) else None
+        member = symbol.members.get(name) if isinstance(symbol, TypeSymbol) else None
+        if member is None or not isinstance(structure, Found):
+            return
+        found = Found(member, structure.scope)
+    structure = found.type_symbol() if isinstance(found, Found) else None
+    if isinstance(structure, Found) and isinstance(structure.symbol, TypeSymbol):
+        for member in structure.symbol.members.values():
+            yield Candidate(member.name, Kind.MEMBER, _type(member))

@@ -1,0 +1,195 @@
+"""Names, findings and settings in an editor, asked of the open project without a server."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("lsprotocol")
+
+from krl.language_server.hover import hover
+from krl.language_server.names import (
+    RenameError,
+    completions,
+    places,
+    renaming,
+)
+from krl.language_server.workspace import OpenProject
+
+PROGRAM = """DEF CELL()
+  INT N
+  N = PARTS
+  SPOT.X = 1
+  BASE_OF = #EMPTY
+  FETCH(PARTS)
+END
+
+GLOBAL DEF FETCH(COUNT:IN)
+  INT COUNT
+  $OUT[COUNT] = TRUE
+END
+"""
+DATA = """DEFDAT CELL
+  ENUM STATES EMPTY, FULL
+  DECL STATES BASE_OF
+  DECL FRAME SPOT
+  DECL INT PARTS=8
+ENDDAT
+"""
+OTHER = "DEF OTHER()\n  INT PARTS\n  PARTS = 1\n  FETCH(PARTS)\nEND\n"
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> OpenProject:
+    """Three files, none of them on the disk."""
+    made = OpenProject()
+    for name, text in (("CELL.src", PROGRAM), ("CELL.dat", DATA), ("OTHER.src", OTHER)):
+        made.change(f"{tmp_path.as_posix()}/{name}", text)
+    return made
+
+
+def listed(project: OpenProject, file: str, word: str, name: str | None = None) -> list[str]:
+    """File and line of all places of a word, or of those to write a name at."""
+    path = next(one for one in project.paths() if one.endswith(file))
+    looked = project.look(path)
+    assert looked is not None
+    offset = looked.source.text.index(word)
+    if name is None:
+        found = places(project, looked, offset)
+    else:
+        found = renaming(project, looked, offset, name)
+    return [f"{at.rpartition('/')[2]}:{region.line}" for at, region in found]
+
+
+def offered(project: OpenProject, line: str) -> list[str]:
+    """What can be written at the end of a line in CELL, behind its first declaration."""
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    project.change(path, PROGRAM.replace("  INT N\n", f"  INT N\n{line}\n"))
+    looked = project.look(path)
+    assert looked is not None
+    return [one.name for one in completions(looked, looked.source.text.index(line) + len(line))]
+
+
+def test_places_of_a_name_are_those_of_its_declaration(project: OpenProject) -> None:
+    """A variable of the data list has its places there, and none where another one has the name."""
+    assert ["CELL.dat:5", "CELL.src:3", "CELL.src:6"] == listed(project, "CELL.src", "PARTS")
+    assert ["OTHER.src:2", "OTHER.src:3", "OTHER.src:4"] == listed(project, "OTHER.src", "PARTS")
+
+
+def test_a_routine_is_renamed_in_all_files(project: OpenProject) -> None:
+    """Its head and its calls are written anew."""
+    assert ["CELL.src:6", "CELL.src:9", "OTHER.src:4"] == listed(
+        project, "OTHER.src", "FETCH", "BRING"
+    )
+
+
+@pytest.mark.parametrize(
+    ("word", "name", "said"),
+    [
+        ("PARTS", "1ST", "is no name"),
+        ("PARTS", "A" * 25, "is no name"),
+        ("PARTS", "COUNT", "has a COUNT already"),
+        ("PARTS", "FETCH", "has a FETCH already"),
+        ("CELL", "ROOM", "named as its file"),
+        ("$OUT", "X", "no file of the project declares it"),
+    ],
+)
+def test_a_name_that_cannot_be_is_refused(
+    project: OpenProject, word: str, name: str, said: str
+) -> None:
+    """The reason is told: no name, a name that is taken, a routine named as its file."""
+    with pytest.raises(RenameError, match=said):
+        listed(project, "CELL.src", word, name)
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "missing"),
+    [
+        ("  PA", {"N", "PARTS", "FETCH", "$OUT", "ABS", "FRAME"}, {"COUNT", "EMPTY", "X"}),
+        ("  BASE_OF = #", {"EMPTY", "FULL", "BASE", "JOINT"}, {"N", "PARTS"}),
+        ("  SPOT.", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
+    ],
+)
+def test_what_can_be_written_is_offered(
+    project: OpenProject, line: str, expected: set[str], missing: set[str]
+) -> None:
+    """Names that are seen; constants behind #; members behind a dot, though the line fails."""
+    found = offered(project, line)
+    assert set() == expected - set(found)
+    assert set() == missing & set(found)
+    assert len(found) == len({one.upper() for one in found})
+
+
+def test_hover_explains_a_finding(project: OpenProject) -> None:
+    """The number of the controller's message stands beside what the name is."""
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    project.change(path, PROGRAM.replace("#EMPTY", "#EMTY"))
+    looked = project.look(path)
+    assert looked is not None
+    said = hover(project, looked, looked.source.text.index("#EMTY") + 1)
+    assert said is not None
+    assert "message of the controller: 2296" in said[0]
+
+
+def test_settings_count_in_an_editor(project: OpenProject, tmp_path: Path) -> None:
+    """A finding that `krl.toml` turns off is not shown; one line that fails costs no other."""
+    path = next(one for one in project.paths() if one.endswith("OTHER.src"))
+    text = OTHER.replace("PARTS = 1", "PARTS == 1\n  EXIT")
+    project.change(path, text)
+    looked = project.look(path)
+    assert looked is not None
+    assert ["KRL001", "KRL401"] == [one.code for one in looked.diagnostics]
+    (tmp_path / "krl.toml").write_text('ignore = ["KRL4"]', encoding="utf-8")
+    project.change(path, f"{text}\n")
+    looked = project.look(path)
+    assert looked is not None
+    assert ["KRL001"] == [one.code for one in looked.diagnostics]
+
+
+def message(**fields: object) -> bytes:
+    body = json.dumps({"jsonrpc": "2.0", **fields}).encode()
+    return b"Content-Length: %d\r\n\r\n%s" % (len(body), body)
+
+
+def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
+    """Code actions and completion are answered; it ends quietly when it is told to."""
+    uri = (tmp_path / "A.src").as_uri()
+    text = "DEF A()\n  INT N\n  IF N = 1 THEN\n  ENDIF\nEND\n"
+    place = {"line": 2, "character": 2}
+    document = {"uri": uri}
+    said = b"".join(
+        [
+            message(id=1, method="initialize", params={"capabilities": {}, "processId": None}),
+            message(method="initialized", params={}),
+            message(
+                method="textDocument/didOpen",
+                params={
+                    "textDocument": {"uri": uri, "languageId": "krl", "version": 1, "text": text}
+                },
+            ),
+            message(
+                id=2,
+                method="textDocument/codeAction",
+                params={
+                    "textDocument": document,
+                    "range": {"start": place, "end": place},
+                    "context": {"diagnostics": []},
+                },
+            ),
+            message(
+                id=3,
+                method="textDocument/completion",
+                params={"textDocument": document, "position": place},
+            ),
+            message(id=4, method="shutdown"),
+            message(method="exit"),
+        ]
+    )
+    command = [sys.executable, "-m", "krl", "lsp"]
+    done = subprocess.run(command, input=said, capture_output=True, check=False, timeout=120)
+    assert (0, b"") == (done.returncode, done.stderr)
+    assert b'"newText":"=="' in done.stdout.replace(b": ", b":")
+    assert b"ignore KRL001 here" in done.stdout
+    assert b'"label":"$OUT"' in done.stdout.replace(b": ", b":")
