@@ -156,8 +156,13 @@ def _too_large(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int
         if token.text.isdecimal()
         and (before.text == "[" or after.text == "]" or before.text.upper() == "DECL")
     ]
-    is_declared = tokens[0].text.upper() in _DECLARING or tokens[1].kind == "NAME"
-    if not numbers or is_declared or any(token.text == "{" for token in tokens):
+    is_declared = tokens[0].text.upper() in _DECLARING
+    if (
+        not numbers
+        or is_declared
+        or tokens[1].kind == "NAME"
+        or any(token.text == "{" for token in tokens)
+    ):
         return None
     token = chance.choice(numbers)
     return token.start, token.end, chance.choice(("99999", "0"))
@@ -294,9 +299,17 @@ def _trial(
 
 
 def _next_code(source: Source, line: int) -> int:
-    """The next line that is neither blank nor a comment: what is missing is missed there."""
-    later = range(line + 1, len(source.lines) + 1)
-    return next((n for n in later if source.line(n).split(";")[0].strip()), line)
+    """The next line that is neither blank nor a comment: what is missing is missed there.
+
+    Behind the last one it is missed at the end of the text that is left.
+    """
+    later = (n for n in range(line + 1, len(source.lines) + 1) if _has_code(source, n))
+    before = (n for n in range(line - 1, 0, -1) if source.line(n).strip())
+    return next(later, next(before, line))
+
+
+def _has_code(source: Source, line: int) -> bool:
+    return bool(source.line(line).split(";")[0].strip())
 
 
 def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from grammar.diagnostics.typos import Typos
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
-from grammar.semantics.symbols import Access, Kind, Table
+from grammar.semantics.symbols import Access, Kind, Symbol, Table
 from grammar.semantics.types import SCALARS
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
@@ -61,7 +61,15 @@ _WORDS = {
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Tell the names that are certain to be unknown, each once in a file."""
-    reported: set[tuple[Space, str]] = set()
+    slips = _slipped_declarations(context)
+    reported = {(Space.VALUE, key) for key in slips}
+    for symbol, name, count in slips.values():
+        message = f"{symbol.name} is declared and never used, and {name} is not declared"
+        reason = f"{name} is used {count} times"
+        fix = Fix(f"did you mean {name}?")
+        yield context.finding(
+            "unknown-name", symbol.span, message, reason=reason, severity="warning", fix=fix
+        )
     for use in context.resolution.open_uses:
         if use.space not in _SLUGS or not isinstance(use.answer, NotFound):
             continue
@@ -72,6 +80,41 @@ def check(context: Context) -> Iterator[Diagnostic]:
     yield from _near_system_names(context)
     if context.module.suffix != ".dat" and context.project.data_of(context.module) is None:
         yield from _data_missing(context)
+
+
+def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]]:
+    """The variables that are declared in the file by a slip, by what they are called in use.
+
+    That is what nothing uses, while a name one slip away is used several times and not declared.
+    """
+    uses: dict[str, list[Use]] = {}
+    for use in context.resolution.open_uses:
+        if use.space is Space.VALUE and not isinstance(use.answer, Found):
+            uses.setdefault(use.name.key, []).append(use)
+    several = {key: some for key, some in uses.items() if len(some) > 1 and key[0] != "$"}
+    if not several:
+        return {}
+    used = {
+        answer.symbol
+        for name, answer in context.resolution.answers.items()
+        if isinstance(answer, Found) and answer.symbol.span != name.span
+    }
+    tables = (context.table.table, *(routine.table.table for routine in context.routines))
+    unused = {
+        symbol.key: symbol
+        for table in tables
+        for symbol in table.spaces[Space.VALUE].values()
+        if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT) and symbol not in used
+    }
+    typos = Typos(symbol.name for symbol in unused.values())
+    found = {}
+    for key, some in several.items():
+        near = typos.meant(key)
+        if len(near) == 1:
+            symbol = unused.pop(near[0].upper(), None)
+            if symbol is not None:
+                found[key] = symbol, some[0].name.text, len(some)
+    return found
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
@@ -173,7 +216,10 @@ _MOST_MODULES = 2
 def references(context: Context) -> tuple[UnresolvedName, ...]:
     """The names in a file that other files may declare, in the order of their first places."""
     uses: dict[tuple[Space, str], list[Use]] = {}
+    slips = _slipped_declarations(context)
     for use in context.resolution.open_uses:
+        if use.space is Space.VALUE and use.name.key in slips:
+            continue
         if use.space in _SLUGS and _may_be_elsewhere(use):
             uses.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))

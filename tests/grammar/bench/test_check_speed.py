@@ -19,7 +19,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_record(tmp_path: Path) -> None:
     """Figures agree with one another, and every phase took some of the time."""
-    text = "DEF A()\nDECL INT N\nN = $ACT_TOOL + 1\nEXIT\nEND\n"
+    text = "DEF A()\nDECL INT N\nN = $ACT_TOOL + 1\nEXIT\n$OUT[N] = TRUE\nEND\n"
     (tmp_path / "A.src").write_text(text, encoding="utf-8", newline="\n")
     told: list[int] = []
     record = measure_check([tmp_path], sizes=[0.01, 0.02], rounds=1, on_step=lambda: told.append(1))

@@ -10,6 +10,7 @@ from grammar.bench.planted_mistakes import KINDS, Token, damaged, measure_plante
 CELL = """DEF CELL()
   DECL INT COUNTER
   COUNTER = 1
+  $OUT[3] = TRUE
   IF COUNTER > 3 THEN
     WORKING(COUNTER, 2)
   ENDIF
@@ -29,17 +30,27 @@ LINE = [
     Token("INTEGER", 20, "3", False),
 ]
 TEXT = "IF COUNTER > CALL() 3"
+#: Lines with a place for what not every line has one for.
+OTHERS = {
+    "number out of range": [
+        Token("NAME", 0, "COUNT", False),
+        Token("LBRACKET", 5, "[", False),
+        Token("INTEGER", 6, "7", False),
+        Token("RBRACKET", 7, "]", False),
+    ],
+    "end of a block dropped": [Token("ENDIF", 0, "ENDIF", True)],
+}
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_mistake_changes_the_line(kind: str) -> None:
     """Every kind of mistake changes a line that has a place for it, and within the line."""
     for seed in range(30):
-        exchange = damaged(kind, LINE, random.Random(seed))
+        exchange = damaged(kind, OTHERS.get(kind, LINE), random.Random(seed))
         assert exchange is not None
         start, end, new = exchange
         assert 0 <= start <= end <= len(TEXT)
-        assert TEXT[start:end].upper() != new.upper()
+        assert kind in OTHERS or TEXT[start:end].upper() != new.upper()
 
 
 def test_lines_without_a_place_get_no_mistake() -> None:
@@ -51,16 +62,16 @@ def test_lines_without_a_place_get_no_mistake() -> None:
 def test_the_same_seed_gives_the_same_figures(tmp_path: Path) -> None:
     """What was planted and found follows from the seed; another seed plants other mistakes."""
     (tmp_path / "cell.src").write_text(CELL, encoding="utf-8")
-    first = measure_planted([tmp_path], 24, 1)
-    assert first == measure_planted([tmp_path], 24, 1)
-    assert first != {**measure_planted([tmp_path], 24, 2), "seed": 1}
-    assert 24 == first["planted"]
+    first = measure_planted([tmp_path], 36, 1)
+    assert first == measure_planted([tmp_path], 36, 1)
+    assert first != {**measure_planted([tmp_path], 36, 2), "seed": 1}
+    assert 36 == first["planted"]
     assert first["found"] > 0.6
 
 
 def test_a_mistake_that_nothing_finds_is_a_survivor(tmp_path: Path) -> None:
     """Nothing is found where every name may come from elsewhere, and the record says which."""
-    text = "DEF CELL()\n  AXX = BXX + CXX\nEND\n"
+    text = "DEF CELL()\n  AXXX = BYYY + CZZZ\nEND\n"
     (tmp_path / "cell.src").write_text(text, encoding="utf-8")
     record = measure_planted([tmp_path], 60, 3)
     survivors = {one["kind"] for one in record["survivors"]}

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from grammar.check.framework import check
+from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link, words_of
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
@@ -85,3 +86,38 @@ def test_a_damaged_list_declares_none_but_its_words(name: str, severity: str) ->
         files.append(File(path, module))
     found = check(link(files), lambda module: Source(cell, module.path))
     assert [severity] == [one.severity for one in found if name in one.message]
+
+
+def test_a_slip_in_the_declaration(finds: Callable[..., list[Diagnostic]]) -> None:
+    """What nothing uses and is one letter off what is used again and again is declared wrongly."""
+    lines = ["DEF U()", "INT CUNTER, LIMIT", "COUNTER = 1", "COUNTER = COUNTER + LIMIT", "END"]
+    found = finds({"U.src": "\n".join(lines)}, is_complete=None)
+    grave = [(one.region.line, one.code, one.severity) for one in found if one.severity != "note"]
+    assert (2, "KRL101", "warning") in grave
+    assert {2} == {line for line, code, _ in grave if code == "KRL101"}
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("DECL E6PO P", "KRL103"),
+        ("DECL IINT N", "KRL103"),
+        ("$OUT[1] = FALS", "KRL101"),
+        ("$OUT[1] = TRUEE", "KRL101"),
+        ("ER_RCLEAR($ERR)", "KRL102"),
+        ("$OUT305[1] = TRUE", "KRL113"),
+    ],
+)
+def test_slips_of_words_of_the_language(
+    finds: Callable[..., list[Diagnostic]], line: str, code: str
+) -> None:
+    """What is one letter away from what every program has is that, though files are missing."""
+    found = finds({"U.src": f"DEF U()\n{line}\nEND\n"}, is_complete=None)
+    assert [("warning", code)] == [(one.severity, one.code) for one in found if one.code == code]
+
+
+def test_slips_in_lists_of_the_controller(finds: Callable[..., list[Diagnostic]]) -> None:
+    """A list of the controller that declares nearly what the tables have declares it wrongly."""
+    text = "DEFDAT $MACHINE PUBLIC\nSIGNAL $BRAKS_OK $IN[3]\nINT $NOT_IN_ANY_TABLE=3\nENDDAT\n"
+    found = finds({"$machine.dat": text}, is_complete=None)
+    assert [2] == [one.region.line for one in found if one.code == "KRL113"]
