@@ -50,9 +50,9 @@ PATIENCE: Final = 20_000_000
 
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
 #: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
-#: ``refused`` where it could not begin, ``wall`` where it has taken too long for whoever waits.
+#: ``refused`` where it could not begin, ``cpu`` where it has taken too long for whoever waits.
 Result = Literal[
-    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "wall", "refused", "crash"
+    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "cpu", "refused", "crash"
 ]
 
 
@@ -202,7 +202,7 @@ def run_main(
     except LinkError as error:
         return Ran("refused", 0.0, 0, reason=str(error))
     except _Over:
-        return Ran("wall", seen.now / 1e6, seen.motions, at=seen.at)
+        return Ran("cpu", seen.now / 1e6, seen.motions, at=seen.at)
     except ScriptError:
         raise
     except Exception as error:

@@ -57,6 +57,14 @@ class AutomaticInputs:
         """Whether anything is to be fulfilled."""
         return self._after is not None
 
+    @property
+    def wake(self) -> int | None:
+        """When it will change an input, in µs, if it knows that it will."""
+        if self._after is None or self._since is None:
+            return None
+        then = self._since[1] + self._after
+        return then if then > self._before else None
+
     def was_read(self, path: Path) -> None:
         """The program reads a variable, perhaps an input for the condition of a WAIT FOR."""
         self._read |= dict.fromkeys(_places(path))

@@ -22,6 +22,7 @@ from interp.controller.output_switch import OutputSwitch
 from interp.controller.positions import FramesInForce, Positions
 from interp.controller.predefined_routines import PredefinedRoutines
 from interp.controller.profile import Profile
+from interp.controller.quiet_time import QuietTime
 from interp.controller.request_table import RequestTable
 from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
 from interp.controller.script_player import ScriptPlayer
@@ -118,6 +119,7 @@ class Controller:
             panel,
             player,
             tracking,
+            QuietTime(state, queue, automatic),
             script.stop,
         )
         self.core = arm.core

@@ -19,13 +19,14 @@ from interp.controller.interrupt_unit import InterruptUnit
 from interp.controller.levels import Levels
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.operator_panel import OperatorPanel
+from interp.controller.quiet_time import QuietTime
 from interp.controller.request_table import RequestTable
 from interp.controller.script_player import ScriptPlayer
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.controller.waits import Waits
-from interp.port.requests import At, Crash, End, Fail, Request
+from interp.port.requests import At, Crash, End, Fail, Request, Slice
 from interp.robot.simulation.robot import RobotFault
 from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
@@ -78,6 +79,7 @@ class Scheduler:
     panel: OperatorPanel
     player: ScriptPlayer
     tracking: Tracking | None
+    quiet: QuietTime
     stop: int | None
     _outcome: RunOutcome | None = None
     _failed: RunOutcome | None = None
@@ -112,10 +114,13 @@ class Scheduler:
         if len(self.tasks) > 1 and states["submit"] == "P_FREE":
             states["submit"] = "P_ACTIVE"
         while True:
+            self.quiet.begin_tick()
             self._settle()
             if self._outcome is not None:
                 return self._outcome
             then = self._next_time()
+            if then is not None and then < limit and not self._needs_every_tick:
+                then = max(then, self.quiet.end(self.tasks, then, limit))
             if then is None or then > limit:
                 self._go_to(max(limit, clock.now))
                 self._outcome = RunOutcome("time", clock.now, self._robot.at)
@@ -172,13 +177,17 @@ class Scheduler:
         self.spline_stops.watch()
         self.state.actions.run_until(self.state.clock.now)
 
+    @property
+    def _needs_every_tick(self) -> bool:
+        return self.cyclic.has_flags or self.spline_stops.is_waiting
+
     def _next_time(self) -> int | None:
         clock = self.state.clock
         ahead = self.queue.next_time()
         times = [ahead, self.state.actions.next_time()]
         if ahead is not None and self.tracking is not None and self.tracking.chunk is not None:
             times.append(clock.now + self.tracking.chunk)
-        needs_ticks = self.cyclic.has_flags or self.spline_stops.is_waiting
+        needs_ticks = self._needs_every_tick
         for task in self.tasks:
             if task.is_over:
                 continue
@@ -227,6 +236,12 @@ class Scheduler:
                     "crash", self.state.clock.now, at, RuntimeFailure(reason)
                 )
                 return None
+        if not isinstance(request, Slice):
+            self.quiet.slices = 0
+        elif self.quiet.is_endless(self.tasks):
+            error = BudgetExhausted("an endless loop: it only computes, and nothing can end it")
+            self._fail(task, Fail(request.at, error))
+            return None
         if task.level is None or task.level.signal is None:
             profile = self.state.profile
             most = profile.requests if task is self._robot else profile.submit_requests
@@ -234,7 +249,7 @@ class Scheduler:
             if task.slice_end != last:
                 task.slice_end, task.spent = last, 0
             task.spent += 1
-            if task.spent > most:
+            if task.spent > self.waits.requests_left(task, request, most):
                 return self.waits.until(request, last, lambda: self._answer(task, request))
         exempt = task.exempt_line
         if exempt is not None and (request.at.file, request.at.line) != exempt:

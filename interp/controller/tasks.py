@@ -77,7 +77,9 @@ class Task:
 
     ``exempt_line`` is the line whose requests do not stop the advance run, behind a CONTINUE.
     ``spent`` are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the
-    next motion. ``polling`` is where a WAIT FOR waits, ``last_at`` the place of the last request.
+    next motion. ``busy_at`` is the time in µs at which it last did more than to read variables,
+    ``idle_at`` where it was when it had only read them for long. ``polling`` is where a WAIT FOR
+    waits, ``last_at`` the place of the last request.
     """
 
     name: TaskName
@@ -92,6 +94,8 @@ class Task:
     slice_end: int = -1
     polling: At | None = None
     last_at: At = field(default_factory=lambda: At("", 0, 0))
+    busy_at: int = 0
+    idle_at: At | None = None
     triggers: list[SetTrigger] = field(default_factory=list)
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
     is_over: bool = False

@@ -83,12 +83,15 @@ class Trace:
     ) -> None:
         self.events: list[TraceEvent] = []
         self.now = 0
+        #: How many events there were.
+        self.count = 0
         self.is_full = is_full
         self.origin: tuple[TaskName, At | None] = ("robot", None)
         self._take = take or self.events.append
 
     def record(self, task: TaskName, kind: str, at: At | None, **fields: Any) -> None:
         """Record that something happened now."""
+        self.count += 1
         self._take(TraceEvent(self.now, task, kind, at, fields))
 
     def record_change(self, kind: str, **fields: Any) -> None:

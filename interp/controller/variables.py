@@ -67,8 +67,19 @@ class Computed:
         raise fault("read_only")
 
 
+#: Variables that others answer for, and that change only where something happens.
+_STEADY: Final = frozenset(
+    "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT $ON_PATH "
+    "$NUM_IN $NUM_OUT $NULLFRAME $I_O_ACTCONF $T1 $T2 $AUT $EXT".split()
+)
+
+
 class Variables:
-    """All system variables; names are in upper case."""
+    """All system variables; names are in upper case.
+
+    ``writes`` counts all that were given a value. ``has_read_changing``: one was read that changes
+    with time alone, since this was made false.
+    """
 
     def __init__(self, profile: Profile, given: Mapping[str, Value] | None = None) -> None:
         self._profile = profile
@@ -76,6 +87,8 @@ class Variables:
         self._newest = System.load()
         self._values: dict[str, Any] = {}
         self._live: dict[str, Live] = {}
+        self.writes = 0
+        self.has_read_changing = False
         self._twins = {
             entry.twin: name
             for name, entry in ((name, self.entry(name)) for name in _twice())
@@ -137,6 +150,7 @@ class Variables:
         name = str(path[0])
         live = self._live.get(name)
         if live is not None:
+            self.has_read_changing = self.has_read_changing or name not in _STEADY
             return live.read(path)
         root = self.main[self._twins[name]] if name in self._twins else self._root(name)
         return part(root, path[1:])
@@ -153,6 +167,7 @@ class Variables:
 
     def put(self, path: Path, value: Value) -> None:
         """Anybody gives a variable a value, write-protected or not."""
+        self.writes += 1
         name = str(path[0])
         entry = self.entry(name)
         if entry is not None and entry.limits is not None and isinstance(value, int | float):

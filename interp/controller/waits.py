@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from interp.controller.advance_run import AdvanceRun
 from interp.controller.automatic_inputs import AutomaticInputs
@@ -12,10 +13,14 @@ from interp.controller.operator_panel import OperatorPanel
 from interp.controller.script_player import ScriptPlayer
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
-from interp.port.requests import Confirm, Halt, Poll, Request, Slice, Wait
+from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
 from interp.values.json_form import to_json
 
 __all__ = ["Waits"]
+
+#: A program that has only read variables for so long, in µs, gets so many requests in a slice.
+_IDLE_AFTER: Final = 1_000_000
+_IDLE_REQUESTS: Final = 5
 
 
 class Waits:
@@ -79,6 +84,30 @@ class Waits:
         if is_robot:
             self._automatic.was_false(request.at, self._state.clock.now)
         return self.until(request, self.next_slice(task), lambda: None)
+
+    def requests_left(self, task: Task, request: Request, most: int) -> int:
+        """How many requests a program has in this slice: few if it has only read for a second.
+
+        It goes round in a loop until something changes. Where inputs are automatic they change as
+        for a WAIT FOR.
+        """
+        now = self._state.clock.now
+        if not isinstance(request, Read | Slice):
+            if task.busy_at != now or task.idle_at is not None:
+                self._busy(task, request)
+            return most
+        if now - task.busy_at < _IDLE_AFTER or task.level is not None:
+            return most
+        if task.name == "robot" and task.spent == 1:  # once a slice
+            if task.idle_at is None:
+                task.idle_at = request.at
+            self._automatic.was_false(task.idle_at, now)
+        return min(most, _IDLE_REQUESTS)
+
+    def _busy(self, task: Task, request: Request) -> None:
+        task.busy_at, task.idle_at = self._state.clock.now, None
+        if task.name == "robot" and not isinstance(request, Poll):
+            self._automatic.begin()
 
     def slice(self, task: Task, request: Slice) -> Answer:
         """The program has used up its statements: it goes on in the next slice."""

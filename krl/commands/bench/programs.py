@@ -38,7 +38,7 @@ _RESULTS = {
     "unlinked": "needs what no file has",
     "refused": "cannot begin",
     "budget": "out of statements",
-    "wall": "out of wall time",
+    "cpu": "out of CPU time",
     "crash": "a defect of ours",
 }
 
@@ -69,8 +69,8 @@ def programs(
     max_time: Annotated[
         float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
     ] = 600.0,
-    max_wall: Annotated[
-        float, typer.Option(min=0.0, metavar="S", help="Wall time for each program.")
+    max_cpu: Annotated[
+        float, typer.Option(min=0.0, metavar="S", help="CPU time for each program.")
     ] = 30.0,
     jobs: JobsOption = None,
     cache: Annotated[
@@ -96,7 +96,7 @@ def programs(
         executor=executor.value if executor is not None else available()[-1],
         robot=robot.value,
         until=round(max_time * 1e6),
-        wall=max_wall,
+        cpu=max_cpu,
         stands_in=not strict,
         is_every=every,
     )

@@ -1,0 +1,117 @@
+"""Waiting costs nothing and changes nothing; loops that nothing can end are found."""
+
+from typing import Any
+
+import pytest
+
+from grammar.syntax.source import Source
+from interp.controller import quiet_time, scheduler
+from interp.controller.automatic_inputs import OPERATOR
+from interp.controller.input_script import Script
+from interp.controller.quiet_time import QuietTime
+from interp.program.load import load
+from interp.session import EXECUTORS, RunResult, RunSetup, available, run_program
+
+WAITS = """DEF main ( )
+INTERRUPT DECL 3 WHEN $IN[3] DO SEEN ( )
+INTERRUPT ON 3
+$TIMER[1]=-5000
+$TIMER_STOP[1]=FALSE
+WAIT FOR $TIMER_FLAG[1]
+$OUT[1]=TRUE
+WAIT FOR $IN[7]
+$OUT[2]=TRUE
+WAIT SEC 0.5
+WAIT FOR $IN[8] AND $FLAG[2]
+END
+DEF SEEN ( )
+$FLAG[2]=TRUE
+PULSE ($OUT[9],TRUE,0.7 )
+END
+"""
+SCRIPT = "t=20.0005 IN[7]=TRUE\nt=31 IN[3]=TRUE\nt=40.001 IN[8]=TRUE\n"
+
+
+def _run(text: str, executor: str = "tree", script: str = "", until: int = 90) -> RunResult:
+    program = load([Source(text, "main.src")], "main.src", strict=False)
+    setup = RunSetup(executor=executor, script=Script.read(script), until=until * 1_000_000)
+    return run_program(program, setup)
+
+
+def test_same_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Jumps over quiet stretches are not seen in the trace."""
+    quick = _run(WAITS, script=SCRIPT).events
+
+    def never(_self: QuietTime, _tasks: Any, now: int, _limit: int) -> int:
+        return now
+
+    monkeypatch.setattr(QuietTime, "end", never)
+    assert [one.line() for one in _run(WAITS, script=SCRIPT).events] == [
+        one.line() for one in quick
+    ]
+
+
+def test_waiting_takes_few_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A minute of waiting for an input takes some looks a second, and not one in every cycle."""
+    looks = 0
+    settle = scheduler.Scheduler._settle
+
+    def counted(self: scheduler.Scheduler) -> None:
+        nonlocal looks
+        looks += 1
+        settle(self)
+
+    monkeypatch.setattr(scheduler.Scheduler, "_settle", counted)
+    run = _run("DEF main ( )\nWAIT FOR $IN[7]\nEND\n", until=60)
+    assert ("time", True) == (run.outcome.ending, looks < 60 * 5)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize("body", ["LOOP\nENDLOOP\n", "A:\nI=I+1\nGOTO A\n"], ids=["LOOP", "GOTO"])
+def test_endless_loop(executor: str, body: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A loop that only computes ends the run after so many slices, in the loop."""
+    monkeypatch.setattr(quiet_time, "_MOST_SLICES", 20)
+    run = _run(f"DEF main ( )\nINT I\nI=0\n{body}END\n", executor)
+    assert run.outcome.at is not None
+    assert ("budget", 19 * 12_000) == (run.outcome.ending, run.outcome.time)
+    assert run.outcome.at.line in (4, 5, 6)
+
+
+def test_endless_loop_as_it_is() -> None:
+    """That is half a million statements, after six seconds."""
+    run = _run("DEF main ( )\nLOOP\nENDLOOP\nEND\n", available()[-1])
+    assert ("budget", 5_988_000) == (run.outcome.ending, run.outcome.time)
+
+
+def test_interrupt_ends_a_loop() -> None:
+    """A loop that an interrupt may leave is no endless one."""
+    text = """DEF main ( )
+INTERRUPT DECL 3 WHEN $IN[3] DO LEAVE ( )
+INTERRUPT ON 3
+AROUND ( )
+END
+DEF AROUND ( )
+LOOP
+ENDLOOP
+END
+DEF LEAVE ( )
+BRAKE
+RESUME
+END
+"""
+    run = _run(text, "vm", script="t=8 IN[3]=TRUE\n")
+    assert ("end", 8) == (run.outcome.ending, round(run.outcome.time / 1e6))
+
+
+def test_a_loop_that_asks_for_inputs() -> None:
+    """Automatic inputs fulfil a loop that polls as they do a WAIT FOR."""
+    text = "DEF main ( )\nWHILE NOT $IN[5] OR $IN[6]\nENDWHILE\n$OUT[1]=TRUE\nEND\n"
+    run = _run(text, script=OPERATOR)
+    assert ("end", True) == (run.outcome.ending, run.outcome.time < 5_000_000)
+
+
+def test_a_loop_that_polls_sees_a_change() -> None:
+    """However long a program has polled, it sees a change in the cycle in which it comes."""
+    text = "DEF main ( )\nREPEAT\nUNTIL $IN[5]\n$OUT[1]=TRUE\nEND\n"
+    run = _run(text, script="t=5.006 IN[5]=TRUE\n")
+    assert [5_016_000] == [event.time for event in run.events if event.kind == "out"]
