@@ -23,6 +23,7 @@ from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import DataListError
+from interp.robot.kinematics.dynamics_data import with_torques
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     MachineData,
@@ -104,7 +105,8 @@ class RunResult:
 
     ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
     ``start`` are those that were used; ``observations`` what the arm touched, with a scene or
-    MuJoCo, and where it was asked for more torque than it bears; ``machine_note`` says why the
+    MuJoCo, and where it was asked for more torque than it bears; ``torque_note`` says
+    why torques of the project were left out; ``machine_note`` says why the
     machine is not the project's own, where it had to be told.
     """
 
@@ -116,6 +118,7 @@ class RunResult:
     controller: Controller
     machine_note: str = ""
     observations: tuple[Observation, ...] = ()
+    torque_note: str = ""
 
 
 def run_program(
@@ -150,6 +153,9 @@ def run_program(
         profile = replace(profile, is_tolerant=is_tolerant)
     else:
         machine = machine_of_program(program, profile)
+    torque_note = ""
+    if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
+        machine, torque_note = _with_torques(machine, program)
     start = setup.start or _home(values, machine)
     try:
         arm = PlannedArm(machine, start, is_selected=not profile.is_tolerant)
@@ -194,6 +200,7 @@ def run_program(
         controller,
         note,
         tracking.observations(),
+        torque_note,
     )
 
 
@@ -259,6 +266,17 @@ def _understood(source: Source) -> MachineData:
     except MachineDataError as error:
         raise MachineDataError(f"{source.path}: {error}") from error
     return machine
+
+
+def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[MachineData, str]:
+    """The machine with the torques of the project's $robcor.dat, else as it is and why."""
+    for unit in program.units.values():
+        if unit.module.name == "$ROBCOR" and unit.module.suffix == ".dat":
+            try:
+                return with_torques(machine, unit.source.text, unit.source.path), ""
+            except (DataListError, MachineDataError) as error:
+                return machine, str(error)
+    return machine, ""
 
 
 def _machine_data(program: CheckedProgram) -> Source | None:

@@ -39,7 +39,7 @@ def robot_options(
         raise InputError("--scene: the robot none is nowhere; say --robot kinematic or mujoco")
     made = OwnRobot()
     if machine is not None:
-        made = OwnRobot(machine=read_machine_file(machine))
+        made = OwnRobot(machine=_with_torques_beside(read_machine_file(machine), machine))
     elif named:
         from interp.robot.simulation.robot_files import RobotFileError, read_robot
 
@@ -55,6 +55,26 @@ def robot_options(
         return OwnRobot(made.machine, made.file, read_scene(scene))
     except SceneError as error:
         raise InputError(str(error)) from error
+
+
+def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
+    """The machine with the torques of a $robcor.dat in the same folder, if it is of that arm."""
+    from interp.robot.kinematics.data_list import DataListError
+    from interp.robot.kinematics.dynamics_data import with_torques
+    from interp.robot.kinematics.machine_data import MachineDataError
+    from support.files.decode import decode
+    from support.files.untrusted import read_bytes
+
+    for other in sorted(path.parent.iterdir()):
+        if other.name.lower() == "$robcor.dat":
+            source = decode(read_bytes(other))
+            if isinstance(source, str):
+                return machine
+            try:
+                return with_torques(machine, source.text, str(other))
+            except (DataListError, MachineDataError):
+                return machine
+    return machine
 
 
 def read_machine_file(path: Path) -> "MachineData":

@@ -215,7 +215,8 @@ def run(
     if html is not None:
         typer.echo(one_line(f"page: {html}"))
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped_motions
-    return FINE if is_fine and not done.observations else FINDINGS
+    is_fine &= all(seen.is_estimate for seen in done.observations)
+    return FINE if is_fine else FINDINGS
 
 
 def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
@@ -233,12 +234,25 @@ def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> I
         yield f"motion skipped: {at.file}:{at.line}: {error}"
     if len(skipped) > _MOST_TOLD:
         yield f"motion skipped: {len(skipped) - _MOST_TOLD} more"
-    for seen in done.observations[:_MOST_TOLD]:
-        yield f"{seen.kind}: {seen}"
-    if len(done.observations) > _MOST_TOLD:
-        yield f"seen: {len(done.observations) - _MOST_TOLD} more"
+    yield from _seen(done)
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"
+
+
+def _seen(done: "RunResult") -> Iterator[str]:
+    """What was touched, and torques that are too great; estimates in one line."""
+    certain = [seen for seen in done.observations if not seen.is_estimate]
+    for seen in certain[:_MOST_TOLD]:
+        yield f"{seen.kind}: {seen}"
+    if len(certain) > _MOST_TOLD:
+        yield f"seen: {len(certain) - _MOST_TOLD} more"
+    estimates = [seen for seen in done.observations if seen.is_estimate]
+    if estimates:
+        worst = max(estimates, key=lambda seen: seen.value / seen.limit)
+        more = f"; {len(estimates) - 1} more" if len(estimates) > 1 else ""
+        yield f"torque, by masses that are assumed: {worst}{more}"
+    if done.torque_note:
+        yield f"left out: {done.torque_note}"
 
 
 @contextmanager

@@ -94,6 +94,21 @@ def test_loads_bring_an_arm_beyond_its_torques(run: Run) -> None:
     assert " and bears 20, " in err
 
 
+def test_torques_by_assumed_masses_are_estimates(run: Run, tmp_path: Path) -> None:
+    """With machine data one line has the worst, and it is no finding."""
+    lengths = {12: 400, 13: 25, 14: 455, 15: 35, 17: 420, 18: 80}
+    data = {**lengths, **dict.fromkeys(range(37, 43), 10)}
+    lines = "".join(f"$DYN_DAT[{place}]={value}.0\n" for place, value in data.items())
+    (tmp_path / "$robcor.dat").write_text(f"DEFDAT $ROBCOR\n{lines}ENDDAT\n", encoding="utf-8")
+    options = "--machine", "@m.dat", "--robot", "mujoco", "--observations", "@o.jsonl"
+    status, _, err = run(*options, m_dat=ARM)
+    assert 0 == status
+    assert err.startswith("torque, by masses that are assumed: A")
+    assert 1 == len(err.splitlines())
+    seen = [json.loads(line) for line in (tmp_path / "o.jsonl").read_text().splitlines()]
+    assert {True} == {one["estimate"] for one in seen}
+
+
 def _urdf(effort: float) -> str:
     """An arm of three parallel axes and a wrist, heavy enough."""
     steps = ("0 0 0.4", "0 1 0", 2), ("0 0 0.5", "0 1 0", 2), ("0 0 0.4", "1 0 0", 1)

@@ -28,7 +28,8 @@ class Observation:
 
     ``parts`` are the two that touch, in the order of the alphabet, or the axis. ``value`` is the
     greatest torque and ``limit`` what the axis bears, in Nm (N for linear axes). ``at`` is the line
-    whose motion it began in, as ``file:line``; empty before the first.
+    whose motion it began in, as ``file:line``; empty before the first. An estimate rests on masses
+    that are assumed.
     """
 
     kind: Literal["collision", "torque"]
@@ -38,6 +39,7 @@ class Observation:
     value: float = 0.0
     limit: float = 0.0
     at: str = ""
+    is_estimate: bool = False
 
     def __str__(self) -> str:
         when = f"{self.start / 1e6:.3f} to {self.end / 1e6:.3f} s"
@@ -57,6 +59,7 @@ class Observation:
             "parts": list(self.parts),
             "value": round(self.value, 3),
             "limit": round(self.limit, 3),
+            "estimate": self.is_estimate,
         }
 
 
@@ -70,6 +73,7 @@ class ObservationRecord(TypedDict):
     parts: list[str]
     value: float
     limit: float
+    estimate: bool
 
 
 class Observer(Protocol):
@@ -87,8 +91,9 @@ class Observer(Protocol):
 class Periods:
     """Turns moments at which something holds into periods."""
 
-    def __init__(self, kind: Literal["collision", "torque"]) -> None:
+    def __init__(self, kind: Literal["collision", "torque"], is_estimate: bool = False) -> None:
         self._kind = kind
+        self._is_estimate = is_estimate
         self._open: dict[tuple[str, ...], Observation] = {}
         self._closed: list[Observation] = []
 
@@ -99,7 +104,9 @@ class Periods:
             before = self._open.pop(parts, None)
             start = time if before is None else before.start
             most = value if before is None else max(value, before.value)
-            now[parts] = Observation(self._kind, start, time, parts, most, limit)
+            now[parts] = Observation(
+                self._kind, start, time, parts, most, limit, is_estimate=self._is_estimate
+            )
         self._closed += self._open.values()
         self._open = now
 
@@ -117,7 +124,7 @@ class TorqueCheck:
     def __init__(self, machine: MachineData) -> None:
         self._names = [axis.name for axis in machine.axes]
         self._limits = np.array(machine.torques or (np.inf,) * len(self._names))
-        self._periods = Periods("torque")
+        self._periods = Periods("torque", is_estimate=machine.own_chain is None)
 
     def check(self, times: Times, torques: Array) -> None:
         """Look at torques (n, axes) in Nm."""

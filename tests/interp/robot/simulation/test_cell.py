@@ -135,7 +135,8 @@ def test_torques_beyond_what_an_axis_bears() -> None:
     found = np.zeros((5, 6))
     found[1:4, 2] = 110.0, -130.0, 120.0
     check.check(1_000 * np.arange(5, dtype=np.int64), found)
-    assert (Observation("torque", 1_000, 3_000, ("A3",), 130.0, 100.0),) == check.observations()
+    expected = Observation("torque", 1_000, 3_000, ("A3",), 130.0, 100.0, is_estimate=True)
+    assert (expected,) == check.observations()
 
 
 def test_no_limits_no_torques_beyond_them() -> None:
