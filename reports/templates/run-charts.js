@@ -4,7 +4,7 @@ const span = { from: 0, to: end };
 const charts = [];
 const SIDE = 12;
 const isNarrow = () => byId("charts").clientWidth < 600;
-const axisWidth = () => (isNarrow() ? 62 : 130);
+const axisWidth = () => (isNarrow() ? 68 : 130);
 
 /**
  * A chart of `series`, each { name, hue, values, told, unit, digits } over the times of the path: what it
@@ -114,15 +114,14 @@ function painted(u, draw) {
   u.ctx.restore();
 }
 
-/** A text as long as there is room for beside a chart. */
+/** As much of the end of a text as there is room for beside a chart: names differ in their ends. */
 function shortened(u, text) {
   u.ctx.save();
   u.ctx.font = "11.5px system-ui, sans-serif";
-  const fits = (one) => u.ctx.measureText(one).width <= axisWidth() - 12;
-  let length = text.length;
-  while (length > 1 && !fits(length < text.length ? `${text.slice(0, length)}…` : text)) length -= 1;
+  let fitting = text;
+  for (let n = 1; n < text.length && u.ctx.measureText(fitting).width > axisWidth() - 8; n += 1) fitting = `…${text.slice(n)}`;
   u.ctx.restore();
-  return length < text.length ? `${text.slice(0, length)}…` : text;
+  return fitting;
 }
 
 function enlarge(from, to) {

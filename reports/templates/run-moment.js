@@ -61,6 +61,8 @@ const colourOf = (name) => getComputedStyle(document.documentElement).getPropert
 
 const motionStarts = events.filter((event) => event.kind === "motion_start");
 const startTimes = motionStarts.map((event) => event.t);
+const AHEAD = new Set(["line", "assign", "branch", "motion_planned", "advance_stop", "call", "return", "wait", "halt", "end"]);
+const advanceRun = events.filter((event) => AHEAD.has(event.kind) && event.at && event.task !== "submit");
 
 /** The spans in which two motions blend. */
 const blends = [];

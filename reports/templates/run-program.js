@@ -1,9 +1,14 @@
 // The source with the lines of the moment, and the list of events.
 
 const mainRun = motionStarts.filter((event) => event.at);
-const advanceRun = events.filter((event) => event.at && event.task !== "submit" && event.kind !== "motion_start");
 const timesOf = (list) => list.map((event) => event.t);
 const [mainTimes, advanceTimes] = [timesOf(mainRun), timesOf(advanceRun)];
+
+/** Scrolls a holder, and not the page, where a row of it is out of sight. */
+function keepInSight(holder, row) {
+  const [top, bottom] = [row.offsetTop, row.offsetTop + row.offsetHeight];
+  if (top < holder.scrollTop || bottom > holder.scrollTop + holder.clientHeight) holder.scrollTop = top - holder.clientHeight / 2;
+}
 
 function program() {
   const [holder, choice] = [byId("program"), byId("files")];
@@ -45,8 +50,7 @@ function program() {
       if (!row) continue;
       row.classList.add(name);
       marked.push([row, name]);
-      const [top, bottom] = [row.offsetTop, row.offsetTop + row.offsetHeight];
-      if (by !== null && name === "main" && (top < holder.scrollTop || bottom > holder.scrollTop + holder.clientHeight)) holder.scrollTop = top - holder.clientHeight / 2;
+      if (by !== null && name === "main") keepInSight(holder, row);
     }
   });
 }
@@ -57,7 +61,8 @@ const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name
 const MORE = 500; // rows at a time
 
 function eventTable() {
-  const body = byId("events").tBodies[0];
+  const holder = byId("events");
+  const body = holder.querySelector("tbody");
   const [search, more] = [byId("search"), byId("more")];
   const quiet = new Set(["line", "assign", "branch"]);
   const listed = events.filter((event) => !quiet.has(event.kind));
@@ -88,10 +93,11 @@ function eventTable() {
     body.replaceChildren();
     grow();
   }
-  function mark() {
+  function mark(_, by = null) {
     now?.classList.remove("now");
     now = rows[placeAt(times, moment)] ?? null;
     now?.classList.add("now");
+    if (now && !["events", null].includes(by)) keepInSight(holder, now);
   }
   search.addEventListener("input", filter);
   more.addEventListener("click", grow);

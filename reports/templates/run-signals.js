@@ -19,10 +19,9 @@ function steps(u, x, list, level) {
 /** The lines that moved the arm, and those that were executed, as steps over time. */
 function lineChart() {
   const motions = motionStarts.filter((event) => event.at);
-  const ahead = events.filter((event) => ["line", "motion_planned"].includes(event.kind) && event.at && event.task !== "submit");
-  if (!motions.length && !ahead.length) return;
+  if (!motions.length && !advanceRun.length) return;
   const lineOfEvent = (event) => Number(event.at.split(":").at(-1));
-  const numbers = [...motions, ...ahead].map(lineOfEvent);
+  const numbers = [...motions, ...advanceRun].map(lineOfEvent);
   const [low, high] = numbers.reduce(([a, b], line) => [Math.min(a, line), Math.max(b, line)], [Infinity, -Infinity]);
   chart("Program lines", {
     height: 140,
@@ -31,7 +30,7 @@ function lineChart() {
     ticks: [...new Set([low, Math.round((low + high) / 2), high])].map((line) => [line, `line ${line}`]),
     keys: [{ name: "main run", hue: "blue" }, { name: "advance run", hue: "mark" }],
     paint: (u, x) => {
-      for (const [list, hue] of [[ahead, "mark"], [motions, "blue"]]) {
+      for (const [list, hue] of [[advanceRun, "mark"], [motions, "blue"]]) {
         u.ctx.strokeStyle = colourOf(hue);
         steps(u, x, list, (event) => u.valToPos(lineOfEvent(event), "y", true));
       }
