@@ -48,6 +48,7 @@ function filter() {
     if (sheets.has(i)) sheets.get(i).hidden = !fits || !isOpen(i);
     count += fits;
   });
+  shorten();
   byId("status").textContent = counted(count, "case");
   byId("search").value = state.q;
   byId("suite").value = state.suite;
@@ -71,6 +72,7 @@ function readHash() {
     Object.assign(state, { q: "", suite: "", verdict: "" });
     filter();
   }
+  if (rows[i].classList.contains("later")) shorten(true);
   setOpen(i, true);
   rows[i].scrollIntoView({ block: "start" });
 }
@@ -84,6 +86,7 @@ function choose(changes) {
 // The gravest come first.
 const grave = ["fail", "known-failure", "unconfirmed", "skipped", "pass"];
 body.append(...cases.map((_, i) => i).sort((a, b) => grave.indexOf(cases[a].verdict) - grave.indexOf(cases[b].verdict) || a - b).map((i) => rows[i]));
+const shorten = shortList(body);
 for (const suite of [...new Set(cases.map((one) => one.suite))]) byId("suite").append(new Option(suite, suite));
 for (const verdict of page.verdicts) byId("verdict").append(new Option(verdict, verdict));
 onRow(body, toggle);

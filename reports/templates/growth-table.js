@@ -3,6 +3,7 @@
 const rows = [...document.querySelectorAll("#rows > .row")];
 const cards = new Map();
 const indexOf = new Map(steps.map((step, i) => [step.anchor, i]));
+const shorten = rows.length ? shortList(byId("rows")) : null;
 const isOpen = (i) => rows[i].classList.contains("opened");
 
 function changes(i) {
@@ -70,6 +71,7 @@ function goTo(anchor) {
     return;
   }
   if (rows[i].hidden) search("");
+  if (rows[i].classList.contains("later")) shorten(true);
   setOpen(i, true);
   setHash(anchor);
   rows[i].scrollIntoView({ block: "start" });
@@ -93,6 +95,7 @@ function search(text) {
     if (cards.has(i)) cards.get(i).hidden = row.hidden || !isOpen(i);
     shownRows += !row.hidden;
   });
+  shorten();
   byId("status").textContent = shownRows < rows.length ? `${number(shownRows)} of ${counted(rows.length, "step")}` : counted(rows.length, "step");
   byId("none").hidden = shownRows > 0;
 }

@@ -85,6 +85,30 @@ function walkWithArrows(body) {
   });
 }
 
+const MOST_ROWS = 200;
+
+/**
+ * Shows the first rows of a list that no filter hides, and a button for the others. What it returns is to
+ * be called whenever rows have changed, and with `true` to show all of them.
+ */
+function shortList(body) {
+  const heads = [...body.parentElement.tHead.rows[0].cells].map((head) => head.textContent.trim());
+  for (const row of body.rows) [...row.cells].forEach((cell, n) => { cell.dataset.label = heads[n]; });
+  const more = el("button", "more");
+  more.type = "button";
+  body.parentElement.after(more);
+  let isWhole = false;
+  function shorten(whole = isWhole) {
+    isWhole = whole;
+    const fitting = body.querySelectorAll(":scope > .row:not([hidden])");
+    fitting.forEach((row, n) => row.classList.toggle("later", !isWhole && n >= MOST_ROWS));
+    more.hidden = isWhole || fitting.length <= MOST_ROWS;
+    more.textContent = `${number(fitting.length - MOST_ROWS)} more`;
+  }
+  more.addEventListener("click", () => shorten(true));
+  return shorten;
+}
+
 /** A click on a row, unless it marks text, or is on its opener. */
 function onRow(body, toggle) {
   body.addEventListener("click", (event) => {

@@ -133,7 +133,7 @@ function enlarge(from, to) {
 function extent(columns, bounds = []) {
   const values = columns.flatMap((column) => [column.reduce((a, b) => Math.min(a, b), Infinity), column.reduce((a, b) => Math.max(a, b), -Infinity)]);
   const most = Math.max(...values.map(Math.abs), 1e-3);
-  const near = bounds.filter((bound) => Math.abs(bound) <= 3 * most);
+  const near = bounds.filter((bound) => Math.abs(bound) <= 5 * most);
   const [low, high] = [Math.min(0, ...values, ...near), Math.max(0, ...values, ...near)];
   const room = (high - low) * 0.06;
   return { y: [low - (low < 0 ? room : 0), high + room], lines: near };
@@ -142,8 +142,9 @@ function extent(columns, bounds = []) {
 function speedChart() {
   if (!path.speed.length) return;
   const series = [{ name: "set-point", hue: "blue", values: path.speed, unit: "m/s", digits: 3 }];
-  const limit = limits.speed ? [{ name: `limit ${number(limits.speed)} m/s`, hue: "mark" }] : [];
-  chart("Speed of the tool [m/s]", { height: 130, series, keys: limit, ...extent([path.speed], limits.speed ? [limits.speed] : []) });
+  const shown = extent([path.speed], limits.speed ? [limits.speed] : []);
+  const keys = limits.speed ? [{ name: `limit ${number(limits.speed)}${shown.lines.length ? "" : ", beyond this scale"}`, hue: "mark" }] : [];
+  chart("Speed of the tool [m/s]", { height: 130, series, keys, ...shown });
 }
 
 /** What is known of axes: its unit, where its values are, and how far [lowest, highest] they may go. */
@@ -164,8 +165,10 @@ function axisChart({ title, unit, digits, columns, range }, n) {
   if (!values?.length) return;
   const bounds = range[n] ?? [];
   const series = [{ name: axisName(n), ...axisHue(n), values, unit: unit(isLinear(n)), digits }];
-  const keys = bounds.length ? [{ name: `limits ${bounds.map(number).join(" and ")}`, hue: "mark" }] : [];
-  chart(`${title} of ${axisName(n)} [${unit(isLinear(n))}]`, { height: 150, series, keys, ...extent([values], bounds) });
+  const shown = extent([values], bounds);
+  const limit = bounds[0] === -bounds[1] ? `limit ±${number(bounds[1])}` : `limits ${bounds.map(number).join(" and ")}`;
+  const keys = bounds.length ? [{ name: `${limit}${shown.lines.length < 2 ? ", beyond this scale" : ""}`, hue: "mark" }] : [];
+  chart(`${title} of ${axisName(n)} [${unit(isLinear(n))}]`, { height: 150, series, keys, ...shown });
 }
 
 /** A quantity of all axes, each as a share of its own limits so that one pair of lines is for all. */

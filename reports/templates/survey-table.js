@@ -6,6 +6,7 @@ const places = new Map(data.mending.map(([id, , place]) => [id, place]));
 const cards = new Map();
 const state = { cluster: "", q: "", sort: "" };
 states[prefix] = state;
+const shorten = byId("rows") ? shortList(byId("rows")) : () => {};
 
 function setOpen(i, open) {
   const row = rows[i];
@@ -40,6 +41,7 @@ function goTo(id) {
     return;
   }
   if (rows[i].hidden) clearFilters();
+  if (rows[i].classList.contains("later")) shorten(true);
   setOpen(i, true);
   state.cluster = id;
   writeHash();
@@ -75,6 +77,7 @@ function order(sort) {
   const unmoved = indices.every((i, n) => i === shownOrder[n]);
   shownOrder = indices;
   if (!unmoved) byId("rows").append(...indices.flatMap((i) => (cards.has(i) ? [rows[i], cards.get(i)] : [rows[i]])));
+  shorten();
   for (const head of byId("table").tHead.rows[0].cells) {
     if (value && head.dataset.key === key) head.setAttribute("aria-sort", down ? "descending" : "ascending");
     else head.removeAttribute("aria-sort");
@@ -117,6 +120,7 @@ function filter() {
     if (cards.has(i)) cards.get(i).hidden = !keep || !isOpen(i);
     visibleRows += keep;
   });
+  shorten();
   const filtered = visibleRows < rows.length;
   byId("status").textContent = filtered ? `${number(visibleRows)} of ${counted(rows.length, "cluster")}` : counted(rows.length, "cluster");
   byId("clear").hidden = !(state.q || origin || byId("unlocking").checked || byId("direct").checked);
