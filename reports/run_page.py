@@ -22,6 +22,7 @@ _MAX_FILES = 40
 _MAX_LINES = 5_000
 _MAX_POINTS = 5_000
 _MAX_LINKS = 200
+_MAX_OBJECTS = 1_000
 _MAX_TOOLS = 1_000
 _LIBRARIES = ("vendor/uPlot.iife.min", "vendor/three.min")
 _SCRIPTS = (
@@ -60,6 +61,9 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
             "path": _path(nested(record, "path")),
             "limits": _limits(nested(record, "limits")),
             "arm": _arm(nested(record, "arm")),
+            "observations": [
+                plain(one, 200) for one in records(record, "observations")[:_MAX_OBJECTS]
+            ],
             "points": [_point(one) for one in records(record, "points")[:_MAX_POINTS]],
         }
     )
@@ -191,6 +195,17 @@ def _arm(arm: Record) -> Json:
             }
             for frames in records(arm, "tools")[:_MAX_TOOLS]
         ],
+        "objects": [_object(one) for one in records(arm, "objects")[:_MAX_OBJECTS]],
+    }
+
+
+def _object(thing: Record) -> Json:
+    return {
+        "name": printable(clip(text(thing, "name"), 60)),
+        "shape": text(thing, "shape"),
+        "frame": _rounded(_column(thing.get("frame"), 16), 6),
+        "edges": _rounded(_column(thing.get("edges"), 3), 2),
+        "held": bool(thing.get("held")),
     }
 
 

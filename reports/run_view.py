@@ -81,6 +81,15 @@ def _figures(record: Mapping[str, Any], outcome: Record) -> list[Figure]:
         ),
         Figure("messages and faults", f"{found('message', 'fault'):,}"),
     ]
+    seen = [text(one, "kind") for one in records(record, "observations")]
+    if seen:
+        figures.append(
+            Figure(
+                "contacts",
+                f"{seen.count('collision'):,}",
+                f"{seen.count('torque'):,} torques beyond limits",
+            )
+        )
     if deviation:
         figures.append(
             Figure(

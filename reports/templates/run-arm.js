@@ -1,5 +1,7 @@
 // The arm as three.js draws it: links along their chain, the tool, and the frames in force.
 
+const ALARM = path.t.length ? new THREE.Color("#d01818") : null; // of what touches something
+
 /** A frame of sixteen numbers, row by row. */
 const frameOf = (numbers) => new THREE.Matrix4().set(...numbers);
 
@@ -35,17 +37,33 @@ function rod({ start, end: tip, radius, colour }, facets, moves) {
   return mesh;
 }
 
+/** An object of the scene; of a mesh, whose shape is not known here, a small ball at its origin. */
+function body({ shape, edges: [x, y, z] }, facets) {
+  const shapes = {
+    box: () => new THREE.BoxGeometry(x, y, z),
+    cylinder: () => new THREE.CylinderGeometry(x / 2, x / 2, z, 3 * facets).rotateX(Math.PI / 2),
+    sphere: () => new THREE.SphereGeometry(x / 2, 2 * facets, facets),
+  };
+  const geometry = Object.hasOwn(shapes, shape) ? shapes[shape]() : new THREE.SphereGeometry(20, 2 * facets, facets);
+  return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color: "#8aa0b8", transparent: true, opacity: 0.75 }));
+}
+
 /**
  * The arm in `scene`: `follow()` puts it where it is at the moment; `tip()` is then where its tool is, in mm
  * in $WORLD, null where there is no arm.
  */
 function armIn(scene, facets, lines) {
-  const { links, hand, flange, tools } = page.arm;
+  const { links, hand, flange, tools, objects } = page.arm;
+  const meshes = [];
+  const add = (group, name, mesh) => {
+    group.add(mesh);
+    meshes.push({ name: name.replaceAll("_", " "), mesh, colour: mesh.material.color.clone() });
+  };
   const joints = links.map(() => new THREE.Group());
   links.forEach((link, n) => {
     const frame = fixed(link.frame);
     frame.add(joints[n]);
-    joints[n].add(...link.shapes.map((shape) => rod(shape, facets, link.joint >= 0)));
+    for (const shape of link.shapes) add(joints[n], link.name, rod(shape, facets, link.joint >= 0));
     (joints[link.parent] ?? scene).add(frame);
   });
   const toolTimes = tools.map((frames) => frames.t);
@@ -55,6 +73,11 @@ function armIn(scene, facets, lines) {
   wrist.add(stem, tool);
   joints[hand]?.add(wrist);
   if (tools.length) scene.add(base);
+  for (const object of objects) {
+    const frame = fixed(object.frame);
+    add(frame, object.name, body(object, facets));
+    (object.held ? wrist : scene).add(frame);
+  }
   const axes = links.map((link) => new THREE.Vector3(...link.axis));
 
   function follow() {
@@ -65,6 +88,8 @@ function armIn(scene, facets, lines) {
       if (link.linear) joints[n].position.copy(axes[n]).multiplyScalar(value);
       else joints[n].quaternion.setFromAxisAngle(axes[n], (value * Math.PI) / 180);
     });
+    const touched = new Set([...touching()].map((name) => name.replaceAll("_", " ")));
+    for (const { name, mesh, colour } of meshes) mesh.material.color.copy(touched.has(name) ? ALARM : colour);
     const frames = tools[Math.max(0, placeAt(toolTimes, moment))];
     if (!frames) return;
     tool.matrix.copy(frameOf(frames.tool));

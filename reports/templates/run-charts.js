@@ -171,17 +171,22 @@ function axisChart({ title, unit, digits, columns, range }, n) {
   chart(`${title} of ${axisName(n)} [${unit(isLinear(n))}]`, { height: 150, series, keys, ...shown });
 }
 
-/** A quantity of all axes, each as a share of its own limits so that one pair of lines is for all. */
-function sharesChart({ title, unit, digits, columns, range, share }) {
+/**
+ * A quantity of all axes: each as a share of its own limits, so that one pair of lines is for all; in its
+ * unit where no limits are known.
+ */
+function axesChart({ title, unit, digits, columns, range, share }) {
+  const isShare = range.some((bounds) => bounds);
   const series = columns.flatMap((values, n) => {
-    const [low, high] = range[n] ?? [0, 0];
+    const [low, high] = range[n] ?? (isShare ? [0, 0] : [-100, 100]);
     if (!values.length || high <= low) return [];
     const [middle, half] = [(low + high) / 2, (high - low) / 2];
     return [{ name: axisName(n), ...axisHue(n), values: values.map((value) => (100 * (value - middle)) / half), told: values, unit: unit(isLinear(n)), digits }];
   });
   if (!series.length) return;
-  const { y } = extent(series.map((one) => one.values), [-100, 100]);
-  chart(`${title} of the axes, ${share}`, { height: 160, series, lines: [-100, 100], y: [Math.min(y[0], -108), Math.max(y[1], 108)] });
+  const shown = extent(series.map((one) => one.values), isShare ? [-100, 100] : []);
+  if (isShare) Object.assign(shown, { lines: [-100, 100], y: [Math.min(shown.y[0], -108), Math.max(shown.y[1], 108)] });
+  chart(`${title} of the axes${isShare ? `, ${share}` : ` [${unit(false)}], limits unknown`}`, { height: 160, series, ...shown });
 }
 
 /** The charts of the axis that is chosen, or of all. */
@@ -196,7 +201,7 @@ function axisCharts() {
     [charts.length, followers.length] = others;
     [...byId("charts").children].slice(first).forEach((strip) => strip.remove());
     for (const quantity of QUANTITIES) {
-      if (choice.value === "all") sharesChart(quantity);
+      if (choice.value === "all") axesChart(quantity);
       else axisChart(quantity, Number(choice.value));
     }
   }

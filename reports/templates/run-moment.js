@@ -1,7 +1,12 @@
 // The moment that all parts of the page show, and what of the run stands at it.
 
 const byId = (id) => document.getElementById(id);
-const { events, path, limits } = page;
+const { path, limits } = page;
+/** What was seen besides the trace, as events: contacts, and torques that an axis cannot bear. */
+const observed = page.observations.map(({ t, end: until, kind, at, parts, value, limit }) => ({
+  t, kind, at, what: kind === "collision" ? parts.join(" touches ") : `${parts[0]} needs ${value} Nm and bears ${limit}`, until: `${(until / 1e6).toFixed(3)} s`,
+}));
+const events = [...page.events, ...observed].sort((a, b) => a.t - b.t);
 const end = Math.max(page.end, path.t.at(-1) ?? 0, events.at(-1)?.t ?? 0, 1);
 const seconds = (time, digits = 3) => (time / 1e6).toFixed(digits);
 
@@ -58,6 +63,9 @@ function whenResized(holder, draw) {
 const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 /** A colour of the style sheet. */
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+/** The names of what touches something at the moment. */
+const touching = () => new Set(page.observations.flatMap(({ t, end: until, kind, parts }) => (kind === "collision" && t <= moment && moment <= until ? parts : [])));
 
 const motionStarts = events.filter((event) => event.kind === "motion_start");
 const startTimes = motionStarts.map((event) => event.t);

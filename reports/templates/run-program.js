@@ -56,7 +56,7 @@ function program() {
 }
 
 const shown = new Set(["t", "task", "kind", "at"]);
-const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => `${name} ${value}`).join(", ");
+const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => (name === "what" ? value : `${name} ${value}`)).join(", ");
 
 const MORE = 500; // rows at a time
 
@@ -73,7 +73,7 @@ function eventTable() {
 
   function grow() {
     const added = found.slice(rows.length, rows.length + MORE).map((event) => {
-      const bad = ["fault", "message", "crash"].includes(event.kind) ? "bad" : "";
+      const bad = ["fault", "message", "crash", "collision", "torque"].includes(event.kind) ? "bad" : "";
       const row = el("tr", "", ...cells(event).map((text, n) => el("td", ["num", bad, "", ""][n], text)));
       row.addEventListener("click", () => pointAt(event.t, "events"));
       return row;

@@ -2,7 +2,7 @@
 // program's lines beside the time axis.
 
 const ROW = 20;
-const MARKED = new Set(["trigger", "interrupt_enter", "interrupt_leave", "brake", "resume", "message", "fault", "collision"]);
+const MARKED = new Set(["trigger", "interrupt_enter", "interrupt_leave", "brake", "resume", "message", "fault", "collision", "torque"]);
 const SWITCHING = new Set(["in", "out", "anout"]);
 
 /** Steps from event to event: `level` of each in pixels, from the first to the end of the run. */
@@ -56,7 +56,7 @@ function signalChart() {
     height: ROW * (names.length + 1) + 30,
     y: [-names.length, 1],
     ticks: names.map((name, row) => [-row - 0.5, name]),
-    keys: marks.length ? [{ name: "trigger, interrupt, brake, message", hue: "mark" }] : [],
+    keys: marks.length ? [{ name: "trigger, interrupt, brake, message, contact", hue: "mark" }] : [],
     paint: (u, x) => {
       const dense = devicePixelRatio;
       u.ctx.textBaseline = "middle";

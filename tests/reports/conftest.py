@@ -1,11 +1,12 @@
 """Records of surveys that never took place, shaped as ``krl recover --json`` shapes real ones."""
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from selenium import webdriver
 
 Json = dict[str, Any]
 
@@ -535,6 +536,15 @@ def hostile_record() -> Json:
     """A survey whose texts are poisoned."""
     record: Json = poisoned(both_record())
     return record
+
+
+@pytest.fixture
+def narrow(browser: webdriver.Chrome) -> Iterator[None]:
+    """A window of 400 pixels."""
+    metrics = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    yield
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 RecordBuilder = Callable[[], Json]

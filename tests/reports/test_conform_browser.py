@@ -140,6 +140,22 @@ def test_what_was_seen_is_in_sight_in_a_narrow_window(
         browser.set_window_size(size["width"], size["height"])
 
 
+@pytest.mark.usefixtures("narrow")
+def test_a_window_of_a_telephone_shows_cases_as_cards(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """At 400 pixels nothing lies beyond the edge or upon something else, opened cases included."""
+    opened(write_conformance_page(conform_record(), tmp_path), "#case=io%2Fwrong")
+    assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
+    for row in browser.find_elements(By.CSS_SELECTOR, ".row"):
+        boxes = [cell.rect for cell in row.find_elements(By.XPATH, "./td") if cell.text]
+        for place, one in enumerate(boxes):
+            for other in boxes[place + 1 :]:
+                is_beside = one["x"] + one["width"] <= other["x"] + 1
+                is_above = one["y"] + one["height"] <= other["y"] + 1
+                assert is_beside or is_above or other["y"] + other["height"] <= one["y"] + 1
+
+
 def test_cases_are_filtered_by_verdict_and_words(
     browser: webdriver.Chrome, opened: Opened, tmp_path: Path
 ) -> None:

@@ -3,19 +3,25 @@
 import re
 from collections.abc import Callable, Iterator
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
 
 from grammar.syntax.source import Source
 from interp.program.load import load
 from interp.robot.simulation.factory import RobotName
+from interp.robot.simulation.scene import Scene, SceneObject
 from interp.run_record import RunRecord, record_of
 from interp.session import RunSetup, run_program
+from interp.values.poses import Pose
 from reports.run_page import write_run_page
 from tests.reports.browsing import find, find_all
 
@@ -38,10 +44,12 @@ Shown = Callable[[Any], webdriver.Chrome]
 
 
 @cache
-def _recorded(text: str = _PROGRAM, robot: RobotName = "kinematic") -> RunRecord:
+def _recorded(
+    text: str = _PROGRAM, robot: RobotName = "kinematic", scene: Scene | None = None
+) -> RunRecord:
     """The record of a real run."""
     program = load([Source(text, "cell.src")], "cell.src")
-    setup = RunSetup(robot=robot)
+    setup = RunSetup(robot=robot, scene=scene)
     return record_of(run_program(program, setup), program, setup)
 
 
@@ -70,15 +78,6 @@ def without_webgl(browser: webdriver.Chrome) -> Iterator[None]:
     added = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
     yield
     browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
-
-
-@pytest.fixture
-def narrow(browser: webdriver.Chrome) -> Iterator[None]:
-    """A window of 400 pixels."""
-    metrics = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-    yield
-    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def _point_at(browser: webdriver.Chrome, time: int) -> None:
@@ -139,6 +138,34 @@ def test_the_picture_follows_the_slider_and_the_view(shown: Shown) -> None:
         pictures.append(scene.screenshot_as_base64)
     assert 3 == len(set(pictures))
     assert pictures[0] == pictures[3]
+
+
+def _red(scene: WebElement) -> int:
+    """How many pixels of a picture are plainly red."""
+    picture = Image.open(BytesIO(scene.screenshot_as_png)).convert("RGB")
+    pixels = np.asarray(picture, dtype=int)
+    return int(((pixels[..., 0] > 110) & (pixels[..., 1:] < 60).all(axis=-1)).sum())
+
+
+@pytest.mark.parametrize("graphics", ["webgl", "svg"])
+def test_what_touches_is_red_while_it_does(
+    shown: Shown, graphics: str, request: pytest.FixtureRequest
+) -> None:
+    """A held ball meets a table: both are listed with their time, and coloured then only."""
+    if graphics == "svg":
+        request.getfixturevalue("without_webgl")
+    ball = SceneObject("ball", "sphere", Pose.of(z=60), (120, 120, 120), is_held=True)
+    end = _recorded()["path"]["tool"][-1]
+    table = SceneObject("table", "box", Pose.of(*end), (300, 300, 40))
+    record = _recorded(scene=Scene((ball, table)))
+    contact = next(one for one in record["observations"] if set(one["parts"]) == {"ball", "table"})
+    browser = shown(record)
+    row = browser.find_element(By.XPATH, "//div[@id='events']//tr[td='collision']")
+    assert "ball touches table" in row.text
+    _point_at(browser, contact["t"] - 50_000)
+    before = _red(find(browser, "#scene"))
+    _point_at(browser, contact["t"] + 1_000)
+    assert _red(find(browser, "#scene")) > before + 100
 
 
 def test_a_click_on_an_event_shows_its_moment_everywhere(shown: Shown) -> None:

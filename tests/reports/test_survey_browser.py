@@ -436,3 +436,32 @@ def test_the_page_does_not_scroll_sideways(
     load(browser, f"{pages('believable')}#cluster=c-004de1")
     root = "document.documentElement"
     assert browser.execute_script(f"return {root}.scrollWidth <= {root}.clientWidth")
+
+
+@pytest.mark.usefixtures("narrow")
+@pytest.mark.parametrize("name", ["believable", "large", "both", "empty"])
+def test_a_narrow_window_reads_like_a_list(
+    browser: webdriver.Chrome, pages: Callable[[str], str], name: str
+) -> None:
+    """At 400 pixels nothing lies beyond the edge, and a title has the width of the page."""
+    load(browser, pages(name))
+    assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
+    titles = find_all(browser, ".row:not([hidden], .later) .open")
+    assert all(title.size["height"] < 80 for title in titles[:20])
+
+
+def test_a_long_list_is_short_at_first(
+    browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
+) -> None:
+    """Two hundred clusters are shown, then all of them; a link leads to any."""
+    clusters = survey_record("large")["clusters"]
+    visible = "[...document.querySelectorAll('.row')].filter((row) => row.checkVisibility())"
+    shown = f"return {visible}.length"
+    load(browser, pages("large"))
+    assert 200 == browser.execute_script(shown)
+    more = find(browser, "button.more")
+    assert f"{len(clusters) - 200:,} more" == more.text
+    _click(browser, more)
+    assert len(clusters) == browser.execute_script(shown)
+    load(browser, f"{pages('large')}#cluster={clusters[431]['id']}")
+    assert find(browser, ".row.opened").is_displayed()
