@@ -185,15 +185,20 @@ def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) ->
         except LookupError as error:
             return "unmet", str(error.args[0])
     wanted = _numbers(one)
-    rows = part.path.axes if one.kind == "axes" else part.path.points
+    rows = part.path.axes if one.kind == "axes" else _continuous(part.path.points)
     found = between(part.path.times, rows, moment)[: len(wanted)]
     off = np.abs(found - wanted)
-    if one.kind == "pose":
+    if one.kind == "pose":  # an angle and one a turn further are the same
         off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
     actual = " ".join(f"{number:.4f}" for number in found)
     usual = _NEAR if one.kind == "pose" else _ANGLE
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if float(off.max()) <= margin else "unmet"), actual
+
+
+def _continuous(poses: Array) -> Array:
+    """Poses whose angles do not jump by a turn, so that there is something between them."""
+    return np.hstack((poses[:, :3], np.unwrap(poses[:, 3:], period=360.0, axis=0)))
 
 
 # ------------------------------------------------------------------------------------- speeds

@@ -76,18 +76,23 @@ def reaches_of(
 ) -> list[Reach]:
     """What the cases run that can notice anything, in the order in which they are tried.
 
-    Those that may fail come first; among them the cheapest of each suite, then the second of each,
-    and so on. ``on_done`` is told of the cases as they are run.
+    Those that may fail come first; among them of each suite the one that expects most for what it
+    costs, then the second of each, and so on. ``on_done`` is told of the cases as they are run.
     """
     running = [case for case in cases if case.phase == "run"]
     places: Counter[tuple[bool, str]] = Counter()
     keyed = []
     found = reach_of(running, _SETUP, jobs, on_done)
-    for one in sorted(found, key=lambda one: (one.cost, one.case.name)):
+    for one in sorted(found, key=_price):
         kind = not one.case.may_fail, one.case.suite
         places[kind] += 1
-        keyed.append(((kind[0], places[kind], one.cost, one.case.name), one))
+        keyed.append(((kind[0], places[kind], *_price(one)), one))
     return [one for _, one in sorted(keyed, key=itemgetter(0))]
+
+
+def _price(reach: Reach) -> tuple[float, str]:
+    """What an expectation of a case costs; its name keeps the order the same."""
+    return reach.cost / len(reach.case.expectations), reach.case.name
 
 
 def try_mutants(

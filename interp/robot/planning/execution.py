@@ -168,7 +168,7 @@ class PathExecution:
                 continue
             stretch = step.stretch if step is not None else section.ceiling.stretches[0]
             ends = begins + profile.duration
-            self._timeline.append(Leg(section, stretch, profile, begins, ends))
+            self._timeline.append(Leg(section, stretch, profile, begins, ends, override))
             begins = ends
         return True
 
@@ -235,5 +235,6 @@ def _entries(route: Sequence[Section], start: float) -> list[Entry]:
 def _goes_on(leg: Leg, step: GearedStretch, override: float) -> bool:
     """Whether the leg under way is one with all the bounds that are in force now."""
     own, other = leg.stretch, step.stretch
-    is_whole = leg.last >= own.end - _THERE
-    return is_whole and own.end == other.end and own.bounds(override) == other.bounds(override)
+    if leg.override is None or leg.last < own.end - _THERE:
+        return False
+    return own.end == other.end and own.bounds(leg.override) == other.bounds(override)

@@ -77,7 +77,8 @@ class Section:
 class Leg:
     """A section travelled from ``begins`` on, in seconds; cut off at ``ends``.
 
-    The profile's positions count from ``stretch.start`` in units of ``stretch.size``.
+    The profile's positions count from ``stretch.start`` in units of ``stretch.size``. ``override``
+    is the one that it was laid under, ``None`` for a ramp to a stop.
     """
 
     section: Section
@@ -85,6 +86,7 @@ class Leg:
     profile: SpeedProfile
     begins: float
     ends: float
+    override: float | None = None
 
     def at(self, times: Array) -> tuple[Array, Array, Array]:
         """u, u̇ and ü at times."""
