@@ -8,7 +8,7 @@ a name that is seen there: a file gives its `UnresolvedName`s, and `of_project` 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 
@@ -21,6 +21,7 @@ from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
 from grammar.semantics.types import SCALARS
+from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
@@ -31,11 +32,12 @@ __all__ = ["UnresolvedName", "check", "of_project", "references"]
 class UnresolvedName:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
-    ``region`` is the first place of ``count``. ``near`` are names seen there that it may be a slip
+    ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
+    first place of ``count``. ``near`` are names seen there that it may be a slip
     of; ``is_all_read``: no file is missing that could declare it.
     """
 
-    space: Space
+    space: Space | None
     name: str
     path: str
     region: Region
@@ -45,13 +47,15 @@ class UnresolvedName:
     is_all_read: bool = False
 
 
-_SLUGS = {
+_SLUGS: Mapping[Space | None, str] = {
+    None: "no-such-component",
     Space.VALUE: "unknown-name",
     Space.ROUTINE: "unknown-routine",
     Space.TYPE: "unknown-type",
     Space.CHANNEL: "unknown-name",
 }
-_WORDS = {
+_WORDS: Mapping[Space | None, str] = {
+    None: "component",
     Space.VALUE: "variable",
     Space.ROUTINE: "routine",
     Space.TYPE: "type",
@@ -71,7 +75,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
             "unknown-name", symbol.span, message, reason=reason, severity="warning", fix=fix
         )
     for use in context.resolution.open_uses:
-        if use.space not in _SLUGS or not isinstance(use.answer, NotFound):
+        if use.space is None or use.space is Space.LABEL or not isinstance(use.answer, NotFound):
             continue
         key = use.space, use.name.key
         if key not in reported:
@@ -220,10 +224,31 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     for use in context.resolution.open_uses:
         if use.space is Space.VALUE and use.name.key in slips:
             continue
-        if use.space in _SLUGS and _may_be_elsewhere(use):
+        if use.space is None or use.space is Space.LABEL:
+            continue
+        if _may_be_elsewhere(use):
             uses.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
-    return tuple(
+    return (*_members(context), *_others(context, uses, own))
+
+
+def _members(context: Context) -> Iterator[UnresolvedName]:
+    """The components of unknown structures, but for those that geometric types have."""
+    places: dict[str, list[ast.Name]] = {}
+    for name in context.resolution.unknown_members:
+        places.setdefault(name.key, []).append(name)
+    for some in places.values():
+        region = Region.of(context.source, some[0].span)
+        path = context.source.path
+        yield UnresolvedName(None, some[0].text, path, region, len(some), is_system=False)
+
+
+def _others(
+    context: Context,
+    uses: Mapping[tuple[Space, str], Sequence[Use]],
+    own: Callable[[Space], Typos],
+) -> Iterator[UnresolvedName]:
+    yield from (
         UnresolvedName(
             space,
             some[0].name.text,
@@ -298,7 +323,7 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     what is a slip of a name that is seen there, or that is used again and again and comes from
     elsewhere itself; one note for each name that remains.
     """
-    uses: dict[tuple[Space, str], list[UnresolvedName]] = {}
+    uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
@@ -311,11 +336,11 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)
         count = counts[key]
-        is_slip = bool(near) and count <= _MOST_SLIPS
+        is_slip = bool(near) and count <= (_MOST_SLIPS if key[0] else 1)
         if is_slip or (all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES):
             for reference in some:
                 yield _undeclared(reference, near)
-        else:
+        elif key[0]:
             yield _from_elsewhere(some, count)
 
 

@@ -42,12 +42,14 @@ class Resolution:
     """The answers for one file, and those of its uses that lead to no declaration in the project.
 
     ``open_uses`` are in the order of the file. Calls of routines that only EXT announces are there
-    too: their answer is `Found`, but what they do is unknown.
+    too: their answer is `Found`, but what they do is unknown. ``unknown_members`` are
+    the components of structures that nothing at hand declares.
     """
 
     module: Module
     answers: Mapping[ast.Name, Answer]
     open_uses: tuple[Use, ...]
+    unknown_members: tuple[ast.Name, ...] = ()
 
     def found(self, name: ast.Name) -> Found | None:
         """What a name means, if that is known."""
@@ -70,7 +72,8 @@ def resolve(project: Project, module: Module) -> Resolution:
             if routine.result:
                 walk.resolve(scope, [routine.result])
             walk.resolve(inner, [*routine.parameters, *routine.body])
-    return Resolution(module, walk.answers, tuple(walk.open_uses(module)))
+    uses = tuple(walk.open_uses(module))
+    return Resolution(module, walk.answers, uses, tuple(walk.unknown_members))
 
 
 class _Walk:
@@ -78,6 +81,7 @@ class _Walk:
 
     def __init__(self) -> None:
         self.answers: dict[ast.Name, Answer] = {}
+        self.unknown_members: list[ast.Name] = []
         self._open: list[tuple[Space | None, ast.Name]] = []
         self._members: dict[Found, dict[str, Answer]] = {}
 
@@ -151,6 +155,8 @@ class _Walk:
                 todo.extend(link.indices)
             elif structure is not None:
                 structure = _structure(self.member(structure, link.name))
+            else:
+                self.unknown_members.append(link.name)
         return structure
 
     def aggregate(
@@ -168,6 +174,8 @@ class _Walk:
                 structure = _as_structure(self.name(scope, node.type, Space.TYPE))
             for component in node.components:
                 answer = self.member(structure, component.name) if structure else None
+                if answer is None:
+                    self.unknown_members.append(component.name)
                 if component.indices:
                     todo.extend(component.indices)
                 if isinstance(component.value, ast.Aggregate):

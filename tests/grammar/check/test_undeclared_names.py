@@ -121,3 +121,15 @@ def test_slips_in_lists_of_the_controller(finds: Callable[..., list[Diagnostic]]
     text = "DEFDAT $MACHINE PUBLIC\nSIGNAL $BRAKS_OK $IN[3]\nINT $NOT_IN_ANY_TABLE=3\nENDDAT\n"
     found = finds({"$machine.dat": text}, is_complete=None)
     assert [2] == [one.region.line for one in found if one.code == "KRL113"]
+
+
+def test_slips_in_components_of_unknown_structures(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """A component that is written once, and nearly so again and again, is a slip."""
+    lines = [f"M[{n}].PLACEPOS = {n}" for n in range(1, 4)]
+    text = "\n".join(["DEF U()", *lines, "M[4].PLCAEPOS = 4", "M[5].OTHER = 5", "END"])
+    found = finds({"U.src": text}, is_complete=None)
+    assert [(5, "KSS2125", "warning")] == [
+        (one.region.line, one.code, one.severity) for one in found if one.severity != "note"
+    ]
