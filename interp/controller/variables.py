@@ -87,6 +87,7 @@ class Variables:
         self._newest = System.load()
         self._values: dict[str, Any] = {}
         self._live: dict[str, Live] = {}
+        self._loose: dict[Path, Value] = {}
         self.writes = 0
         self.has_read_changing = False
         self._twins = {
@@ -152,6 +153,8 @@ class Variables:
         if live is not None:
             self.has_read_changing = self.has_read_changing or name not in _STEADY
             return live.read(path)
+        if self._is_loose(path):
+            return self._loose.get(path, 0)
         root = self.main[self._twins[name]] if name in self._twins else self._root(name)
         return part(root, path[1:])
 
@@ -178,10 +181,23 @@ class Variables:
         if live is not None:
             live.write(path, value)
             return
+        if self._is_loose(path):
+            self._loose[path] = copied(value)
+            return
         if name in self._twice:  # snapshots keep the old one
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
+
+    def _is_loose(self, path: Path) -> bool:
+        """Whether it is a part of a variable of which nothing is known, an option's perhaps.
+
+        Where something stands in for what is missing, such a part can be written.
+        """
+        name = str(path[0])
+        if len(path) == 1 or not self._profile.is_tolerant or self.type_of(name) != UNKNOWN:
+            return False
+        return not isinstance(self._root(name), StructureValue | ArrayValue)
 
     def snapshot(self, changes: Iterable[tuple[Path, Value]] = ()) -> Snapshot:
         """The advance values as they are now, with changes that hold for one motion only."""

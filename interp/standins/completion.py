@@ -75,6 +75,11 @@ class _Wanted:
     defaults: _Places = field(default_factory=dict)
     modules: list[Module] = field(default_factory=list)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is wanted."""
+        return not (self.data or self.routines or self.types or self.defaults)
+
     def take(self, module: Module, resolution: Resolution) -> None:
         """What one file wants."""
         names = {
@@ -129,6 +134,8 @@ def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
 
 
 def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ...]:
+    if wanted.is_empty:
+        return ()  # and no need to read the library
     library = load_library()
     found = []
     kinds: tuple[tuple[_Kind, _Places, Mapping[str, object]], ...] = (

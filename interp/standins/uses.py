@@ -220,9 +220,11 @@ class Uses:
 
     def _meets(self, node: ast.Expression, value: ast.Expression) -> None:
         """A number is asked whether it is another one: that is a value that it may have."""
-        use = self._use(node)
+        use, sign = self._use(node), ""
+        if isinstance(value, ast.Unary) and value.operator == "-":
+            value, sign = value.operand, "-"
         if use is not None and isinstance(value, ast.IntegerLiteral) and not use.asked_for:
-            use.asked_for = str(value.value)
+            use.asked_for = f"{sign}{value.value}"
 
     def _call(self, node: ast.Call) -> None:
         is_value = node not in self._statements

@@ -199,3 +199,16 @@ def test_profile_is_strict_by_default() -> None:
         profile.is_tolerant,
         replace(profile, is_tolerant=True),
     )
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_parts_of_unknown_system_variables(executor: str) -> None:
+    """A part of a variable of an option can be given a value."""
+    run = _run(_main("$FRI_TO_INT[3]=7\nmissing ( )\n"), executor)
+    assert ("end", "") == _outcome(run)
+
+
+def test_negative_numbers_are_asked_for() -> None:
+    """A number that a program compares with something negative is that number."""
+    program = _main("IF APP_NUMBER<>-17 THEN\n$OUT[1]=TRUE\nENDIF\n")
+    assert "DECL GLOBAL INT APP_NUMBER=-17" in _data_list(program)
