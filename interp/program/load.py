@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import chain
 
 from grammar.check.context import placed
-from grammar.check.framework import Checked, check_module, check_project
+from grammar.check.framework import Checked, check_module, check_project, typed_module
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope
@@ -235,8 +235,9 @@ def load_all(
 ) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
     """Link and check files of any number of projects; gives a program for each file with routines.
 
-    It is checked as without ``strict`` in `load`, each project once. A file that cannot be read is
-    told with the reason, after the programs; without ``stands_in`` it is left out of its project.
+    It is checked as without ``strict`` in `load`, each project once; with ``stands_in`` there are
+    no findings. A file that cannot be read is told with the reason, after the programs; without
+    ``stands_in`` it is left out of its project.
     """
     by_path = {source.path: source for source in sources}
     files, unread = [], []
@@ -277,9 +278,10 @@ def _checked(
     units: dict[Module, Unit] = {}
     for module in project.modules:
         source = sources[module.path]
-        units[module] = Unit(module, source, check_module(project, module, source))
-    for one in check_project(unit.checked.findings for unit in units.values()):
-        if strict and one.severity == "error":
+        known = typed_module if stands_in and not strict else check_module
+        units[module] = Unit(module, source, known(project, module, source))
+    for one in check_project(unit.checked.findings for unit in units.values()) if strict else ():
+        if one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)
     return CheckedProgram(project, first, units, strict, stand_ins)

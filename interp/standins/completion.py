@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from grammar.check.framework import check_module
+from grammar.check.framework import typed_module
 from grammar.semantics.link import File, Project, extended
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Found, Module, SystemScope
@@ -183,7 +183,7 @@ class _Making:
         """Make declarations of what is known now; whether they differ from those before."""
         library, wanted = load_library(), self._wanted
         checked = [
-            check_module(self.project, module, sources[module.path]) for module in wanted.modules
+            typed_module(self.project, module, sources[module.path]) for module in wanted.modules
         ]
         unknown = [name for name in wanted.types if name not in library.types]
         uses = Uses(

@@ -347,7 +347,6 @@ def test_broken_scripts(run: Run, script: str, said: str) -> None:
     [
         ("missing.src", None, "no such file"),
         ("data.dat", b"DEFDAT data\nENDDAT\n", "there is no routine"),
-        ("broken.src", b"DEF broken ( )\nIF THEN\nEND\n", "broken.src:2: "),
         ("binary.src", b"\x00\x01\x02\xff\xfe" * 40, "binary.src"),
         ("takes.src", b"DEF takes (A :IN )\nINT A\nEND\n", "takes has parameters"),
         ("empty.src", b"", "empty.src"),
@@ -371,3 +370,14 @@ def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     assert "main.src: halt" in out
     assert err.startswith("left out: ")
     assert "other.src:2: " in err
+
+
+def test_syntax_error(run: Run, tmp_path: Path) -> None:
+    """A program with one runs until it comes there; under --strict nothing of it does."""
+    file = tmp_path / "broken.src"
+    file.write_text("DEF broken ( )\n$OUT[1]=TRUE\nIF THEN\nEND\n", encoding="utf-8")
+    status, out, err = run(None, str(file))
+    assert (1, True) == (status, "at broken.src:3: SYNTAX_ERROR" in out)
+    assert "left out: broken.src:3: " in err
+    status, out, err = run(None, str(file), "--strict")
+    assert (2, "", True) == (status, out, "broken.src:3: " in err)
