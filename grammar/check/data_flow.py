@@ -148,7 +148,7 @@ class _DataFlow:
 
     def _is_passed(self, node: FlowNode, key: str) -> bool:
         return node.statement is not None and any(
-            isinstance(argument, ast.Variable) and argument.name.key == key
+            _is_whole(argument, key)
             for call in calls_of(node.statement)
             for argument in call.arguments
         )
@@ -175,6 +175,13 @@ class _DataFlow:
             what = "is assigned to and never read" if key in written else "is never used"
             message = f"{symbol.name} {what}"
             yield self._context.finding("unused", symbol.span, message)
+
+
+def _is_whole(node: ast.Expression | None, key: str) -> bool:
+    """Whether an argument is a variable as a whole: ``NAME`` or ``NAME[]``."""
+    if isinstance(node, ast.Subscript) and not any(node.indices):
+        node = node.base
+    return isinstance(node, ast.Variable) and node.name.key == key
 
 
 def _all(context: Context, placed: PlacedStatement) -> Iterator[Access]:
@@ -268,6 +275,6 @@ def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
         names = ", ".join(dict.fromkeys(access.name.text for access in used))
         message = f"nothing can change {names} while this waits"
         yield context.finding("waits-for-ever", node.condition, message)
-    elif constant(context, node.condition) is False:
+    elif constant(context, node.condition) is False:  # programs stop so on purpose
         message = "this condition is never fulfilled"
-        yield context.finding("waits-for-ever", node.condition, message)
+        yield context.finding("waits-for-ever", node.condition, message, severity="note")

@@ -152,12 +152,18 @@ def _check_import(checker: TypeChecker, node: ast.Importation) -> None:
 def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
     """Parameters are declared in the body; whole arrays are passed :OUT [SCO-06, SCO-07]."""
     symbols = routine.table.routine.parameters
+    undeclared: list[ast.Parameter] = []
     for node, parameter in zip(routine.node.parameters, symbols, strict=True):
         is_unread = parameter.key in (checker.context.module.words or ())
         if parameter.type is None and not is_unread:
-            message = f"the parameter {parameter.name} is not declared"
-            checker.report("parameter-undeclared", node, message)
+            undeclared.append(node)
         type_ = checker.type_of_symbol(parameter, routine.scope)
         verdict = declarable(type_, is_out=parameter.mode == "OUT")
         if not verdict:
             checker.reject("array-by-value", node, verdict)
+    if undeclared:
+        names = ", ".join(node.name.text for node in undeclared)
+        what = "the parameter" if len(undeclared) == 1 else "the parameters"
+        verb = "is" if len(undeclared) == 1 else "are"
+        message = f"{what} {names} {verb} not declared"
+        checker.report("parameter-undeclared", undeclared[0], message)

@@ -33,8 +33,9 @@ class UnresolvedName:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
     ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
-    first place of ``count``. ``near`` are names seen there that it may be a slip
-    of; ``is_all_read``: no file is missing that could declare it.
+    first place of ``count``. ``near`` are names seen there that it may be a slip of.
+    ``is_all_read``: no file is missing that could declare it; ``is_certain``: the data list of the
+    program is among those that are there.
     """
 
     space: Space | None
@@ -45,6 +46,7 @@ class UnresolvedName:
     is_system: bool
     near: tuple[str, ...] = ()
     is_all_read: bool = False
+    is_certain: bool = False
 
 
 _SLUGS: Mapping[Space | None, str] = {
@@ -258,6 +260,7 @@ def _others(
             space is Space.VALUE and key.startswith("$"),
             _near(context, own, some[0]),
             _is_all_read(context, some[0]),
+            context.data is not None or context.project.data_of(context.module) is not None,
         )
         for (space, key), some in uses.items()
     )
@@ -345,7 +348,8 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
 
 
 def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:
-    severity: Severity = "error" if reference.is_all_read else "warning"
+    is_certain = reference.is_all_read and reference.is_certain
+    severity: Severity = "error" if is_certain else "warning"
     slug = _SLUGS[reference.space]
     message = f"no {_WORDS[reference.space]} is called {reference.name}"
     if reference.is_system:

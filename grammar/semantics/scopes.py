@@ -69,8 +69,13 @@ class Module:
 
     @property
     def is_misnamed(self) -> bool:
-        """Whether the first routine or data list has another name than the file [SCO-01]."""
-        return self.table is not None and self.table.key != self.name
+        """Whether the first routine or data list has another name than the file [SCO-01].
+
+        Tools that copy files leave out the dollar sign of a list of the controller.
+        """
+        if self.table is None or self.table.key == self.name:
+            return False
+        return not (self.table.is_system and self.table.key == f"${self.name}")
 
 
 class Reason(Enum):

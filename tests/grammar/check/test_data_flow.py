@@ -92,7 +92,7 @@ def test_waits(agrees: Agrees) -> None:
         routine(
             "B = $IN[1]",
             "WAIT FOR B ;> KRL412?",
-            "WAIT FOR FALSE ;> KRL412?",
+            "WAIT FOR FALSE ;> KRL412-",
             "WAIT FOR TRUE",
             "WAIT FOR B OR $IN[2]",
             "WAIT FOR $FLAG[1]",

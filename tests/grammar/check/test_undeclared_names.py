@@ -74,7 +74,7 @@ END"""
     agrees({"cell.src": cell}, is_complete=None)
 
 
-@pytest.mark.parametrize(("name", "severity"), [("HIDDEN", "note"), ("ABSENT", "error")])
+@pytest.mark.parametrize(("name", "severity"), [("HIDDEN", "note"), ("ABSENT", "warning")])
 def test_a_damaged_list_declares_none_but_its_words(name: str, severity: str) -> None:
     """Of a data list that cannot be read only the words in it may be declared."""
     damaged = "DEFDAT OTHER PUBLIC\nDECL GLOBAL INT HIDDEN=\nENDDAT\n"
@@ -133,3 +133,19 @@ def test_slips_in_components_of_unknown_structures(
     assert [(5, "KSS2125", "warning")] == [
         (one.region.line, one.code, one.severity) for one in found if one.severity != "note"
     ]
+
+
+def test_a_program_without_its_list_is_not_certain(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """With $CONFIG and its own list read a name is unknown for certain; without its list likely."""
+    files = {
+        "R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
+        "R1/Program/u.src": "DEF U()\nABSENT = 1\nELSEWHERE()\nEND\n",
+    }
+    without = finds(files, is_complete=None)
+    whole = finds({**files, "R1/Program/u.dat": "DEFDAT U\nENDDAT\n"}, is_complete=None)
+    severities = [
+        [one.severity for one in found if one.code == "KRL101"] for found in (without, whole)
+    ]
+    assert [["warning"], ["error"]] == severities
