@@ -18,6 +18,8 @@ _MAX_RUNS = 400
 _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
+#: Where the pages of failed cases lie.
+_PAGES = ("conform/index.html#", "conform-arm/index.html#")
 _GOOD = ("fixed", "survey: gone cluster")
 #: The figures of benches in words; others are shown by their names.
 _IN_WORDS = {
@@ -63,11 +65,18 @@ class _Step:
 
 
 @dataclass(frozen=True, slots=True)
+class _Failure:
+    what: str
+    page: str
+    command: str
+
+
+@dataclass(frozen=True, slots=True)
 class _NightlyView:
-    """``wrong`` says what failed; ``bench`` has words, value, that of before."""
+    """``bench`` has words, value, that of before."""
 
     date: str
-    wrong: tuple[str, ...]
+    failures: tuple[_Failure, ...]
     figures: tuple[Figure, ...]
     changes: tuple[tuple[str, str], ...]
     steps: tuple[_Step, ...]
@@ -79,8 +88,9 @@ def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one nightly run, and return its path.
 
     ``record`` is a line of the history with ``changes``, the sentences of
-    `reports.history.changes`, and ``history``, the lines up to it; every field may be absent. The
-    page appears whole or not at all. Raises OSError when the folder cannot be made or written.
+    `reports.history.changes`, ``failures`` (`reports.nightly_failures.Failure`), and ``history``,
+    the lines up to it; every field may be absent. The page appears whole or not at
+    all. Raises OSError when the folder cannot be made or written.
     """
     runs = records(record, "history")[-_MAX_RUNS:]
     data = embedded_json({"runs": [_short(run) for run in runs]})
@@ -117,7 +127,7 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
     before = nested(runs[-2], "bench") if len(runs) > 1 else {}
     return _NightlyView(
         date=shown(text(record, "date"), 40),
-        wrong=tuple(_wrong(record)),
+        failures=tuple(map(_failure, records(record, "failures")[:_MAX_CHANGES])),
         figures=tuple(_figures(record)),
         changes=tuple(
             (_tone(one), shown(one, 400)) for one in texts(record, "changes")[:_MAX_CHANGES]
@@ -154,16 +164,14 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
         yield Figure("planted faults found", percent(number(bench, "conform.share"), 1), told)
 
 
-def _wrong(record: Mapping[str, Any]) -> Iterator[str]:
-    """What failed, in words."""
-    for name, step in nested(record, "steps").items():
-        status = text(step, "status") if isinstance(step, Mapping) else ""
-        if status not in _FINE:
-            yield f"step {shown(name, 60)}: {shown(status, 120)}"
-    if failed := count(nested(nested(record, "conform"), "verdicts"), "fail"):
-        yield f"{counted(failed, 'run')} of cases failed"
-    if divergences := count(nested(record, "fuzz"), "divergences"):
-        yield f"{counted(divergences, 'divergence')} of the fuzzer"
+def _failure(record: Record) -> _Failure:
+    page = text(record, "page")
+    is_ours = page.startswith(_PAGES)
+    return _Failure(
+        shown(text(record, "what"), 400),
+        page if is_ours else "",
+        shown(text(record, "command"), 200),
+    )
 
 
 def _in_words(name: str) -> str:

@@ -66,10 +66,12 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
     A run that was broken off goes on where it was: steps whose record is there are not done again.
-    On a terminal each step shows how far it is. Exit status 1 where a step failed or a case did.
+    On a terminal each step shows how far it is. Exit status 1 where a step failed, a case failed or
+    no longer passes, a law was broken, or executors diverge.
     """
     from reports.claims_page import write_claims_page
     from reports.history import append_run, changes, known_before, nightly_record, read_history
+    from reports.nightly_failures import failures
     from reports.nightly_page import write_nightly_page
 
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
@@ -93,7 +95,8 @@ def nightly(
             made[step.name] = record
     runs = [one for one in read_history(history) if one.get("date") != name]
     last = known_before(runs)
-    run = nightly_record(name, made, went)
+    failed = failures(made, went, last)
+    run = {**nightly_record(name, made, went), "failures": failed}
     compared = "" if last is None else str(last["of"].get("conform", ""))
     before = _record(out / compared, "conform") if compared else None
     told = changes(last, run, before, made.get("conform"))
@@ -103,15 +106,12 @@ def nightly(
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
     run = {**run, "steps": {**run["steps"], **pages}}
     page = write_nightly_page({**run, "changes": told, "history": [*runs, run]}, folder)
+    for one in failed:
+        typer.echo(one_line(f"failed: {one['what']}"))
     for line in told or ["nothing changed since the last night"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
-    failed = any(one["status"] not in ("ok", "findings") for one in went.values())
-    wrong = (
-        run.get("conform", {}).get("verdicts", {}).get("fail"),
-        run.get("fuzz", {}).get("divergences"),
-    )
-    return FINDINGS if failed or any(wrong) else FINE
+    return FINDINGS if failed else FINE
 
 
 def _is_in(step: _Step, only: list[str] | None) -> bool:
@@ -128,7 +128,8 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
         "conform", ("conform", "--html", str(folder / "conform")), 0.25, "conform/index.html"
     )
     arm = ("motion", "blending", "program", "--executor", "native", "--robot", "mujoco")
-    yield _Step("conform-arm", ("conform", *arm), 0.15)
+    html = ("--html", str(folder / "conform-arm"))
+    yield _Step("conform-arm", ("conform", *arm, *html), 0.15, "conform-arm/index.html")
     yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
     yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.35)
     yield _Step(

@@ -1,0 +1,102 @@
+"""What makes a nightly run red: each failure with where it is shown and how to repeat it.
+
+A step that did not end, a case that fails on any executor and robot, a case of an unsure rule that
+passed in the run before, a law that was broken, executors that diverge on a random program.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import TypedDict
+from urllib.parse import urlencode
+
+from reports.record_fields import Record, nested, records, text
+from reports.sanitizing import shown
+
+__all__ = ["Failure", "failures"]
+
+_FINE = ("ok", "findings")
+#: The steps that run cases; their pages lie in folders of the same names.
+_CONFORM = ("conform", "conform-arm")
+_ROBOTS = ("none", "kinematic", "mujoco")
+_LONGEST = 200
+
+
+class Failure(TypedDict):
+    """``page`` and ``command`` are empty where there is none."""
+
+    what: str
+    page: str
+    command: str
+
+
+def failures(
+    made: Mapping[str, Record], steps: Mapping[str, Record], before: Record | None = None
+) -> list[Failure]:
+    """All failures of a run, from the records and the states of its steps by name.
+
+    ``before`` is what was known before it (`reports.history.known_before`).
+    """
+    return [
+        *_steps(steps),
+        *(one for name in _CONFORM if name in made for one in _cases(name, made[name])),
+        *_no_longer_passing(made.get("conform", {}), before or {}),
+        *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
+        *_programs(made.get("fuzz", {})),
+    ]
+
+
+def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
+    for name, step in steps.items():
+        status = text(step, "status")
+        if status not in _FINE:
+            yield Failure(what=f"step {name}: {status}", page="", command="")
+
+
+def _cases(step: str, record: Record) -> Iterator[Failure]:
+    for case in records(record, "cases"):
+        failed = [one for one in records(case, "results") if text(one, "verdict") == "fail"]
+        if not failed:
+            continue
+        where = ", ".join(f"{text(one, 'executor')}/{text(one, 'robot')}" for one in failed)
+        reason = shown(text(failed[0], "reason"), _LONGEST)
+        yield _of_case(step, case, f"failed on {where}: {reason}", failed[0])
+
+
+def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:
+    """Cases that never fail a run by themselves, and passed in the run before."""
+    was = nested(nested(before, "conform"), "cases")
+    for case in records(record, "cases"):
+        now = text(case, "verdict")
+        if now == "unconfirmed" and str(was.get(text(case, "name"), "")).startswith("pass "):
+            unmet = (one for one in records(case, "results") if text(one, "verdict") == now)
+            yield _of_case("conform", case, f"passed before, now {now}", next(unmet, {}))
+
+
+def _of_case(step: str, case: Record, what: str, result: Record) -> Failure:
+    name = text(case, "name")
+    options = [
+        f" --{option} {text(result, option)}"
+        for option, ours in (("executor", ("tree", "vm", "native")), ("robot", _ROBOTS))
+        if text(result, option) in ours
+    ]
+    return Failure(
+        what=f"case {name} {what}",
+        page=f"{step}/index.html#{urlencode({'case': name})}",
+        command=f"krl conform {name}{''.join(options)}",
+    )
+
+
+def _laws(record: Record) -> Iterator[Failure]:
+    for law in records(record, "laws"):
+        for broken in records(law, "broken")[:1]:
+            difference = shown(text(broken, "difference"), _LONGEST)
+            what = f"law '{text(law, 'name')}' broken by {text(broken, 'program')}: {difference}"
+            programs = record.get("programs")
+            yield Failure(what=what, page="", command=f"krl conform --metamorphic {programs}")
+
+
+def _programs(record: Record) -> Iterator[Failure]:
+    found = len(records(record, "differences"))
+    if found:
+        what = f"{found:,} divergence{'s' if found > 1 else ''} of the fuzzer"
+        command = f"krl fuzz --programs {record.get('programs')} --seed {record.get('seed')}"
+        yield Failure(what=what, page="", command=command)

@@ -1,0 +1,93 @@
+"""What makes a nightly run red, where it is shown, and how it is repeated."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports.nightly_failures import failures
+from reports.nightly_page import write_nightly_page
+
+
+def _conform(verdict: str, reason: str = "line 7: out 1 TRUE; seen: nothing") -> dict[str, Any]:
+    result = {"executor": "vm", "robot": "mujoco", "verdict": verdict, "reason": reason}
+    return {"cases": [{"name": "io/pulse", "verdict": verdict, "results": [result]}]}
+
+
+_LAW = {
+    "name": "renaming",
+    "broken": [{"program": "data/x", "difference": "event 3"}, {"program": "data/y"}],
+}
+
+
+@pytest.mark.parametrize(
+    ("step", "record", "what", "page", "command"),
+    [
+        (
+            "conform",
+            _conform("fail"),
+            "case io/pulse failed on vm/mujoco: line 7: out 1 TRUE; seen: nothing",
+            "conform/index.html#case=io%2Fpulse",
+            "krl conform io/pulse --executor vm --robot mujoco",
+        ),
+        (
+            "conform-arm",
+            _conform("fail"),
+            "case io/pulse failed on vm/mujoco: line 7: out 1 TRUE; seen: nothing",
+            "conform-arm/index.html#case=io%2Fpulse",
+            "krl conform io/pulse --executor vm --robot mujoco",
+        ),
+        (
+            "conform-laws",
+            {"metamorphic": {"programs": 10, "laws": [_LAW]}},
+            "law 'renaming' broken by data/x: event 3",
+            "",
+            "krl conform --metamorphic 10",
+        ),
+        (
+            "fuzz",
+            {"programs": 9, "seed": 4, "differences": [{}, {}]},
+            "2 divergences of the fuzzer",
+            "",
+            "krl fuzz --programs 9 --seed 4",
+        ),
+    ],
+)
+def test_each_step_can_fail(
+    step: str, record: dict[str, Any], what: str, page: str, command: str
+) -> None:
+    """A failure says what it is, where it is shown, and which command repeats it."""
+    found = failures({step: record}, {step: {"status": "findings"}})
+    assert [{"what": what, "page": page, "command": command}] == found
+
+
+@pytest.mark.parametrize("verdict", ["pass", "unconfirmed", "known-failure", "skipped"])
+def test_what_is_expected_is_no_failure(verdict: str) -> None:
+    """Neither are findings of a survey, or a case of an unsure rule that was not met before."""
+    made = {"conform": _conform(verdict), "recover": {"clusters": [{}]}}
+    before = {"conform": {"cases": {"io/pulse": "unconfirmed 0"}}}
+    assert [] == failures(made, {"recover": {"status": "findings"}}, before)
+
+
+def test_a_case_that_no_longer_passes_is_a_failure() -> None:
+    """Even where its rule is not sure enough to fail it by itself."""
+    before = {"conform": {"cases": {"io/pulse": "pass 12ab"}}}
+    (found,) = failures({"conform": _conform("unconfirmed")}, {}, before)
+    assert "case io/pulse passed before, now unconfirmed" == found["what"]
+
+
+def test_a_step_that_did_not_end_is_a_failure() -> None:
+    """A step that was cut off or broke says so."""
+    (found,) = failures({}, {"fuzz": {"status": "cut off after 3 minutes"}})
+    assert "step fuzz: cut off after 3 minutes" == found["what"]
+
+
+def test_the_page_leads_to_failed_cases(tmp_path: Path) -> None:
+    """Each failure stands on the page with its link and command; foreign links do not."""
+    found = failures({"conform": _conform("fail", "<b>")}, {})
+    foreign = {"what": "x", "page": "javascript:alert(1)", "command": ""}
+    text = write_nightly_page({"failures": [*found, foreign]}, tmp_path).read_text("utf-8")
+    assert '<a href="conform/index.html#case=io%2Fpulse">case io/pulse failed' in text
+    assert "<code>krl conform io/pulse --executor vm --robot mujoco</code>" in text
+    assert "javascript:alert" not in text
+    assert "&lt;b&gt;" in text
