@@ -16,6 +16,14 @@ from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
+from grammar.diagnostics.line_edits import (
+    LineEdit,
+    bracket,
+    doubled,
+    is_one_slip,
+    keyword,
+    left_out,
+)
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
@@ -91,12 +99,30 @@ def _offending(site: ErrorSite) -> Region:
 
 def _unexpected(site: ErrorSite) -> _Mistake:
     words = in_words(site.failure.expected)
-    reason = f"expected: {words}" if words else ""
-    if not site.failure.text:
-        return _Mistake("the file ends too early", reason=reason)
+    is_one = bool(words) and "," not in words and " or " not in words
     if not site.failure.text.strip():
-        return _Mistake("the line ends too early", reason=reason)
-    return _Mistake(f"{_shown(site)} cannot stand here", reason=reason)
+        before = site.word(len(site.words) - 1) if site.failure.text else ""
+        if before and is_one and not words.startswith('"'):
+            return _Mistake(f"{words} is missing behind {site.tokens[-1][0]}")
+        what = "the line ends too early" if site.failure.text else "the file ends too early"
+        return _Mistake(what, reason=f"expected: {words}" if words else "")
+    if words in ("a name", "a value", "a constant", "a position"):
+        return _Mistake(f"{words} is missing before {_shown(site)}")
+    if (
+        site.expects("*", "==")
+        and _ENDS_VALUE.search(site.word(site.place - 1))
+        and (site.text[0].isalnum() or site.text[0] in "$#_")
+    ):
+        before = site.tokens[site.place - 1][0]
+        return _Mistake(f"an operator is missing between {before} and {_shown(site)}")
+    if words == "the end of the line" and site.place > 0:
+        return _Mistake(f"{_shown(site)} is too much on this line")
+    return _Mistake(
+        f"{_shown(site)} cannot stand here", reason=f"expected: {words}" if words else ""
+    )
+
+
+_ENDS_VALUE = re.compile(r"[\w\])]$")
 
 
 def _shown(site: ErrorSite) -> str:
@@ -161,6 +187,19 @@ def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
         slug="endloop-missing" if block.word == "LOOP" else "syntax",
         region=region,
     )
+
+
+def _misspelt_closer(site: ErrorSite, block: OpenBlock) -> _Mistake | None:
+    """A line behind a block that consists of its closer but for a letter."""
+    last = min(site.failure.line, len(site.source.lines))
+    for number in range(last, block.line, -1):
+        word = site.source.line(number).partition(";")[0].strip()
+        if is_one_slip(word.upper(), block.closer) and word.upper() not in CLOSERS:
+            column = site.source.line(number).index(word) + 1
+            region = Region(number, column, number, column + len(word))
+            fix = Fix(f"did you mean {block.closer}?", region, block.closer)
+            return _Mistake(f"{word} is no word of KRL", fix, region=region)
+    return None
 
 
 def _end_in_two_words(site: ErrorSite) -> _Mistake | None:
@@ -229,10 +268,19 @@ def _signs(site: ErrorSite) -> _Mistake | None:
     if text == "'":
         fix = Fix("write 'B101' or 'H1F'; texts stand in double quotation marks")
         return _Mistake("what stands behind ' is no number in bits", fix)
-    if text == "." and site.word(place + 1)[:1].isdigit() and site.expects("INTEGER"):
-        return _Mistake("a number begins with a digit", site.swap("0.", place))
     if text in ("@", "`", "\\", "?", "~", "!", "§"):
         return _Mistake(f"{text} is no sign of KRL")
+    return None
+
+
+def _decimal_points(site: ErrorSite) -> _Mistake | None:
+    """A decimal point without digits on both sides."""
+    if site.text != ".":
+        return None
+    if site.word(site.place + 1)[:1].isdigit() and site.expects("INTEGER"):
+        return _Mistake("a number begins with a digit", site.swap("0.", site.place))
+    if site.word(site.place - 1).isdigit():
+        return _Mistake("a number ends with a digit", site.swap(".0", site.place))
     return None
 
 
@@ -350,13 +398,96 @@ def _is_keyword(word: str) -> bool:
     return lexer.is_keyword(kind) and lexer.names[kind] not in names()
 
 
+# ------------------------------------------------------------------------------ edits that help
+
+
+def _motions(site: ErrorSite) -> _Mistake | None:
+    """A motion without its points."""
+    word = lead(site.code)
+    need = _POINTS.get(word)
+    if need is None or site.expects("HALT"):
+        return None
+    rest = site.words[1 : site.place]
+    if word in _CIRCULAR and site.expects(",") and _commas(rest) == 0:
+        fix = Fix(f"write {word} and both points, with a comma between")
+        reason = "an auxiliary point on the way, and the point where the circle ends"
+        return _Mistake(f"{word} needs two points", fix, reason)
+    is_gone = site.place == 1 or (word in _CIRCULAR and site.word(site.place - 1) == ",")
+    if is_gone and site.expects("NAME", "{"):
+        return _Mistake(f"{word} needs {need}")
+    return None
+
+
+_CIRCULAR = frozenset({"CIRC", "CIRC_REL", "SCIRC", "SCIRC_REL"})
+_POINTS = dict.fromkeys(_CIRCULAR, "two points") | dict.fromkeys(
+    ("PTP", "LIN", "PTP_REL", "LIN_REL", "SPTP", "SLIN", "SPTP_REL", "SLIN_REL", "SPL", "SPL_REL"),
+    "a point",
+)
+
+
+def _commas(words: Sequence[str]) -> int:
+    """How many commas stand outside brackets."""
+    depth = found = 0
+    for word in words:
+        depth += (word in "([{") - (word in ")]}") if len(word) == 1 else 0
+        found += word == "," and depth == 0
+    return found
+
+
+def _edits(site: ErrorSite) -> _Mistake | None:
+    """One token that is misspelt, stands twice, or is a bracket that is missing."""
+    edit = keyword(site)
+    if edit is not None:
+        wrong = site.tokens[edit.first][0]
+        fix = Fix(f"did you mean {edit.text}?", site.region(edit.first), edit.text)
+        return _Mistake(f"{wrong} is no word of KRL", fix, region=site.region(edit.first))
+    edit = doubled(site)
+    if edit is not None:
+        wrong = site.tokens[edit.first][0]
+        region = site.region(edit.first)
+        return _Mistake(f"{wrong} stands twice", site.swap("", edit.first), region=region)
+    edit = bracket(site)
+    if edit is not None:
+        return _written(site, edit)
+    return None
+
+
+def _gaps(site: ErrorSite) -> _Mistake | None:
+    """A sign that is missing between two tokens."""
+    edit = left_out(site)
+    return None if edit is None else _written(site, edit)
+
+
+def _written(site: ErrorSite, edit: LineEdit) -> _Mistake:
+    """A sign is to be written before a token, or at the end of the line."""
+    if edit.first >= len(site.tokens):
+        return _Mistake(f"{edit.text} is missing", site.append(edit.text))
+    if edit.first > 0:
+        end = site.region(edit.first - 1)
+        place = Region(end.line, end.end_column, end.line, end.end_column)
+    else:
+        start = site.region(0)
+        place = Region(start.line, start.column, start.line, start.column)
+    following = site.tokens[edit.first][0]
+    text = edit.text if edit.text in _CLOSING else f" {edit.text} "
+    fix = Fix(f"write {edit.text} before {following}", place, text)
+    return _Mistake(f"{edit.text} is missing", fix, region=place)
+
+
+_CLOSING = ")]}.,([{"
+
+
 #: In this order: the first that knows the mistake reports it.
 _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
     _foreign,
+    _edits,
+    _motions,
+    _decimal_points,
     _signs,
     _words,
     _ends,
     _declarations,
+    _gaps,
     _names,
 )

@@ -118,6 +118,67 @@ def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
     assert ("KSS2144" if opener == "LOOP" else "KRL001") == first.code
 
 
+@pytest.mark.parametrize(
+    ("wrong", "message", "right"),
+    [
+        ("WAIT WAIT SEC 1", "WAIT stands twice", "WAIT SEC 1"),
+        ("N = = 1", "= stands twice", "N = 1"),
+        ("CALL_IT(1 1)", "1 stands twice", "CALL_IT(1)"),
+        ("P[1={X 1}", "] is missing", "P[1]={X 1}"),
+        ("N = (1 + 2 * 3", ") is missing", "N = (1 + 2 * 3)"),
+        ("CALL_IT1)", "( is missing", "CALL_IT1()"),
+        ("TOOL_DATA[2] SPINDLE", "= is missing", "TOOL_DATA[2]=SPINDLE"),
+        ("FRAMES[2]X = 1", ". is missing", "FRAMES[2].X = 1"),
+        ("PTP {A1 0 A2 0}", ", is missing", "PTP {A1 0, A2 0}"),
+        ("WIAT SEC 1", "WIAT is no word of KRL", "WAIT SEC 1"),
+        ("IF N == 1 TEN", "TEN is no word of KRL", "IF N == 1 THEN"),
+        ("GLOBAL INTERUPT DECL 3 WHEN N == 1 DO F()", "INTERUPT is no word of KRL",
+         "GLOBAL INTERRUPT DECL 3 WHEN N == 1 DO F()"),
+        ("PTP {A1 0., A2 0}", "a number ends with a digit", "PTP {A1 0.0, A2 0}"),
+    ],
+)  # fmt: skip
+def test_the_token_that_mends_a_line_is_told(wrong: str, message: str, right: str) -> None:
+    """A token too many, too few or misspelt is named, and the edit is what makes the line right."""
+    closer = "\nENDIF" if wrong.startswith("IF") else ""
+    text = f"DEF A()\nHALT\n{wrong}{closer}\nEND\n"
+    found = next(one for one in findings(text) if one.region.line == 3)
+    assert message == found.message
+    assert found.fix is not None
+    assert found.fix.region is not None
+    start = found.fix.region.column - 1
+    line = wrong[:start] + str(found.fix.replacement) + wrong[found.fix.region.end_column - 1 :]
+    assert "".join(right.split()) == "".join(line.split())
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("CIRC P1", "CIRC needs two points"),
+        ("CIRC P1 C_DIS", "CIRC needs two points"),
+        ("SCIRC", "SCIRC needs two points"),
+        ("CIRC P1,", "CIRC needs two points"),
+        ("LIN", "LIN needs a point"),
+        ("PTP C_PTP", "PTP needs a point"),
+        ("CASE", "a value is missing behind CASE"),
+        ("INT", "a name is missing behind INT"),
+        ("N = A B", "an operator is missing between A and B"),
+        ("HALT 5", "5 is too much on this line"),
+    ],
+)
+def test_what_is_missing_is_named(line: str, message: str) -> None:
+    """What a statement needs is said in words of the robot, and not as a list of tokens."""
+    text = f"SWITCH N\n{line}\nENDSWITCH" if line == "CASE" else line
+    assert message == findings(f"DEF A()\nINT N\n{text}\nEND\n")[0].message
+
+
+@pytest.mark.parametrize(("wrong", "right"), [("ED", "END"), ("EDN", "END"), ("NED", "END")])
+def test_a_closer_that_is_misspelt_is_found(wrong: str, right: str) -> None:
+    """The line that was to close the file is told, and not the line that it opens with."""
+    found = findings(f"DEF A()\nHALT\n{wrong}\n")[0]
+    assert (f"{wrong} is no word of KRL", 3) == (found.message, found.region.line)
+    assert f"did you mean {right}?" == (found.fix and found.fix.text)
+
+
 def test_crossed_blocks() -> None:
     """Of two blocks that cross it is the inner one that is not closed."""
     first = findings("DEF A()\nLOOP\nIF $IN[1] THEN\nENDLOOP\nENDIF\nEND\n")[0]
@@ -138,7 +199,7 @@ def test_expected_is_told_in_words() -> None:
     """Without a name for the mistake, what could have stood there is told."""
     found = only("WAIT 5")
     assert ("5 cannot stand here", "expected: FOR or SEC") == (found.message, found.reason)
-    assert "expected: a value" == only("N = 1 +").reason
+    assert "a value is missing behind +" == only("N = 1 +").message
 
 
 @pytest.mark.parametrize(
@@ -183,7 +244,7 @@ def test_too_deep_is_no_error() -> None:
 def test_failures_far_out_on_a_line() -> None:
     """On an enormous line only what was expected is told."""
     (found,) = findings("DEF A()\nN = " + "1 + " * 20_000 + "\nEND\n")
-    assert ("the line ends too early", 80_005) == (found.message, found.region.column)
+    assert ("a value is missing behind +", 80_005) == (found.message, found.region.column)
 
 
 def test_open_blocks() -> None:
