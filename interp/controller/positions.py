@@ -19,6 +19,7 @@ from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
 from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.carrier import Carrier
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.targets import turn_of
@@ -75,15 +76,24 @@ class FramesInForce:
         self._variables = variables
         self._machine = machine
         self._core = core
+        #: What EK gave last, and what carries it.
+        self._coupled: tuple[Pose, Carrier] | None = None
+
+    def couple(self, frame: Pose, table: Carrier) -> None:
+        """$BASE moves with external axes as long as it has the value of a frame that EK gave."""
+        self._coupled = frame, table
 
     def of(self, values: Snapshot) -> Placement:
         """The frames of a motion; a $TOOL or $BASE without a value counts as zero."""
+        base = pose_of(values["$BASE"]) or IDENTITY
+        given, table = self._coupled or (None, None)
         return Placement(
-            pose_of(values["$BASE"]) or IDENTITY,
+            base,
             pose_of(values["$TOOL"]) or IDENTITY,
             self._robroot(),
             IpoMode(word_of(values["$IPO_MODE"])),
             None if self._machine is None else self._machine.carrier,
+            table if base == given else None,
         )
 
     def advance_run(self) -> Placement:

@@ -16,7 +16,8 @@ from interp.controller.arm_control import ArmControl
 from interp.controller.channels import Channels, Waiting
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.motions import target_of
-from interp.controller.positions import FramesInForce, axes_value, pose_value
+from interp.controller.positions import FramesInForce, axes_value, pose_of, pose_value, word_of
+from interp.controller.predefined_values import empty_structure
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path, Value
@@ -25,7 +26,7 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Kinematics
 from interp.robot.kinematics.targets import solve, turn_of
 from interp.values.faults import Fault, fault
-from interp.values.poses import Pose
+from interp.values.poses import IDENTITY, Pose
 from interp.values.values import (
     EnumValue,
     StructureValue,
@@ -270,6 +271,27 @@ class PredefinedRoutines:
             return axes_value(origin), (*request.arguments[:2], 1)
         return axes_value([*found.axes, *externals]), after
 
+    def _couple(self, task: Task, request: Invoke) -> Reply:
+        """EK: the frame on an external kinematic system, which $BASE then moves with [FCT-11].
+
+        That a base is coupled by this value alone is unconfirmed.
+        """
+        root, offset = (pose_of(known(request.arguments[place])) for place in (0, 2))
+        machine = self._state.machine
+        system = None if machine is None else machine.tables.get(word_of(request.arguments[1]))
+        if root is None or offset is None:
+            raise fault("uninitialised")
+        if machine is None or system is None:
+            return self._unsupported(task, request, self._newest["EK"])
+        table = system.with_frames(root, offset)
+        position = self._arm.core.arm.position(self._state.clock.now)
+        frame = empty_structure("FRAME")
+        pose = table.pose(position.axes[len(machine.axes) :])
+        for name, number in zip("XYZABC", pose.components, strict=True):
+            frame.set(name, single(number))
+        self._frames.couple(pose_of(frame) or IDENTITY, table)
+        return frame, request.arguments
+
     def _kinematics(self) -> tuple[Kinematics, Placement]:
         if self._state.machine is None:
             raise own_fault("unsupported")
@@ -350,6 +372,7 @@ _RULES: Mapping[str, _Rule] = {
     "ROB_STOP": PredefinedRoutines._stop_robot,
     "ROB_STOP_RELEASE": PredefinedRoutines._release_robot,
     "FORWARD": PredefinedRoutines._forward,
+    "EK": PredefinedRoutines._couple,
     "INVERSE": PredefinedRoutines._inverse,
     "WSPACEGIVE": PredefinedRoutines._workspace,
     "WSPACETAKE": PredefinedRoutines._workspace,

@@ -30,6 +30,10 @@ class Carrier:
     columns: tuple[int, ...]
     root: Pose = IDENTITY
 
+    def with_frames(self, root: Pose, offset: Pose) -> Carrier:
+        """The same axes from another root, and a frame on what they carry."""
+        return Carrier(Chain(self.chain.joints, self.chain.end @ offset), self.columns, root)
+
     def pose(self, externals: Sequence[float]) -> Pose:
         """Where the frame is for external axes in degrees or mm."""
         pose = self.root

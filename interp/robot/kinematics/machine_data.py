@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import reduce
 from operator import matmul
@@ -131,8 +131,9 @@ class MachineData:
     ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
     motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
     ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``carrier`` is the external
-    kinematic system that the robot stands on [#ERSYS]. ``torques`` are the most that the robot axes
-    bear, in Nm (N for linear ones); none where they are unknown, infinite where one is.
+    kinematic system that the robot stands on [#ERSYS], ``tables`` those that carry bases, by names
+    such as #EASYS, each from the root that EK gives it. ``torques`` are the most that the robot
+    axes bear, in Nm (N for linear ones); none where they are unknown, infinite where one is.
     ``palletising`` is ``None`` for an arm whose axes are all free. ``own_chain`` is that of an arm
     which was described joint by joint; lengths and frames of the wrist mean nothing then.
     """
@@ -156,6 +157,7 @@ class MachineData:
     t1_speed: float
     t1_reduction: float
     carrier: Carrier | None = None
+    tables: Mapping[str, Carrier] = field(default_factory=dict)
     torques: tuple[float, ...] = ()
     palletising: Palletising | None = None
     own_chain: Chain | None = None
@@ -263,12 +265,15 @@ class _Reader:
                 raise self._error(f"$AXIS_TYPE[{i}] is 1; an arm of six rotary axes is needed")
         count = min(max(self._integer("$EX_AX_NUM", default=0), 0), _MOST_EXTERNAL)
         externals = tuple(self._axis(ROBOT_AXES + i) for i in _numbers(count))
+        carriers = self._carriers(externals)
+        foot, root = carriers.pop("#ERSYS", None), self._frame("$ERSYSROOT", IDENTITY)
         return MachineData(
             name=self._text("$TRAFONAME").removeprefix("#"),
             version=self._text("$V_R1MADA"),
             axes=axes,
             externals=externals,
-            carrier=self._carrier(externals),
+            carrier=None if foot is None else foot.with_frames(root, IDENTITY),
+            tables=carriers,
             robroot=self._frame("$ROBROOT", default=IDENTITY),
             tiroro=self._frame("$TIRORO"),
             length_a=self._number("$LENGTH_A"),
@@ -303,13 +308,17 @@ class _Reader:
             return other
         return replace(axis, direction=other.direction)
 
-    def _carrier(self, externals: Sequence[Axis]) -> Carrier | None:
-        """The external kinematic system that carries the robot, of those that $EX_KIN names."""
+    def _carriers(self, externals: Sequence[Axis]) -> dict[str, Carrier]:
+        """The external kinematic systems that $EX_KIN names."""
         kinds = self._members("$EX_KIN", default={})
-        found = [i for i in _numbers(_MOST_EXTERNAL) if kinds.get(f"ET{i}") == "#ERSYS"]
-        if not found:
-            return None
-        name = f"$ET{found[0]}"
+        names = {i: kinds.get(f"ET{i}") for i in _numbers(_MOST_EXTERNAL)}
+        return {
+            name: self._carrier(f"$ET{i}", externals)
+            for i, name in names.items()
+            if isinstance(name, str) and name != "#NONE"
+        }
+
+    def _carrier(self, name: str, externals: Sequence[Axis]) -> Carrier:
         named = self._members(f"{name}_AX", default={})
         words = [str(named.get(f"TR_A{i}", "#NONE")) for i in _numbers(3)]
         words = words[: words.index("#NONE")] if "#NONE" in words else words
@@ -328,7 +337,7 @@ class _Reader:
             for column, frame in zip(columns, frames, strict=False)
         )
         rest = reduce(matmul, frames[len(columns) :])
-        return Carrier(Chain(joints, rest), tuple(columns), self._frame("$ERSYSROOT", IDENTITY))
+        return Carrier(Chain(joints, rest), tuple(columns))
 
     def _axis(self, number: int) -> Axis:
         kind = self._kind(number)

@@ -21,6 +21,8 @@ from interp.values.poses import IDENTITY, Pose
 
 __all__ = ["IpoMode", "Placement"]
 
+Array = npt.NDArray[np.float64]
+
 
 class IpoMode(Enum):
     """$IPO_MODE: which frame the path is planned in."""
@@ -34,7 +36,7 @@ class Placement:
     """The frames in force, each with the value of its system variable.
 
     Where a ``carrier`` has the robot, its foot is not at ``robroot`` but where external axes have
-    brought it: `at` says where.
+    brought it, and so is the base on a ``table``: `at` says where.
     """
 
     base: Pose = IDENTITY
@@ -42,19 +44,31 @@ class Placement:
     robroot: Pose = IDENTITY
     mode: IpoMode = IpoMode.BASE
     carrier: Carrier | None = None
+    table: Carrier | None = None
+
+    @property
+    def is_carried(self) -> bool:
+        """Whether a frame moves with external axes."""
+        return self.carrier is not None or self.table is not None
 
     def at(self, externals: Sequence[float]) -> Placement:
-        """The frames where external axes stand, which may carry the robot."""
-        if self.carrier is None:
+        """The frames where external axes stand."""
+        if not self.is_carried:
             return self
-        return replace(self, robroot=self.carrier.pose(externals), carrier=None)
+        robroot = self.robroot if self.carrier is None else self.carrier.pose(externals)
+        base = self.base if self.table is None else self.table.pose(externals)
+        return replace(self, robroot=robroot, base=base, carrier=None, table=None)
 
-    def befores(self, externals: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one of (4, 4) for all."""
-        if self.carrier is None:
+    def feet(self, externals: Array) -> Array:
+        """The foot of the robot where external axes ``(n, axes)`` stand: (n, 4, 4), or (4, 4)."""
+        return _poses(self.robroot, self.carrier, externals)
+
+    def befores(self, externals: Array) -> Array:
+        """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one (4, 4) for all."""
+        if not self.is_carried:
             return np.array(self.before.matrix, dtype=np.float64)
-        feet = np.linalg.inv(self.carrier.poses(externals)).astype(np.float64)
-        return feet @ np.array(self.base.matrix, dtype=np.float64)
+        feet = np.linalg.inv(self.feet(externals)).astype(np.float64)
+        return feet @ _poses(self.base, self.table, externals)
 
     @property
     def before(self) -> Pose:
@@ -77,3 +91,9 @@ class Placement:
     def in_path(self, point: Pose) -> Pose:
         """The pose that is interpolated for a point."""
         return point if self.mode is IpoMode.BASE else point.inverse()
+
+
+def _poses(fixed: Pose, carrier: Carrier | None, externals: Array) -> Array:
+    if carrier is None:
+        return np.array(fixed.matrix, dtype=np.float64)
+    return carrier.poses(externals)

@@ -319,7 +319,7 @@ class PosePathCurve:
 
     def _befores(self, u: Array) -> Array:
         """What comes before the points of the path in the chain to the flange."""
-        if self.placement.carrier is None:
+        if not self.placement.is_carried:
             return self._before
         return self.placement.befores(self.others.at(u))
 

@@ -214,7 +214,7 @@ class Tracking:
             poses = before @ standing
             points[rows, :3] = poses[:, :3, 3]
             points[rows, 3:] = _angles(poses)
-            tips[rows] = (matrix_of(placement.base) @ poses)[:, :3, 3]
+            tips[rows] = (placement.feet(axes[rows, ROBOT_AXES:]) @ standing)[:, :3, 3]
         return points, tips
 
     def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:

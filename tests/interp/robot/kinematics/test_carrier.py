@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grammar.syntax.source import Source
 from interp.port.requests import At
+from interp.program.load import load
 from interp.robot.arm import Motion, Settings
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError, read_machine
 from interp.robot.kinematics.placement import Placement
+from interp.session import RunSetup, run_program
 from interp.values.poses import Pose
 
 pytest.importorskip("ruckig")
@@ -116,3 +119,41 @@ def test_a_ptp_reaches_its_point_on_the_unit(unit: MachineData) -> None:
     axes, points = travelled(unit, "PTP", {"X": 20.0, "Y": 30.0, "Z": -10.0, "E1": 100.0})
     assert 100.0 == pytest.approx(axes[-1, 6] - axes[0, 6])
     assert points[-1, :3] - points[0, :3] == pytest.approx((20.0, 30.0, -10.0), abs=1e-5)
+
+
+TABLE = (
+    "INT $EX_AX_NUM=1",
+    "DECL EX_KIN $EX_KIN={ET1 #EASYS,ET2 #NONE}",
+    "DECL ET_AX $ET1_AX={TR_A1 #E1,TR_A2 #NONE}",
+    "FRAME $ET1_TFLA3={X 0.0,Y 0.0,Z 60.0,A 0.0,B 0.0,C 0.0}",
+)
+"""A turntable that E1 turns about its Z."""
+ON_TABLE = """DEF CELL()
+DECL FRAME root, offset
+$TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}
+$BASE=$NULLFRAME
+PTP {A1 0,A2 -90,A3 100,A4 0,A5 60,A6 0,E1 0}
+root={X 500,Y 0,Z 300,A 0,B 0,C 0}
+offset={X 100,Y 0,Z 0,A 0,B 0,C 0}
+$BASE=EK(root,#EASYS,offset)
+LIN {X 0,Y 0,Z 150,A 0,B 90,C 0,E1 0}
+LIN {E1 40}
+END
+"""
+
+
+def test_a_base_on_a_turntable(machine_text: Callable[..., str]) -> None:
+    """With $BASE=EK(...) the tool rides on the table: still in the base, on an arc in the world."""
+    machine = read_machine(machine_text(*TABLE))
+    program = load([Source(ON_TABLE, "cell.src")], "cell.src")
+    ran = run_program(program, RunSetup(robot="kinematic", machine=machine))
+    assert "end" == ran.outcome.ending, ran.outcome.error
+    assert ran.path is not None
+    rows = ran.path.axes[:, 6] > 0.0
+    assert rows.sum() > 20
+    points, tips = ran.path.points[rows], ran.path.tips[rows]
+    np.testing.assert_allclose(points[:, :3], [(0.0, 0.0, 150.0)] * len(points), atol=1e-2)
+    angles = np.radians(ran.path.axes[rows, 6])
+    arc = np.stack((500.0 + 100.0 * np.cos(angles), 100.0 * np.sin(angles)), axis=1)
+    np.testing.assert_allclose(tips[:, :2], arc, atol=1e-2)
+    np.testing.assert_allclose(tips[:, 2], 300.0 + 60.0 + 150.0, atol=1e-2)
