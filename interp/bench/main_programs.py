@@ -116,7 +116,7 @@ def main_programs(
             program.main.module.suffix == ".src"
             and _is_of_users(path, is_controller=program.project.is_controller)
             and program.can_begin(first)
-            and first.node.name.key in moving[key]
+            and (_moves(first.node) or calls_in(first.node.body) & moving[key])
             and first.node.name.key not in called[key]
         )
         if is_wanted:
@@ -146,7 +146,7 @@ def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
     for routine in program.routines.values():
         key = routine.node.name.key
         calls.setdefault(key, set()).update(calls_in(routine.node.body))
-        if any(isinstance(node, _MOVES) for one in routine.node.body for node in walk(one)):
+        if _moves(routine.node):
             moving.add(key)
     grows = True
     while grows:
@@ -157,6 +157,11 @@ def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
     chosen = calls.get(_CHOOSES, set())
     others = {one for name, found in calls.items() if name != _CHOOSES for one in found - {name}}
     return (called - chosen) | (chosen & others), moving
+
+
+def _moves(routine: ast.Routine) -> bool:
+    """Whether a routine moves the arm itself."""
+    return any(isinstance(node, _MOVES) for one in routine.body for node in walk(one))
 
 
 def _has_machine(program: CheckedProgram) -> bool:
