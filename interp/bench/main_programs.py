@@ -10,8 +10,9 @@ that obliges: the inputs that a WAIT FOR waits for come after a second.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
@@ -45,12 +46,15 @@ _SUBMIT_REQUESTS: Final = 20
 _CHOOSES: Final = "CELL"
 _MOVES: Final = (ast.Motion, ast.SplineBlock)
 
+#: A line that something was told of so often lies in a loop.
+_ROUNDS: Final = 100
 #: So long in µs may the arm stand before a program counts as one that waits.
 PATIENCE: Final = 20_000_000
 
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
-#: ``goes on`` where it still moved when its time was over, ``unlinked`` at what no file has,
-#: ``refused`` where it could not begin, ``cpu`` where it has taken too long for whoever waits.
+#: ``goes on`` where it still moved, or went round in a loop, when its time was over, ``unlinked``
+#: at what no file has, ``refused`` where it could not begin, ``cpu`` where it has taken too long
+#: for whoever waits.
 Result = Literal[
     "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "cpu", "refused", "crash"
 ]
@@ -207,7 +211,9 @@ def run_main(
     except LinkError as error:
         return Ran("refused", 0.0, 0, reason=str(error))
     except _Over:
-        return Ran("cpu", seen.now / 1e6, seen.motions, at=seen.at)
+        over: Result = "goes on" if seen.visits[seen.at] >= _ROUNDS else "cpu"
+        reason = "no CPU time is left"
+        return Ran(over, seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     except ScriptError:
         raise
     except Exception as error:
@@ -257,8 +263,10 @@ class _Seen:
     motions: int = 0
     now: int = 0
     at: str = ""
+    visits: Counter[str] = field(default_factory=Counter)
 
     def take(self, event: TraceEvent) -> None:
         self.motions += event.kind == "motion_end"
         if event.task == "robot":
             self.at = event.place or self.at
+            self.visits[self.at] += 1
