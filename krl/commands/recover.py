@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from krl.commands.recover_auto import recover_auto
 from krl.construct_ledger import expected_errors
-from krl.errors import FINDINGS, FINE
+from krl.errors import FINDINGS, FINE, InputError
 from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
@@ -60,6 +61,26 @@ def recover(
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 when a file does not parse.")
     ] = False,
+    auto: Annotated[
+        bool,
+        typer.Option("--auto", help="Let the grammar grow by itself, from preliminary.g4 or FILE."),
+    ] = False,
+    hold_out: Annotated[
+        float,
+        typer.Option(
+            metavar="FRACTION", help="With --auto: origins to be read and not learnt from."
+        ),
+    ] = 0.0,
+    seed: Annotated[
+        int, typer.Option(metavar="N", help="With --auto: draws the origins held out.")
+    ] = 1,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="With --auto: go on from what DIR holds.")
+    ] = False,
+    strike: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ID", help="With --auto: go on from DIR without this step."),
+    ] = None,
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
     from grammar.notation.g4 import read_file
@@ -70,6 +91,26 @@ def recover(
 
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
+    if auto:
+        first = grammar or GRAMMAR.with_name("preliminary.g4")
+        with expected_errors():
+            chosen = read_file(first)
+            given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
+            rejected = load(given) if given else ()
+        return recover_auto(
+            roots,
+            chosen,
+            first.name,
+            out,
+            json_file,
+            rejected,
+            fraction=hold_out,
+            seed=seed,
+            strike=strike or (),
+            resume=resume,
+        )
+    if hold_out or resume or strike:
+        raise InputError("--hold-out, --resume and --strike belong to --auto")
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():
         chosen = read_file(grammar or GRAMMAR)

@@ -51,6 +51,10 @@ class RuleMatcher:
             found = self._spans[kinds] = frozenset(rule for rule, state in read if ends(state))
         return found
 
+    def begun_by(self, kinds: tuple[int, ...]) -> frozenset[str]:
+        """Rules of which these tokens are the beginning of a sentence."""
+        return frozenset(self._read(kinds))
+
     def _read(self, kinds: tuple[int, ...]) -> Mapping[str, State]:
         """Rules that can begin with these tokens, with the state behind them.
 

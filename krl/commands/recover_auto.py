@@ -1,0 +1,162 @@
+"""`krl recover --auto`: the grammar grows by itself, round after round."""
+
+import json
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from krl.construct_ledger import expected_errors
+from krl.errors import FINE, InputError
+from krl.output_files import write_json
+
+if TYPE_CHECKING:
+    from grammar.notation.edits import Edit
+    from grammar.notation.model import Grammar
+    from recovery.induction.growth_record import Growth
+    from recovery.negatives.negatives import Negative
+
+__all__ = ["recover_auto"]
+
+# Generated negatives by which edits are tried, and their seed, which is none of the benches'.
+_NEGATIVES = 1_500
+_SEED = 11
+
+
+def recover_auto(
+    roots: Sequence[Path],
+    start: "Grammar",
+    name: str,
+    out: Path,
+    json_file: Path | None,
+    negatives: "Sequence[Negative]",
+    *,
+    fraction: float,
+    seed: int,
+    strike: Sequence[str],
+    resume: bool,
+) -> int:
+    """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
+
+    Everything is written after each round, so that what was done stays when it is interrupted.
+    """
+    from recovery.induction.corpus_lines import held_out, read_files
+    from recovery.induction.rounds import Induction
+    from recovery.negatives.generate import generate
+    from recovery.negatives.negatives import NegativeSet
+
+    if not 0 <= fraction < 1:
+        raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
+    began = time.monotonic()
+    with expected_errors():
+        files = read_files(roots)
+        growth, struck = _begun(start, out, strike, resume=resume)
+    shown, held, origins = held_out(files, fraction, seed)
+    if not shown:
+        raise InputError("no file is left to learn from: hold out less")
+    every = NegativeSet((*negatives, *generate(count=_NEGATIVES, seed=_SEED)))
+    induction = Induction(growth.grammar, shown, held, every, struck=struck)
+    record: dict[str, Any] = {
+        "start": name,
+        "start_sha256": growth.start.sha256,
+        "held_out": list(origins),
+        "seed": seed,
+        "rounds": growth.rounds,
+        "finished": False,
+        "version": metadata.version("krl-workbench"),
+    }
+    try:
+        for done in induction.rounds():
+            growth.add(done)
+            _say(len(growth.rounds), growth)
+            _write(growth, record, out, json_file, struck, began)
+        record["finished"] = True
+    except KeyboardInterrupt:
+        typer.echo(f"interrupted; {out} holds what was done, --resume goes on", err=True)
+    page = _write(growth, record, out, json_file, struck, began)
+    typer.echo(f"{out / 'grammar.g4'}: {len(growth.constructs)} steps; {page}")
+    return FINE
+
+
+def _begun(
+    start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
+) -> "tuple[Growth, list[tuple[Edit, ...]]]":
+    """Where to go on, and the edits that are not to be taken again."""
+    from grammar.notation.edits import from_data
+    from grammar.notation.g4 import read_file
+    from recovery.induction.growth_record import Growth, without
+    from recovery.ledger.ledger import Ledger, in_force
+    from support.files.untrusted import read_bytes
+
+    if not (resume or strike):
+        return Growth(start, start), []
+    if not (out / "start.g4").is_file():
+        raise InputError(f"{out}: there is nothing to go on from")
+    start = read_file(out / "start.g4")
+    constructs = list(Ledger.read(out / "constructs").constructs)
+    struck_file = out / "struck.json"
+    struck: list[tuple[Edit, ...]] = []
+    if struck_file.is_file():
+        try:
+            known = json.loads(read_bytes(struck_file))
+            struck = [tuple(from_data(edit) for edit in edits) for edits in known]
+        except (ValueError, TypeError, AttributeError) as error:
+            raise InputError(f"{struck_file}: {error}") from None
+    unknown = set(strike) - {construct.id for construct in constructs}
+    if unknown:
+        raise InputError(f"{out / 'constructs'}: no construct {', '.join(sorted(unknown))}")
+    struck += [c.edits for c in constructs if c.id in strike]
+    left, gone = without(start, constructs, strike)
+    for construct in gone:
+        typer.echo(f"struck out: {construct.id} {construct.title}")
+    return Growth(start, in_force(start, left), left), struck
+
+
+def _say(number: int, growth: "Growth") -> None:
+    last = growth.rounds[-1]
+    typer.echo(
+        f"round {number}: {_share(last['shown'])} of the files shown parse"
+        + (f", {_share(last['held'])} of those held out" if last["held"]["files"] else "")
+        + f"; {len(last['taken'])} steps taken"
+    )
+
+
+def _share(reading: dict[str, int]) -> str:
+    return f"{reading['parsed']:,} of {reading['files']:,}"
+
+
+def _write(
+    growth: "Growth",
+    record: dict[str, Any],
+    out: Path,
+    json_file: Path | None,
+    struck: "Sequence[Sequence[Edit]]",
+    began: float,
+) -> Path:
+    """Write everything; returns the page."""
+    from grammar.notation.edits import to_data
+    from recovery.ledger.construct_file import text_of
+    from reports.auto_page import write_auto_page
+    from support.files.atomic_write import write_atomic
+
+    record["seconds"] = round(time.monotonic() - began, 1)
+    record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
+    record["grammar_sha256"] = growth.grammar.sha256
+    folder = out / "constructs"
+    wanted = {f"{construct.id}.toml": construct for construct in growth.constructs}
+    for file in folder.glob("*.toml") if folder.is_dir() else ():
+        if file.name not in wanted:
+            file.unlink()
+    for file_name, construct in wanted.items():
+        write_atomic(folder / file_name, text_of(construct).encode())
+    write_atomic(out / "start.g4", growth.start.text.encode())
+    write_atomic(out / "grammar.g4", growth.grammar.text.encode())
+    struck_data = [[to_data(edit) for edit in edits] for edits in struck]
+    write_atomic(out / "struck.json", json.dumps(struck_data).encode())
+    write_json(record, out / "auto.json")
+    write_json(record, json_file)
+    return write_auto_page(record, out)

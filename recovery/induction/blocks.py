@@ -1,0 +1,167 @@
+"""Blocks of several lines: an opening word, lines inside, a closing word.
+
+One line does not show a block. So whole files are counted through: two words that lead lines open
+and close a block if they are in balance in nearly every file that has one of them. Words whose
+lines are only found right inside of such a block divide it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from recovery.induction.symbols import Token
+
+__all__ = ["BlockLines", "SourceFile", "find_blocks"]
+
+#: A line as its leading word, empty where it has none, and its tokens.
+_Line = tuple[str, tuple[Token, ...]]
+# The least share of files in which a pair of words is in balance; damaged files are the others.
+_BALANCED_SHARE = 0.95
+_LEAST_FILES = 3
+_LEAST_ORIGINS = 2
+_MOST_MIDDLES = 3
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """The lines of a file that say something, and the origins it comes from."""
+
+    lines: tuple[_Line, ...]
+    origins: frozenset[str]
+
+
+@dataclass(slots=True)
+class BlockLines:
+    """The lines of all blocks with the same words.
+
+    ``middles`` are those that divide it, in their order, with how often they come: ``?``, ``+`` or
+    ``*``; ``has_body`` says whether other lines come before the first of them.
+    """
+
+    opener: str
+    closer: str
+    headers: list[tuple[Token, ...]] = field(default_factory=list)
+    closers: list[tuple[Token, ...]] = field(default_factory=list)
+    middles: dict[str, list[tuple[Token, ...]]] = field(default_factory=lambda: defaultdict(list))
+    often: dict[str, str] = field(default_factory=dict)
+    has_body: bool = False
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The words that lead lines which only such a block has."""
+        return frozenset({self.opener, self.closer, *self.middles})
+
+
+def find_blocks(files: Sequence[SourceFile], free: Iterable[str]) -> list[BlockLines]:
+    """The blocks that words open which the grammar has no use for, ``free``; the most found first.
+
+    Of two words that might open or close a block the one wins that does in more files, then the
+    one with more lines between.
+    """
+    words = sorted(set(free))
+    having: Mapping[str, list[int]] = {w: [] for w in words}
+    counts = [Counter(lead for lead, _ in file.lines) for file in files]
+    for number, count in enumerate(counts):
+        for word in having.keys() & count.keys():
+            having[word].append(number)
+    pairs = []
+    for opener in words:
+        for closer in words:
+            if opener == closer or not _is_pair(opener, closer, files, counts, having):
+                continue
+            places = {*having[opener], *having[closer]}
+            inside = sum(_inside(opener, closer, files[n].lines) for n in places)
+            pairs.append((-len(places), -inside, opener, closer))
+    found: list[BlockLines] = []
+    taken: set[str] = set()
+    for _, _, opener, closer in sorted(pairs):
+        if not taken.intersection((opener, closer)):
+            block = _gathered(opener, closer, files, set(words) - taken)
+            if block is not None:
+                taken |= block.words
+                found.append(block)
+    return found
+
+
+def _is_pair(
+    opener: str,
+    closer: str,
+    files: Sequence[SourceFile],
+    counts: Sequence[Counter[str]],
+    having: Mapping[str, list[int]],
+) -> bool:
+    places = sorted({*having[opener], *having[closer]})
+    equal = [n for n in places if counts[n][opener] == counts[n][closer]]
+    needed = max(_LEAST_FILES, min(_BALANCED_SHARE * len(places), len(places) - 1))
+    if len(equal) < needed:
+        return False
+    good = [n for n in equal if _is_balanced(opener, closer, files[n].lines)]
+    origins = frozenset[str]().union(*(files[n].origins for n in good))
+    return len(good) >= needed and len(origins) >= _LEAST_ORIGINS
+
+
+def _is_balanced(opener: str, closer: str, lines: Sequence[_Line]) -> bool:
+    """Whether each opener has its closer behind it, with something between in some block."""
+    depth = 0
+    for lead, _ in lines:
+        depth += (lead == opener) - (lead == closer)
+        if depth < 0:
+            return False
+    return not depth
+
+
+def _inside(opener: str, closer: str, lines: Sequence[_Line]) -> int:
+    """How many lines are between an opener and its closer: of two openers the outer one counts."""
+    depth = found = 0
+    for lead, _ in lines:
+        depth += (lead == opener) - (lead == closer)
+        found += depth > 0
+    return found
+
+
+def _gathered(
+    opener: str, closer: str, files: Sequence[SourceFile], free: set[str]
+) -> BlockLines | None:
+    block = BlockLines(opener, closer)
+    outside: set[str] = set()
+    seen: list[Counter[str]] = []
+    lengths: list[int] = []
+    order: dict[str, None] = {}
+    inside: dict[str, list[tuple[Token, ...]]] = defaultdict(list)
+    first: list[str] = []
+    for file in files:
+        open_: list[Counter[str]] = []
+        for lead, tokens in file.lines:
+            if lead == opener:
+                open_.append(Counter())
+                block.headers.append(tokens)
+            elif lead == closer and open_:
+                block.closers.append(tokens)
+                done = open_.pop()
+                lengths.append(sum(done.values()))
+                seen.append(done)
+            elif open_:
+                if not open_[-1]:
+                    first.append(lead)
+                open_[-1][lead] += 1
+                if lead in free:
+                    inside[lead].append(tokens)
+                    order.setdefault(lead)
+            elif lead in free:
+                outside.add(lead)
+    if not any(lengths):  # nothing is ever between: two statements that come in pairs
+        return None
+    middles = [word for word in order if word not in outside]
+    # a middle divides: it recurs in most of the blocks
+    middles = [w for w in middles if sum(w in s for s in seen) * 3 >= len(seen)]
+    if len(middles) > _MOST_MIDDLES:
+        middles = []
+    for word in middles:
+        block.middles[word] = inside[word]
+        often = max(s[word] for s in seen) > 1
+        missing = any(not s[word] for s in seen)
+        block.often[word] = ("*" if missing else "+") if often else ("?" if missing else "")
+    block.has_body = not middles or sum(w not in middles for w in first) * 20 > len(first)
+    return block

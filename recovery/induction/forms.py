@@ -1,0 +1,416 @@
+"""Forms: one text of a rule that reads all lines, or all contents of brackets, of one kind.
+
+Commas become lists first. Then every symbol is named by the word or sign before it, so that the
+operand behind ``TO`` is another one than that behind ``STEP``; words that only some lines have are
+passed over for this. What is left is a chain (`recovery.induction.chain`), and each operand in it
+is written as the narrowest rules that read all examples of it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
+from recovery.induction.chain import Factor, chain_of
+from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
+
+__all__ = ["FormWriter", "samples_of"]
+
+# The part of what one rule reads that two may read together to be preferred.
+_MUCH_LESS = 0.8
+# Lists of so many kinds, none of them longer than this, are never longer.
+_MANY_LISTS = 8
+_SHORT_LIST = 3
+_COMMA = "','"
+#: A list of pieces with commas between: its text is this, ``inside`` is none.
+_LIST = "…"
+
+
+@dataclass(frozen=True, slots=True)
+class _Key:
+    """What makes a symbol of a form the same in two lines: its text, and what it follows."""
+
+    text: str
+    after: str
+    number: int
+
+
+class FormWriter:
+    """Writes forms for one grammar; ``operands`` of the corpus tell what is narrow."""
+
+    def __init__(self, reader: SymbolReader, operands: Iterable[tuple[int, ...]]) -> None:
+        self.reader = reader
+        self.rules = rules = reader.rules
+        self._reads: dict[str, int] = Counter(
+            rule for kinds in operands for rule in rules.matcher.rules_for(kinds)
+        )
+
+    def form(self, lines: Sequence[Sequence[Symbol]]) -> str | None:
+        """The text of a rule that reads all the lines; ``None`` where an operand has no rule."""
+        some = [line for line in lines if line]
+        if len(some) < len(lines):
+            text = self.form(some) if some else ""
+            return text and f"({text})?"
+        lines = self._opened([tuple(line) for line in lines])
+        items = self._items(lines)
+        if items is not None:
+            lines, item = items
+            if item is None:
+                return None
+        else:
+            item = ""
+        keyed = _keyed(lines)
+        factors = chain_of([[key for key, _ in line] for line in keyed])
+        met: dict[_Key, list[Symbol]] = defaultdict(list)
+        for line in keyed:
+            for key, symbol in line:
+                met[key].append(symbol)
+        texts = []
+        for factor in factors:
+            text = self._factor(factor, met, item)
+            if text is None:
+                return None
+            texts.append(text)
+        present = [
+            tuple(any(key in factor.symbols for key, _ in line) for line in keyed)
+            for factor in factors
+        ]
+        return _joined(factors, texts, present)
+
+    def _opened(self, lines: Sequence[tuple[Symbol, ...]]) -> list[tuple[Symbol, ...]]:
+        """The lines with calls taken apart where others have brackets that are of no call.
+
+        ``DEFFCT INT F(X)`` stands beside ``DEFFCT INT F(X:IN)``.
+        """
+        signs = {
+            right.text
+            for line in lines
+            for left, right in pairwise(line)
+            if left.is_operand and right.inside is not None
+        }
+        return [tuple(p for s in line for p in self._parts(s, signs)) for line in lines]
+
+    def _parts(self, symbol: Symbol, signs: set[str]) -> tuple[Symbol, ...]:
+        kinds = symbol.operand.kinds if symbol.operand else ()
+        display = self.rules.recognizer.lexer.display
+        for start in range(1, len(kinds)):
+            if f"'{display[kinds[start]]}'" in signs:
+                tokens = [(kind, None) for kind in kinds]
+                if self.reader.closer(tokens, start) == len(kinds) - 1:
+                    inside = self.reader.symbols(tokens[start + 1 : -1], atoms=True)
+                    return (
+                        Symbol("", Operand(kinds[:start])),
+                        Symbol(f"'{display[kinds[start]]}'", None, inside),
+                    )
+        return (symbol,)
+
+    # ------------------------------------------------------------------------------------ lists
+
+    def _items(
+        self, lines: Sequence[tuple[Symbol, ...]]
+    ) -> tuple[list[tuple[Symbol, ...]], str | None] | None:
+        """The lines with lists as one symbol, and the text of a list; ``None`` without any."""
+        cut = [_split(line) for line in lines]
+        behind = [piece for pieces in cut for piece in pieces[1:]]
+        if not behind:
+            return None
+        shapes = {tuple(s.text for s in piece) for piece in behind}
+        longest = max(map(len, shapes))
+        item = self.form([piece for piece in behind if piece]) if longest else None
+        out = []
+        ahead: list[tuple[Symbol, ...]] = []
+        for pieces in cut:
+            first = pieces[0]
+            size = _suffix(first, shapes, longest)
+            ahead.append(first[len(first) - size :])
+            out.append((*first[: len(first) - size], Symbol(_LIST)))
+        if not longest:  # commas alone
+            return out, "','*"
+        item = self.form([piece for piece in (*behind, *ahead) if piece])
+        if item is None:
+            return out, None
+        single = item
+        if any(not piece for piece in (*behind, *ahead)):
+            single = item if " " not in item else f"({item})"
+            if single[-1] in "?*":
+                return out, None
+            single += "?"
+        if len(cut) >= _MANY_LISTS and max(map(len, cut)) <= _SHORT_LIST:
+            text = ""
+            for _ in range(max(map(len, cut)) - 1):
+                text = f" (',' {single}{text})?"
+            return out, f"{single}{text}"
+        return out, f"{single} (',' {single})*"
+
+    # ---------------------------------------------------------------------------------- factors
+
+    def _factor(self, factor: Factor[_Key], met: dict[_Key, list[Symbol]], item: str) -> str | None:
+        words, operands = [], []
+        for key in factor.symbols:
+            some = met[key][0]
+            if key.text == _LIST:
+                words.append(item)
+            elif some.inside is not None:
+                inside = self.form([s.inside or () for s in met[key]])
+                if inside is None:
+                    return None
+                within = f"{inside} " if inside else ""
+                words.append(f"{key.text} {within}'{BRACKETS[key.text.strip(chr(39))]}'")
+            elif some.operand is not None:
+                operands += [s.operand for s in met[key] if s.operand]
+            else:
+                words.append(key.text)
+        if operands:
+            rules = self.cover(operands)
+            if rules is None:
+                return None
+            words += rules
+        text = " | ".join(dict.fromkeys(words))
+        is_one = len(words) == 1 and " " not in text
+        if factor.often:
+            return f"{text if is_one else f'({text})'}{factor.often}"
+        return text if len(words) == 1 else f"({text})"
+
+    def cover(self, operands: Sequence[Operand]) -> list[str] | None:
+        """The narrowest rules or tokens that read the operands together; ``None`` without any."""
+        names = self.rules.recognizer.lexer.names
+        kinds = {o.kinds for o in operands if o.kinds}
+        needed = {o.rule for o in operands if o.rule}
+        single = {k[0] for k in kinds if len(k) == 1}
+        if not needed and len(single) == len(kinds) == 1:
+            (kind,) = single
+            if kind == self.rules.recognizer.lexer.kind_of.get("NAME"):
+                return [self._name()]
+        usual = self.rules.usual
+        reads = {
+            rule: {k for k in kinds if rule in self.rules.matcher.rules_for(k)}
+            | {n for n in needed if self.rules.includes(rule, n)}
+            for rule in usual
+        }
+        left: set[object] = {*kinds, *needed}
+        whole = [rule for rule in usual if reads[rule] >= left]
+        if whole:
+            single_rule = min(whole, key=self._breadth)
+            return self._narrower(single_rule, reads, left) or [single_rule]
+        found: list[str] = []
+        while left:
+            best = max(usual, key=lambda r: (len(reads[r] & left), [-n for n in self._breadth(r)]))
+            if not reads[best] & left:
+                tokens = {names[k[0]] for k in left if isinstance(k, tuple) and len(k) == 1}
+                return [*found, *sorted(tokens)] if len(tokens) == len(left) else None
+            left -= reads[best]
+            found.append(best)
+        return found
+
+    def _narrower(
+        self, wide: str, reads: Mapping[str, set[tuple[int, ...] | str]], wanted: set[object]
+    ) -> list[str] | None:
+        """Two rules instead of a wide one, where they read much less together."""
+        usual = [r for r in self.rules.usual if reads[r] and r not in self.rules.including(wide)]
+        pairs = [
+            (self._reads[one] + self._reads[other], usual.index(one), usual.index(other))
+            for one in usual
+            for other in usual
+            if one < other and reads[one] | reads[other] >= wanted
+        ]
+        if not pairs or min(pairs)[0] > _MUCH_LESS * self._reads[wide]:
+            return None
+        _, first, second = min(pairs)
+        return [usual[first], usual[second]]
+
+    def _breadth(self, rule: str) -> tuple[int, ...]:
+        """What a rule reads, first of the corpus, then of what other rules are."""
+        usual = self.rules.usual
+        inner = sum(self.rules.includes(rule, other) for other in usual)
+        return self._reads[rule], inner, -self.rules.uses[rule], usual.index(rule)
+
+    def _name(self) -> str:
+        """What is written for a name."""
+        return self.rules.names or "NAME"
+
+
+def _split(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
+    pieces: list[list[Symbol]] = [[]]
+    for symbol in line:
+        if symbol.text == _COMMA:
+            pieces.append([])
+        else:
+            pieces[-1].append(symbol)
+    return [tuple(piece) for piece in pieces]
+
+
+def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int) -> int:
+    """How many symbols at the end of a list's first piece belong to the list."""
+    texts = {text for shape in shapes for text in shape}
+    if len(first) <= longest and texts.issuperset(s.text for s in first):
+        return len(first)
+    for size in range(min(longest, len(first)), 0, -1):
+        if tuple(s.text for s in first[len(first) - size :]) in shapes:
+            return size
+    return 0
+
+
+def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]:
+    """The symbols of lines with what makes them the same."""
+    shapes = {tuple(s.text for s in line) for line in lines}
+    passing = {
+        text
+        for shape in shapes
+        for place, text in enumerate(shape)
+        if text
+        and text[0] not in "'"
+        and text != _LIST
+        and (*shape[:place], *shape[place + 1 :]) in shapes
+    }
+    out = []
+    for line in lines:
+        after = ""
+        counts: Counter[str] = Counter()
+        keyed = []
+        for place, symbol in enumerate(line):
+            text = symbol.text
+            if symbol.is_operand:
+                # of operands side by side the last one is what is always there
+                number = 0
+                for behind in line[place + 1 :]:
+                    if behind.text in passing:
+                        continue
+                    if not behind.is_operand:
+                        break
+                    number += 1
+                key = _Key("", after, number)
+            elif text in passing or text == _LIST:
+                key = _Key(text, "", 0)
+            elif text.startswith("'"):
+                key = _Key(text, after, 0)
+                after = f"{after} {text}"[-60:]
+            else:
+                counts[text] += 1
+                key = _Key(text, "", counts[text])
+                after = f"{text}{counts[text]}"
+            keyed.append((key, symbol))
+        out.append(keyed)
+    return out
+
+
+def _joined(
+    factors: Sequence[Factor[_Key]], texts: Sequence[str], present: Sequence[tuple[bool, ...]]
+) -> str:
+    """The factors in a row: what comes and goes together in one group.
+
+    What excludes each other is a choice.
+    """
+    groups: list[tuple[list[str], tuple[bool, ...], bool]] = []
+    for factor, text, where in zip(factors, texts, present, strict=True):
+        optional = factor.often in ("?", "*")
+        bare = text[:-1] if factor.often == "?" else text
+        if factor.often == "*" and groups and groups[-1][2] and groups[-1][1] == where:
+            groups[-1][0].append(f"{text[:-1]}+")
+        elif optional and groups and groups[-1][2] and groups[-1][1] == where:
+            groups[-1][0].append(bare)
+        else:
+            groups.append(([bare if optional else text], where, optional))
+    out: list[str] = []
+    place = 0
+    while place < len(groups):
+        parts, where, optional = groups[place]
+        if not optional:
+            out += parts
+            place += 1
+            continue
+        choice = [parts]
+        taken = list(where)
+        place += 1
+        while place < len(groups) and groups[place][2]:
+            following = groups[place][1]
+            if any(a and b for a, b in zip(taken, following, strict=True)):
+                break
+            choice.append(groups[place][0])
+            taken = [a or b for a, b in zip(taken, following, strict=True)]
+            place += 1
+        text = " | ".join(" ".join(part) for part in choice)
+        if all(taken) and len(choice) > 1:
+            out.append(f"({text})")
+        elif len(choice) == 1 and len(parts) == 1 and text[-1] == "*":
+            out.append(text)
+        else:
+            is_one = len(choice) == 1 and len(parts) == 1 and (" " not in text or _is_group(text))
+            out.append(f"{text if is_one else f'({text})'}?")
+    return " ".join(out)
+
+
+def _is_group(text: str) -> bool:
+    """Whether a text is one group in parentheses."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return False
+    depth = 0
+    for left, right in pairwise(text.replace("'('", "   ").replace("')'", "   ") + " "):
+        depth += (left == "(") - (left == ")")
+        if not depth and right != " ":
+            return False
+        if not depth:
+            return right == " " and text.rstrip().endswith(")")
+    return True
+
+
+def samples_of(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
+    """What elements of a rule read, as symbols: with and without each part that may be left out."""
+    return [_grouped(line) for line in _sequences(rules, sequence)]
+
+
+def _grouped(symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
+    """The symbols with what is between two brackets as one of them."""
+    out: list[Symbol] = []
+    at = 0
+    while at < len(symbols):
+        text = symbols[at].text
+        closing = f"'{BRACKETS.get(text.strip(chr(39)), '')}'"
+        close = next((i for i in range(at, len(symbols)) if symbols[i].text == closing), None)
+        if text and close is not None:
+            out.append(Symbol(text, None, _grouped(symbols[at + 1 : close])))
+            at = close
+        else:
+            out.append(symbols[at])
+        at += 1
+    return tuple(out)
+
+
+def _sequences(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
+    lines: list[tuple[Symbol, ...]] = [()]
+    for element in sequence:
+        lines = [(*line, *more) for line in lines for more in _samples(rules, element)]
+        if len(lines) > _MOST_SAMPLES:
+            lines = lines[:_MOST_SAMPLES]
+    return lines
+
+
+_MOST_SAMPLES = 64
+
+
+def _samples(rules: OperandRules, element: Element) -> list[tuple[Symbol, ...]]:
+    match element:
+        case Group(alternatives=alternatives):
+            return [s for a in alternatives for s in _sequences(rules, a.elements)]
+        case Repeat(item=item, operator=operator):
+            once = _samples(rules, item)
+            return once if operator == "+" else [(), *once]
+        case Reference(name=name) if not name[0].isupper():
+            alternatives = rules.grammar.by_name[name].alternatives
+            if name in rules.reaches[name] and name in rules.ladder:
+                return [(Symbol("", Operand((), name)),)]
+            inner = [e for a in alternatives for e in walk(a)]
+            if rules.is_part(name) or any(isinstance(e, Literal) and e.text == "," for e in inner):
+                return [s for a in alternatives for s in _sequences(rules, a.elements)]
+            return [(Symbol("", Operand((), name)),)]
+        case Reference() | Literal():
+            token = rules.grammar.token_of(element)
+            lexer = rules.recognizer.lexer
+            kind = lexer.kind_of[token]
+            if rules.matcher.is_operand(kind):
+                return [(Symbol("", Operand((kind,))),)]
+            shown = lexer.display[kind]
+            return [(Symbol(token if lexer.is_keyword(kind) else f"'{shown}'"),)]
+    return []

@@ -1,0 +1,137 @@
+"""What a recovery of its own accord found, as a ledger and as a record.
+
+The ledger is a folder of constructs like that of the grammar in force
+(`recovery.ledger.ledger`), so it is read, shown and replayed by the same commands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
+from grammar.notation.model import Grammar, GrammarError
+from recovery.induction.rounds import Reading, Refused, Round, Taken
+from recovery.ledger.construct import Construct, Evidence
+from recovery.ledger.construct_file import name_from
+
+__all__ = ["Growth", "without"]
+
+_MOST_REFUSED = 40
+_LONGEST_EDIT = 1_000
+
+
+@dataclass(slots=True)
+class Growth:
+    """Steps so far: their constructs in order, the grammar after them, and the rounds as data."""
+
+    start: Grammar
+    grammar: Grammar
+    constructs: list[Construct] = field(default_factory=list)
+    rounds: list[dict[str, Any]] = field(default_factory=list)
+
+    def add(self, done: Round) -> list[Construct]:
+        """Take in a round; returns its constructs, which say only what is new in the grammar."""
+        before = self.grammar
+        added = [self._construct(step) for step in done.taken]
+        self.rounds.append(
+            {
+                "shown": _reading(done.shown),
+                "held": _reading(done.held),
+                "rules": sum(not rule.is_lexer for rule in before.rules),
+                "taken": [
+                    {
+                        "id": construct.id,
+                        "title": step.title,
+                        "edits": _described(before, construct.edits),
+                        "files": step.evidence.files,
+                        "origins": step.evidence.origins,
+                        "lines": step.evidence.lines,
+                        "seen": list(step.evidence.seen),
+                    }
+                    for step, construct in zip(done.taken, added, strict=True)
+                ],
+                "refused": [_refused(before, r) for r in _distinct(done.refused)[:_MOST_REFUSED]],
+            }
+        )
+        return added
+
+    def _construct(self, step: Taken) -> Construct:
+        edits = []
+        for edit in step.edits:
+            if not (isinstance(edit, AddToken | AddAlternative) and _is_there(self.grammar, edit)):
+                self.grammar = apply(self.grammar, [edit])
+                edits.append(edit)
+        evidence = Evidence(
+            step.evidence.files, step.evidence.origins, step.evidence.lines, seen=step.evidence.seen
+        )
+        construct = Construct(
+            name_from(step.title),
+            step.title,
+            tuple(edits),
+            number=len(self.constructs) + 1,
+            summary="Inferred from the lines that fail without it.",
+            evidence=evidence,
+        )
+        construct = replace(construct, state=construct.earned_state)
+        self.constructs.append(construct)
+        return construct
+
+
+def without(
+    start: Grammar, constructs: Sequence[Construct], struck: Iterable[str]
+) -> tuple[list[Construct], list[Construct]]:
+    """The constructs that are left when some are struck out, and those that went with them.
+
+    What no longer fits goes too; the numbers are given anew.
+    """
+    wanted = set(struck)
+    left: list[Construct] = []
+    gone: list[Construct] = []
+    grammar = start
+    for construct in constructs:
+        try:
+            after = grammar if construct.id in wanted else apply(grammar, construct.edits)
+        except GrammarError:
+            after = grammar
+        if after is grammar:
+            gone.append(construct)
+        else:
+            grammar = after
+            left.append(replace(construct, number=len(left) + 1))
+    return left, gone
+
+
+def _is_there(grammar: Grammar, edit: AddToken | AddAlternative) -> bool:
+    if isinstance(edit, AddToken):
+        return edit.name in grammar.by_name
+    rule = grammar.by_name[edit.rule]
+    return edit.text in {rule.source_of(alternative) for alternative in rule.alternatives}
+
+
+def _reading(reading: Reading) -> dict[str, int]:
+    return {"parsed": reading.parsed, "files": reading.files, "failing": reading.failing}
+
+
+def _described(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:
+    out = []
+    for edit in edits:
+        try:
+            out.append(describe(grammar, edit)[:_LONGEST_EDIT])
+        except (GrammarError, KeyError, IndexError):  # its place is of an edit before it
+            out.append(str(to_data(edit))[:_LONGEST_EDIT])
+    return out
+
+
+def _refused(grammar: Grammar, refused: Refused) -> dict[str, Any]:
+    return {
+        "title": refused.title,
+        "edits": _described(grammar, refused.edits),
+        "gain": round(refused.gain, 1),
+        "reason": refused.reason,
+    }
+
+
+def _distinct(refused: Iterable[Refused]) -> list[Refused]:
+    return list({(r.title, r.reason): r for r in refused}.values())

@@ -1,0 +1,91 @@
+"""Forms of literals that the lexer cuts apart: ``1.5E-3`` read as a number, a name, a sign.
+
+No two operands touch. Where a literal and a name do, they are one literal; its characters by class
+make a chain as the symbols of a line do.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+
+from grammar.notation.edits import AddAlternative
+from grammar.parser.lexer import Lexer
+from recovery.induction.chain import Factor, chain_of
+
+__all__ = ["split_literals"]
+
+_SIGNS = frozenset("+-")
+#: A class of characters and the last character before it that is no digit and no sign.
+_Class = tuple[str, str]
+
+
+def split_literals(
+    lines: Iterable[tuple[str, frozenset[str]]], lexer: Lexer
+) -> tuple[AddAlternative, frozenset[str], tuple[str, ...]] | None:
+    """The alternative that reads the split literals of lines, their origins, and some of them.
+
+    ``lines`` come with the origins that have them. ``None`` where none is split.
+    """
+    found: dict[str, set[str]] = defaultdict(set)
+    owners: Mapping[str, list[str]] = defaultdict(list)
+    for line, origins in lines:
+        for text, owner in _touching(line, lexer):
+            found[text] |= origins
+            owners[owner].append(text)
+    if not found:
+        return None
+    # the token with the longest beginning of its own: of 1.5E-3 that of 1.5, not that of 1
+    owner = max(owners, key=lambda o: (len(set(owners[o])), o))
+    factors = chain_of([_classes(text) for text in dict.fromkeys(owners[owner])])
+    everyone = frozenset[str]().union(*found.values())
+    text = " ".join(map(_written, factors))
+    return AddAlternative(owner, text), everyone, tuple(dict.fromkeys(owners[owner]))[:10]
+
+
+def _touching(line: str, lexer: Lexer) -> Iterable[tuple[str, str]]:
+    """Literals that are cut apart, with the token that their beginning was taken for."""
+    lexemes = lexer.lexemes(line)
+    kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
+    name = lexer.kind_of.get("NAME")
+    ends = []
+    at = 0
+    for lexeme in lexemes:  # where tokens are left out by the lexer they are missing here
+        start = line.find(lexeme, at)
+        at = start + len(lexeme)
+        ends.append((start, at))
+    for place in range(len(lexemes) - 1):
+        if kinds[place] <= 0 or not lexemes[place][:1].isdigit() or kinds[place + 1] != name:
+            continue
+        if ends[place][1] != ends[place + 1][0] or not lexemes[place + 1].isalnum():
+            continue
+        last = place + 1
+        has_exponent = (
+            place + 3 < len(lexemes)
+            and lexemes[last + 1] in _SIGNS
+            and lexemes[last + 2].isdigit()
+            and ends[last][1] == ends[last + 1][0]
+            and ends[last + 1][1] == ends[last + 2][0]
+        )
+        last += 2 * has_exponent
+        yield line[ends[place][0] : ends[last][1]].upper(), lexer.names[kinds[place]]
+
+
+def _classes(text: str) -> list[_Class]:
+    out: list[_Class] = []
+    behind = ""
+    for character in text:
+        sort = "digit" if character.isdigit() else "sign" if character in _SIGNS else character
+        if not out or out[-1][0] != sort:
+            out.append((sort, behind))
+        if sort not in ("digit", "sign"):
+            behind = character
+    return out
+
+
+def _written(factor: Factor[_Class]) -> str:
+    sorts = [sort for sort, _ in factor.symbols]
+    texts = {"digit": "[0-9]+", "sign": "[+\\-]"}
+    text = " | ".join(texts.get(s, f"[{s}]" if s.isalpha() else f"'{s}'") for s in sorts)
+    text = text if len(sorts) == 1 and not (factor.often and "+" in text[-1:]) else f"({text})"
+    return f"{text}{factor.often}"

@@ -1,0 +1,371 @@
+"""Lines as symbols: words and signs as they are, operands as one symbol each, brackets by pairs.
+
+An operand is what a rule of operands reads, as long as possible; which rules these are the grammar
+says. What no rule reads yet stays words, signs and groups in brackets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from grammar.notation.addresses import sequences
+from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, walk
+from grammar.parser.recognizer import Recognizer
+from recovery.proposals.keywords import Vocabulary
+from recovery.proposals.rule_matcher import RuleMatcher
+
+__all__ = [
+    "BRACKETS",
+    "Operand",
+    "OperandRules",
+    "Symbol",
+    "SymbolReader",
+    "Token",
+    "bracket_pairs",
+]
+
+#: Signs that come in pairs.
+BRACKETS: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
+# Signs behind a name at the head of a line.
+_BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})
+#: A token of a line: its kind, and the word it is meant as where the grammar lacks that.
+Token = tuple[int, str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """What was read as an operand: its kinds of token, or a rule that the grammar has there."""
+
+    kinds: tuple[int, ...] = ()
+    rule: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A word or sign with the ``text`` it has in a rule, an operand, or a group in brackets.
+
+    The ``inside`` of a group are the symbols between its brackets, ``text`` is the opening one.
+    """
+
+    text: str
+    operand: Operand | None = None
+    inside: tuple[Symbol, ...] | None = None
+
+    @property
+    def is_operand(self) -> bool:
+        """Whether it stands for an operand."""
+        return self.operand is not None
+
+
+class OperandRules:
+    """Which rules of a grammar read operands."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self.grammar = recognizer.grammar
+        self.recognizer = recognizer
+        self.matcher = RuleMatcher(recognizer)
+        parser = [rule for rule in self.grammar.rules if not rule.is_lexer]
+        self._called = {
+            rule.name: {
+                e.name for a in rule.alternatives for e in walk(a) if isinstance(e, Reference)
+            }
+            for rule in parser
+        }
+        self.reaches = {name: self._closure(name) for name in self._called}
+
+    def _closure(self, name: str) -> frozenset[str]:
+        found: set[str] = set()
+        todo = [name]
+        while todo:
+            fresh = self._called.get(todo.pop(), set()) - found
+            found |= fresh
+            todo += fresh
+        return frozenset(found)
+
+    @cached_property
+    def names(self) -> str | None:
+        """The rule of all names, where there is one: the only rule that has the token of names."""
+        having = [
+            rule.name
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            and any(
+                isinstance(e, Reference) and e.name == "NAME"
+                for a in rule.alternatives
+                for e in walk(a)
+            )
+        ]
+        return having[0] if len(having) == 1 else None
+
+    @cached_property
+    def within_lines(self) -> frozenset[str]:
+        """Rules that read nothing with a line end in it."""
+        end = self.recognizer.lexer.names[self.recognizer.line_kind]
+        return frozenset(n for n, called in self.reaches.items() if end not in called)
+
+    @cached_property
+    def recursive(self) -> frozenset[str]:
+        """The largest set of rules within a line that call each other: those of expressions."""
+        groups = {
+            frozenset(o for o in called & self.within_lines if name in self.reaches[o])
+            for name, called in self.reaches.items()
+            if name in called and name in self.within_lines
+        }
+        return max(groups, key=lambda g: (len(g), sorted(g)), default=frozenset())
+
+    @cached_property
+    def widest(self) -> str | None:
+        """The rule of all operands: of those that call each other the one most used outside."""
+        uses = {
+            name: sum(
+                name in called
+                for rule, called in self._called.items()
+                if rule not in self.recursive
+            )
+            for name in self.recursive
+        }
+        used = [name for name in sorted(uses) if uses[name]]
+        held = {name: sum(self.includes(name, other) for other in uses) for name in used}
+        return max(used, key=lambda name: (held[name], uses[name]), default=None)
+
+    @cached_property
+    def ladder(self) -> tuple[str, ...]:
+        """The rules that an operand may be all of, from the widest on: its levels of operators."""
+        found: list[str] = [self.widest] if self.widest else []
+        for name in found:
+            found += [n for n in self.alone(name) if n not in found]
+        return tuple(found)
+
+    def alone(self, name: str) -> Iterator[str]:
+        """Rules that a rule may consist of, nothing beside them."""
+        for alternative in self.grammar.by_name[name].alternatives:
+            needed = [e for e in alternative.elements if not _is_optional(e)]
+            if len(needed) == 1 and isinstance(needed[0], Reference) and not needed[0].is_token:
+                yield needed[0].name
+
+    def includes(self, wide: str, narrow: str) -> bool:
+        """Whether a rule may consist of another one."""
+        todo, seen = [wide], {wide}
+        while todo:
+            name = todo.pop()
+            if name == narrow:
+                return True
+            if name in self.grammar.by_name:
+                fresh = set(self.alone(name)) - seen
+                seen |= fresh
+                todo += fresh
+        return False
+
+    def including(self, rule: str) -> frozenset[str]:
+        """Rules that may consist of a rule, itself too."""
+        return frozenset(name for name in self._called if self.includes(name, rule))
+
+    @cached_property
+    def usual(self) -> tuple[str, ...]:
+        """Rules that may be written for an operand: those that other places use, in their order."""
+        inner = self.recursive - {self.widest}
+        return tuple(
+            rule.name
+            for rule in self.grammar.rules
+            if rule.name in self.within_lines and (rule.name not in inner or self.uses[rule.name])
+        )
+
+    @cached_property
+    def uses(self) -> Mapping[str, int]:
+        """How many rules use a rule, levels of operators left out."""
+        return {
+            name: sum(
+                name in called for rule, called in self._called.items() if rule not in self.ladder
+            )
+            for name in self.within_lines
+        }
+
+    @cached_property
+    def bracketed(self) -> Mapping[str, str]:
+        """The rule that is a pair of brackets and what is between, by the opening one."""
+        found: dict[str, str] = {}
+        for name in self.within_lines:
+            for alternative in self.grammar.by_name[name].alternatives:
+                pair = bracket_pairs(alternative)
+                is_whole = bool(pair) and pair[0][1:] == (0, len(alternative.elements) - 1)
+                if is_whole and len(self.grammar.by_name[name].alternatives) == 1:
+                    found[pair[0][0]] = name
+        return found
+
+    def is_part(self, rule: str) -> bool:
+        """Whether a rule is a part of one other rule and of nothing else."""
+        return rule not in self.ladder and sum(rule in c for c in self._called.values()) == 1
+
+    @cached_property
+    def beside(self) -> frozenset[tuple[str, str]]:
+        """Signs with the reserved words that some rule writes right behind them."""
+        found: set[tuple[str, str]] = set()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                for left, right in pairwise(sequence.elements):
+                    if isinstance(left, Literal):
+                        words = (e.name for e in walk(right) if isinstance(e, Reference))
+                        found.update((left.text, word) for word in words if word[0].isupper())
+        return frozenset(found)
+
+    def juxtaposes(self, sign: str) -> bool:
+        """Whether operands stand side by side between the brackets, and no expression does."""
+        rule = self.bracketed[sign]
+        called = set(self._called[rule])
+        for part in list(called):
+            if part in self._called and self.is_part(part):
+                called |= self._called.get(part, set())
+        return self.widest not in called
+
+
+def _is_optional(element: Element) -> bool:
+    return isinstance(element, Repeat) and element.operator != "+"
+
+
+def bracket_pairs(sequence: Alternative) -> list[tuple[str, int, int]]:
+    """Pairs of brackets that a sequence writes: the opening one, and the indices of both."""
+    out = []
+    elements = sequence.elements
+    for start, element in enumerate(elements):
+        if isinstance(element, Literal) and element.text in BRACKETS:
+            for end in range(start + 1, len(elements)):
+                other = elements[end]
+                if isinstance(other, Literal) and other.text == BRACKETS[element.text]:
+                    out.append((element.text, start, end))
+                    break
+    return out
+
+
+class SymbolReader:
+    """Reads tokens as symbols under one grammar."""
+
+    def __init__(self, rules: OperandRules) -> None:
+        self.rules = rules
+        self.lexer = rules.recognizer.lexer
+        recognizer = rules.recognizer
+        names = [rules.widest] if rules.widest else []
+        # what only follows an operand, as an index does, is none by itself
+        names += [n for n in rules.bracketed.values() if n not in rules.recursive]
+        self._starts = [recognizer.at_rule(name) for name in names]
+        # operands without operators: the lowest levels, and what is in brackets of its own
+        lowest = [n for n in rules.ladder if not any(rules.alone(n))]
+        self._atoms = [recognizer.at_rule(n) for n in (*lowest, *names[1:])]
+        self._longest: dict[tuple[bool, tuple[int, ...]], int] = {}
+        vocabulary = Vocabulary(recognizer)
+        kind_of = self.lexer.kind_of
+        self._type_words = frozenset(
+            kind_of[word]
+            for rule in recognizer.grammar.rules
+            if not rule.is_lexer and rule.name in rules.within_lines
+            for words in [vocabulary.words_of(rule.name)]
+            if words & {"NAME"} and rule.name != rules.names
+            for word in words
+        )
+
+    def symbols(self, tokens: Sequence[Token], *, atoms: bool = False) -> tuple[Symbol, ...]:
+        """The symbols of tokens, which are a line or part of one.
+
+        With ``atoms`` no operand has operators: ``X -1`` are two then.
+        """
+        out: list[Symbol] = []
+        at = 0
+        while at < len(tokens):
+            kind, word = tokens[at]
+            if kind == self.rules.recognizer.line_kind:
+                break
+            if at and not word and kind in self._type_words and self.lexer.is_keyword(kind):
+                length = 1
+            else:
+                length = 0 if word else self._operand(tokens, at, out, atoms=atoms)
+            if length:
+                out.append(Symbol("", Operand(tuple(k for k, _ in tokens[at : at + length]))))
+                at += length
+                continue
+            text = word or self.text(kind)
+            close = self.closer(tokens, at)
+            if close is not None:
+                out.append(self._group(text, tokens[at : close + 1]))
+                at = close + 1
+                continue
+            out.append(Symbol(text))
+            at += 1
+        return tuple(out)
+
+    def _group(self, text: str, tokens: Sequence[Token]) -> Symbol:
+        """A group in brackets; the rule that reads it, where that only follows operands."""
+        rule = self.rules.bracketed.get(self.lexer.display[tokens[0][0]])
+        kinds = tuple(kind for kind, _ in tokens)
+        if rule and rule not in self.rules.ladder and rule in self.rules.matcher.rules_for(kinds):
+            return Symbol(rule) if rule in self.rules.recursive else Symbol("", Operand((), rule))
+        # what no rule reads as an operand has operands of its own, a sign between them or not
+        return Symbol(text, None, self.symbols(tokens[1:-1], atoms=True))
+
+    def text(self, kind: int) -> str:
+        """What a rule writes for a token."""
+        if kind <= 0:
+            return "?"
+        shown = self.lexer.display[kind]
+        is_sign = shown != self.lexer.names[kind] and not self.lexer.is_keyword(kind)
+        return f"'{shown}'" if is_sign else self.lexer.names[kind]
+
+    def _operand(
+        self, tokens: Sequence[Token], at: int, before: Sequence[Symbol], *, atoms: bool
+    ) -> int:
+        """How many tokens from a place are an operand; 0 where none begins there."""
+        kind = tokens[at][0]
+        if kind <= 0:
+            return 0
+        if self.lexer.is_keyword(kind):
+            # a word that may be a name is one where a name can be
+            behind = self.lexer.display[max(tokens[at + 1][0], 0)] if at + 1 < len(tokens) else ""
+            is_name = self.rules.matcher.may_be_a_name(kind) and (
+                behind in _BEHIND_NAMES
+                if not before
+                else not before[-1].is_operand
+                and (before[-1].text.strip("'"), self.lexer.names[kind]) not in self.rules.beside
+            )
+            if not is_name and not self._is_value(kind):
+                return 0
+        end = next((i for i in range(at, len(tokens)) if tokens[i][1]), len(tokens))
+        return self._longest_of(tuple(k for k, _ in tokens[at:end]), atoms=atoms)
+
+    def _is_value(self, kind: int) -> bool:
+        """Whether a word is a value or leads one, as TRUE and NOT do, and no name."""
+        rule, matcher = self.rules.widest, self.rules.matcher
+        if self.rules.names and self.rules.names in matcher.rules_for((kind,)):
+            return False
+        return rule is not None and rule in matcher.begun_by((kind,))
+
+    def _longest_of(self, kinds: tuple[int, ...], *, atoms: bool) -> int:
+        known = self._longest.get((atoms, kinds))
+        if known is None:
+            step, ends = self.rules.recognizer.step, self.rules.recognizer.ends
+            known = 0
+            for start in self._atoms if atoms else self._starts:
+                state = start
+                for count, kind in enumerate(kinds, 1):
+                    following = step(state, kind)
+                    if following is None:
+                        break
+                    state = following
+                    if ends(state):
+                        known = max(known, count)
+            self._longest[atoms, kinds] = known
+        return known
+
+    def closer(self, tokens: Sequence[Token], at: int) -> int | None:
+        """The place of the bracket that closes the one at a place, if there are both."""
+        opening = self.lexer.display[tokens[at][0]] if tokens[at][0] > 0 else ""
+        if opening not in BRACKETS:
+            return None
+        depth = 0
+        for place in range(at, len(tokens)):
+            kind = tokens[place][0]
+            shown = self.lexer.display[kind] if kind > 0 else ""
+            depth += (shown == opening) - (shown == BRACKETS[opening])
+            if not depth:
+                return place
+        return None

@@ -1,0 +1,166 @@
+"""Which names of a corpus are keywords that the grammar lacks, decided over all lines at once.
+
+A name is meant as a keyword where no name can be: at the head of a line with an operand behind it,
+or alone; beside an operand with no sign between. The last says only that one of the two is one.
+What tells them apart is the company: in the same surroundings a language has few keywords and any
+number of names. So only surroundings with few different words count, and a word has to be found in
+such surroundings nearly always, in several origins.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+
+from grammar.parser.lexer import Lexer
+from recovery.induction.corpus_lines import CorpusLines
+
+__all__ = ["WouldBeKeywords"]
+
+# Different words up to which surroundings are those of keywords; where names may be too, fewer.
+_FEW = 8
+_FEWER = 3
+_LEAST_ORIGINS = 2
+_LEAST_FILES = 3
+_MANY_FILES = 5
+_LEAST_SHARE = 0.8
+_NAME_SHARE = 0.02
+
+# Signs behind a name that is called, indexed or has members.
+_BEHIND_NAMES = frozenset("([.")
+
+# Signs with which an operand may begin.
+_OPENING = frozenset("(+-")
+
+#: The head of the line, what is ahead, what is behind.
+_Surroundings = tuple[str, str, str]
+_OPERAND = "operand"
+_END = "end"
+# Where a name is nothing but a name.
+_PLAIN: _Surroundings = ("", "", "")
+# Where it may be either.
+_OPEN: _Surroundings = ("", "", "(")
+# No name begins a line with an operand behind it.
+_HEAD: _Surroundings = ("", "", _OPERAND)
+
+
+@dataclass(frozen=True, slots=True)
+class _Use:
+    place: int
+    word: str
+    surroundings: _Surroundings
+    is_beside: bool
+
+
+class WouldBeKeywords:
+    """The words that the lines of a corpus have as keywords, under one lexer."""
+
+    def __init__(self, corpus: CorpusLines, lexer: Lexer, read: Collection[str] = ()) -> None:
+        """``read`` are names in lines that the grammar reads."""
+        self.lexer = lexer
+        self._name = lexer.kind_of.get("NAME", -9)
+        self._values = frozenset(
+            kind
+            for kind, shown in enumerate(lexer.display)
+            if kind and shown == lexer.names[kind] and not lexer.is_keyword(kind)
+        ) - {lexer.kind_of.get("NEWLINE", -9)}
+        fillers: dict[_Surroundings, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+        files: Counter[tuple[_Surroundings, str]] = Counter()
+        uses: Counter[str] = Counter()
+        beside: set[_Surroundings] = set()
+        for number, line in enumerate(corpus.lines):
+            for use in self._uses(line):
+                fillers[use.surroundings][use.word] |= corpus.origins[number]
+                if use.surroundings == _OPEN:
+                    continue
+                files[use.surroundings, use.word] += corpus.counts[number]
+                uses[use.word] += corpus.counts[number]
+                if use.is_beside:
+                    beside.add(use.surroundings)
+        self._closed: set[_Surroundings] = set()
+        meant: Counter[str] = Counter()
+        heads: Counter[str] = Counter()
+        places: dict[str, set[str]] = defaultdict(set)
+        for surroundings, words in fillers.items():
+            is_head = surroundings == _HEAD
+            if surroundings in (_PLAIN, _OPEN):
+                continue
+            if is_head or len(words) <= (_FEW if surroundings in beside else _FEWER):
+                self._closed.add(surroundings)
+                for word in words:
+                    meant[word] += files[surroundings, word]
+                    heads[word] += files[surroundings, word] * is_head
+                    places[word] |= words[word]
+        self.words = frozenset(
+            word
+            for word, count in meant.items()
+            if (len(places[word]) >= _LEAST_ORIGINS and count >= _LEAST_FILES)
+            or count >= _MANY_FILES
+            if heads[word] >= _LEAST_FILES or count >= _LEAST_SHARE * uses[word]
+        )
+        #: Those that are used as names besides.
+        self.soft = frozenset(
+            word
+            for word in self.words
+            if files[_PLAIN, word] > _NAME_SHARE * uses[word] or word in read
+        )
+
+    def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
+        """The places of a line where a keyword is meant, with the words."""
+        return tuple(
+            (use.place, use.word)
+            for use in self._uses(line)
+            if use.word in self.words
+            and (
+                use.word not in self.soft
+                or use.surroundings in self._closed
+                or use.surroundings == _OPEN
+            )
+        )
+
+    def _uses(self, line: Sequence[str]) -> Iterator[_Use]:
+        """The names of a line; those within braces have values beside them anyway."""
+        kinds = [self.lexer.kinds[lexeme] for lexeme in line]
+        depth = 0
+        is_headed = self.lexer.is_keyword(kinds[0]) or (
+            len(kinds) > 1 and (kinds[1] in self._values or self.lexer.is_keyword(kinds[1]))
+        )
+        for place, (word, kind) in enumerate(zip(line, kinds, strict=True)):
+            depth += (word == "{") - (word == "}")
+            if kind != self._name or depth or word.startswith("$"):
+                continue
+            behind = self._class(line, kinds, place + 1, ("{",))
+            if not place:
+                if len(kinds) > 1 and self.lexer.is_keyword(kinds[1]):
+                    behind = _OPERAND
+                if behind in (_OPERAND, _END):
+                    yield _Use(place, word, ("", "", behind), True)
+                elif behind in _OPENING:  # a call, or a word with an operand behind it
+                    yield _Use(place, word, _OPEN, False)
+                else:
+                    yield _Use(place, word, _PLAIN, False)
+                continue
+            ahead = self._class(line, kinds, place - 1, (")", "]", "}"))
+            surroundings = (line[0], ahead, behind)
+            if _OPERAND in (ahead, behind):
+                yield _Use(place, word, surroundings, True)
+            elif (
+                is_headed
+                and behind not in _BEHIND_NAMES
+                and not (place == 1 and behind == "=")
+                and (place == 1 or ahead == ":" or self.lexer.is_keyword(kinds[place - 1]))
+            ):
+                yield _Use(place, word, surroundings, False)
+            else:
+                yield _Use(place, word, _PLAIN, False)
+
+    def _class(
+        self, line: Sequence[str], kinds: Sequence[int], place: int, signs: Sequence[str]
+    ) -> str:
+        if place >= len(line):
+            return _END
+        if line[place] in signs or kinds[place] in self._values:
+            # the first word of a line says what may come behind it, whether it is known or not
+            return _OPERAND if place else line[0]
+        return line[place]

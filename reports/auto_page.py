@@ -1,0 +1,150 @@
+"""The page of a recovery of its own accord: growth, what was taken, what was refused and why."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.embedding import embedded_json
+from reports.number_format import Figure, counted, percent, share
+from reports.page import render
+from reports.record_fields import Record, count, nested, records, text, texts
+from reports.sanitizing import shown
+from support.files.atomic_write import write_atomic
+
+__all__ = ["write_auto_page"]
+
+_MAX_ROUNDS = 200
+_MAX_ROWS = 400
+_LONGEST = 600
+_WIDTH, _HEIGHT, _LEFT, _BOTTOM = 640, 220, 44, 24
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A step that was taken or refused; ``note`` is its evidence or the reason."""
+
+    round: int
+    id: str
+    title: str
+    edits: tuple[str, ...]
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Curve:
+    """A line of the chart: its class, and its points as SVG has them."""
+
+    name: str
+    points: str
+
+
+@dataclass(frozen=True, slots=True)
+class _View:
+    headline: str
+    start: str
+    figures: tuple[Figure, ...]
+    curves: tuple[_Curve, ...]
+    grid: tuple[tuple[float, str], ...]
+    held_out: tuple[str, ...]
+    taken: tuple[_Row, ...]
+    refused: tuple[_Row, ...]
+    is_finished: bool
+    width: int = _WIDTH
+    height: int = _HEIGHT
+    left: int = _LEFT
+
+
+def write_auto_page(record: Mapping[str, Any], folder: Path) -> Path:
+    """Write ``folder``/index.html and return its path; any field of the record may be absent.
+
+    ``record`` is what ``krl recover --auto --json`` writes. The page appears whole or not at all.
+    Raises OSError when the folder cannot be made or written.
+    """
+    page = render(
+        "auto.html.j2",
+        script="",
+        styles=["page.css", "auto.css"],
+        data=embedded_json({}),
+        view=_view(record),
+    )
+    return write_atomic(folder / "index.html", page)
+
+
+def _view(record: Record) -> _View:
+    rounds = records(record, "rounds")[:_MAX_ROUNDS]
+    last = rounds[-1] if rounds else {}
+    figures = [_figure(name, nested(last, key)) for name, key in _HALVES if nested(last, key)]
+    taken = [row for n, done in enumerate(rounds, 1) for row in _taken(n, done)]
+    refused = _refused(last, len(rounds))
+    figures.append(Figure("steps taken", f"{len(taken):,}", counted(len(rounds), "round")))
+    figures.append(Figure("rules", f"{count(last, 'rules'):,}"))
+    curves = [
+        _Curve(key, _points([nested(done, key) for done in rounds]))
+        for _, key in _HALVES
+        if count(nested(last, key), "files")
+    ]
+    grid = tuple((_y(part), f"{100 * part:.0f} %") for part in (0.0, 0.5, 1.0))
+    return _View(
+        percent(*_of(nested(last, "shown"))) if rounds else "",
+        shown(text(record, "start"), _LONGEST),
+        tuple(f for f in figures if f.value != "–"),
+        tuple(curves),
+        grid,
+        tuple(shown(origin, _LONGEST) for origin in texts(record, "held_out")[:_MAX_ROWS]),
+        tuple(taken[:_MAX_ROWS]),
+        tuple(refused[:_MAX_ROWS]),
+        record.get("finished") is True,
+    )
+
+
+_HALVES = (("of the files shown parse", "shown"), ("of the files held out parse", "held"))
+
+
+def _of(reading: Record) -> tuple[int, int]:
+    return count(reading, "parsed"), count(reading, "files")
+
+
+def _figure(name: str, reading: Record) -> Figure:
+    parsed, files = _of(reading)
+    note = f"{parsed:,} of {files:,}; {counted(count(reading, 'failing'), 'line')} fail"
+    return Figure(name, percent(parsed, files), note, share(parsed, files))
+
+
+def _points(readings: Sequence[Record]) -> str:
+    step = (_WIDTH - _LEFT - 12) / max(1, len(readings) - 1)
+    return " ".join(
+        f"{_LEFT + n * step:.1f},{_y(share(*_of(reading))):.1f}"
+        for n, reading in enumerate(readings)
+    )
+
+
+def _y(part: float) -> float:
+    return 12 + (1 - part) * (_HEIGHT - _BOTTOM - 12)
+
+
+def _taken(number: int, done: Record) -> list[_Row]:
+    return [
+        _Row(
+            number,
+            shown(text(step, "id"), _LONGEST),
+            shown(text(step, "title"), _LONGEST),
+            tuple(shown(edit, _LONGEST) for edit in texts(step, "edits")),
+            f"{counted(count(step, 'files'), 'file')}, {counted(count(step, 'origins'), 'origin')}",
+        )
+        for step in records(done, "taken")
+    ]
+
+
+def _refused(done: Record, number: int) -> list[_Row]:
+    """What the last round refused: what earlier rounds did may have been taken since."""
+    return [
+        _Row(
+            number,
+            "",
+            shown(text(step, "title"), _LONGEST),
+            tuple(shown(edit, _LONGEST) for edit in texts(step, "edits")),
+            shown(text(step, "reason"), _LONGEST),
+        )
+        for step in records(done, "refused")
+    ]

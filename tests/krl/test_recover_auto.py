@@ -1,0 +1,148 @@
+"""`krl recover --auto` from the outside: what it writes, how it goes on, what it refuses."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.parser.recognizer import Recognizer
+from krl.cli import main
+from recovery.ledger.ledger import Ledger, in_force
+
+PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
+TEXTS = (
+    "DEF {0}()\nFOR I=1 TO 9 STEP 2\nENDFOR\nRETURN {0}1\nEND\n",
+    "DEF {0}()\nFOR I=1 TO 9 STEP {0}2\nENDFOR\nGOTO L{0}\nEND\n",
+    "DEF {0}()\nSWITCH {0}I\nCASE 1\nHALT\nCASE 2\nHALT\nDEFAULT\nHALT\nENDSWITCH\nEND\n",
+    "DEF {0}()\nGOTO {0}M\nRETURN {0}2+1\n"
+    "SWITCH {0}J\nCASE 3\nHALT\nDEFAULT\nHALT\nENDSWITCH\nEND\n",
+)
+pytestmark = pytest.mark.usefixtures("elsewhere")
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three origins with the same four things that the restrictive start lacks."""
+    root = tmp_path_factory.mktemp("corpus")
+    for origin in ("ORANGE", "PEAR", "QUINCE"):
+        for number, text in enumerate(TEXTS):
+            file = root / origin / "KRC" / f"P{number}.src"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text.format(origin[0] + str(number)))
+    return root
+
+
+def auto(*arguments: str | Path) -> int:
+    """Run `krl recover --auto` in this process, without the negatives of the working folder."""
+    none = Path(str(arguments[0])).parent / "negatives"
+    none.mkdir(exist_ok=True)
+    return main(["recover", "--auto", "--negatives", str(none), *map(str, arguments)])
+
+
+def record(out: Path) -> dict[str, Any]:
+    """What a run wrote."""
+    loaded = json.loads((out / "auto.json").read_text("utf-8"))
+    assert isinstance(loaded, dict)
+    return loaded
+
+
+@pytest.fixture(scope="module")
+def out(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run with a third of the origins held out."""
+    folder = tmp_path_factory.mktemp("out")
+    assert auto(corpus, "--hold-out", "0.33", "--seed", "3", "--out", folder) == 0
+    return folder
+
+
+def test_both_halves_parse_in_the_end(out: Path) -> None:
+    """What several origins show is found, and holds for the origin held out."""
+    last = record(out)["rounds"][-1]
+    assert ((8, 8), (4, 4)) == (
+        (last["shown"]["parsed"], last["shown"]["files"]),
+        (last["held"]["parsed"], last["held"]["files"]),
+    )
+
+
+def test_the_ledger_gives_the_grammar(out: Path) -> None:
+    """The constructs written, replayed on the start, give the grammar written, byte for byte."""
+    constructs = Ledger.read(out / "constructs").constructs
+    grown = in_force(read_file(out / "start.g4"), constructs)
+    assert (out / "grammar.g4").read_bytes() == grown.text.encode()
+
+
+def test_the_page_shows_steps(out: Path) -> None:
+    """Each step is on the page with its ID."""
+    page = (out / "index.html").read_text("utf-8")
+    ids = [step["id"] for done in record(out)["rounds"] for step in done["taken"]]
+    assert ids
+    assert [] == [name for name in ids if name not in page]
+
+
+def test_the_same_every_time(corpus: Path, out: Path, tmp_path: Path) -> None:
+    """The same files and seed give the same record, times apart."""
+    assert auto(corpus, "--hold-out", "0.33", "--seed", "3", "--out", tmp_path) == 0
+    timed = {"seconds", "generated"}
+    one, other = ({k: v for k, v in record(o).items() if k not in timed} for o in (out, tmp_path))
+    assert one == other
+
+
+def test_a_step_is_struck_out(corpus: Path, tmp_path: Path) -> None:
+    """Without its step a construct stays out, also when the run goes on."""
+    assert auto(corpus, "--out", tmp_path) == 0
+    constructs = Ledger.read(tmp_path / "constructs").constructs
+    goto = next(c.id for c in constructs if c.title.startswith("GOTO"))
+    assert auto(corpus, "--out", tmp_path, "--strike", goto) == 0
+    assert [] == [
+        c.id
+        for c in Ledger.read(tmp_path / "constructs").constructs
+        if c.edits == next(k.edits for k in constructs if k.id == goto)
+    ]
+
+
+def test_an_interrupted_run_keeps_what_was_done(
+    corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C leaves the rounds so far, and --resume ends where a whole run does."""
+    from recovery.induction.rounds import Induction
+
+    whole = Induction.rounds
+
+    def two(self: Induction, most: int = 30) -> Any:
+        for number, done in enumerate(whole(self, most)):
+            if number == 2:
+                raise KeyboardInterrupt
+            yield done
+
+    options = ("--hold-out", "0.33", "--seed", "3", "--out", tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(Induction, "rounds", two)
+        assert auto(corpus, *options) == 0
+    assert (2, False) == (len(record(tmp_path)["rounds"]), record(tmp_path)["finished"])
+    assert auto(corpus, *options, "--resume") == 0
+    grown = Recognizer(read_file(tmp_path / "grammar.g4"))
+    assert [] == [file for file in corpus.rglob("*.src") if not grown.accepts(file.read_text())]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--auto", "--hold-out", "1"], "--hold-out 1"),
+        (["--auto", "--resume", "--out", "nowhere"], "nothing to go on from"),
+        (["--resume"], "belong to --auto"),
+    ],
+)
+def test_wrong_usage(
+    corpus: Path, arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Wrong usage is one line and status 2."""
+    assert main(["recover", str(corpus), *arguments]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_an_unknown_step(out: Path, corpus: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A step that there is not is named."""
+    assert auto(corpus, "--out", out, "--strike", "9999-nothing") == 2
+    assert "9999-nothing" in capsys.readouterr().err

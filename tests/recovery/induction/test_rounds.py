@@ -1,0 +1,104 @@
+"""A grammar that grows by itself, in a language that is no KRL."""
+
+import pytest
+
+from grammar.notation.model import Grammar
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.corpus_lines import CorpusFile, held_out
+from recovery.induction.growth_record import Growth, without
+from recovery.induction.rounds import Induction
+from recovery.ledger.ledger import in_force
+from recovery.negatives.negatives import Negative, NegativeSet
+
+
+def _grown(
+    start: Grammar, files: tuple[CorpusFile, ...], negatives: tuple[Negative, ...] = ()
+) -> Growth:
+    growth = Growth(start, start)
+    induction = Induction(start, files, (), NegativeSet(negatives))
+    for done in induction.rounds():
+        growth.add(done)
+    return growth
+
+
+@pytest.fixture(scope="module")
+def growth(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> Growth:
+    """The growth over all programs."""
+    return _grown(toy, toy_files)
+
+
+def test_every_program_is_read(growth: Growth, toy_files: tuple[CorpusFile, ...]) -> None:
+    """Statements, blocks and operators that several origins show are found."""
+    recognizer = Recognizer(growth.grammar)
+    assert [] == [file.path for file in toy_files if not recognizer.accepts(file.text)]
+
+
+@pytest.mark.parametrize(
+    ("text", "accepted"),
+    [
+        ("MOVE NEW SLOW\n", True),
+        ("REPEATN 1 / 2\nDONE\n", True),
+        ("REPEATN 1\nMOVE A\n", False),
+        ("DONE\n", False),
+        ("MOVE := 1\n", False),
+        ("SLOW A\n", False),
+    ],
+)
+def test_unseen_lines(growth: Growth, text: str, accepted: bool) -> None:
+    """Forms hold for lines that were not looked at, blocks have to be closed, words are words."""
+    assert accepted == Recognizer(growth.grammar).accepts(text)
+
+
+def test_the_ledger_replays(growth: Growth) -> None:
+    """The constructs, replayed on the start, give the grammar byte for byte."""
+    assert growth.grammar.text == in_force(growth.start, growth.constructs).text
+
+
+def test_no_line_is_lost(growth: Growth) -> None:
+    """From round to round no more lines fail."""
+    failing = [done["shown"]["failing"] for done in growth.rounds]
+    assert sorted(failing, reverse=True) == failing
+
+
+def test_the_same_every_time(
+    growth: Growth, toy: Grammar, toy_files: tuple[CorpusFile, ...]
+) -> None:
+    """The same files give the same grammar."""
+    assert growth.grammar.text == _grown(toy, toy_files).grammar.text
+
+
+def test_a_negative_is_an_objection(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
+    """An edit that accepts what must be rejected is refused, with the reason."""
+    slash = Negative(None, "X := A / B\n", "a slash divides nothing", "parse", line=1)
+    grown = _grown(toy, toy_files, (slash,))
+    reasons = [refused["reason"] for done in grown.rounds for refused in done["refused"]]
+    assert (False, True) == (
+        Recognizer(grown.grammar).accepts(slash.text),
+        any("a slash divides nothing" in reason for reason in reasons),
+    )
+
+
+def test_a_step_is_struck_out(growth: Growth) -> None:
+    """A step that is struck out goes, with those that need it; the others stay in order."""
+    block = next(c for c in growth.constructs if "REPEATN" in c.title)
+    left, gone = without(growth.start, growth.constructs, [block.id])
+    assert block in gone
+    assert list(range(1, len(left) + 1)) == [construct.number for construct in left]
+    assert not Recognizer(in_force(growth.start, left)).accepts("REPEATN 2\nDONE\n")
+
+
+def test_what_is_struck_is_not_taken_again(
+    growth: Growth, toy: Grammar, toy_files: tuple[CorpusFile, ...]
+) -> None:
+    """Edits that were struck out are not tried again."""
+    struck = [construct.edits for construct in growth.constructs]
+    first = next(iter(Induction(toy, toy_files, (), NegativeSet(()), struck=struck).rounds()))
+    assert growth.constructs[0].edits not in [step.edits for step in first.taken]
+
+
+def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
+    """A fraction of the origins is held out, with all of their files, the same for a seed."""
+    shown, held, origins = held_out(toy_files, 1 / 3, 4)
+    assert (2, 4, 1) == (len(held), len(shown), len(origins))
+    assert held_out(toy_files, 1 / 3, 4) == (shown, held, origins)
+    assert {frozenset(origins)} == {file.origins for file in held}
