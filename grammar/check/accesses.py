@@ -16,7 +16,7 @@ from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, children
 
-__all__ = ["Access", "Use", "accesses", "calls_of"]
+__all__ = ["Access", "Use", "accesses", "calls_of", "parts_of"]
 
 
 class Use(Enum):
@@ -79,14 +79,18 @@ def own_parts(node: ast.Node) -> Iterator[ast.Node]:
             yield from child.values
 
 
-def calls_of(node: ast.Node) -> Iterator[ast.Call]:
-    """The calls in a statement, not those of the statements in a block."""
+def parts_of(node: ast.Node) -> Iterator[ast.Node]:
+    """A statement and all below it, without the statements in a block."""
     todo = [node]
     while todo:
         here = todo.pop()
-        if isinstance(here, ast.Call):
-            yield here
+        yield here
         todo.extend(own_parts(here))
+
+
+def calls_of(node: ast.Node) -> Iterator[ast.Call]:
+    """The calls in a statement, not those of the statements in a block."""
+    return (part for part in parts_of(node) if isinstance(part, ast.Call))
 
 
 def _place(context: Context, node: ast.Expression, use: Use) -> Iterator[Access]:

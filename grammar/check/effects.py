@@ -8,10 +8,11 @@ check; `of_project` puts those of all files together.
 from __future__ import annotations
 
 import operator
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from grammar.check.accesses import Use, accesses, calls_of
+from grammar.check.accesses import Use, accesses, calls_of, parts_of
 from grammar.check.constant_folding import constant, integer_of
 from grammar.check.context import Context
 from grammar.check.data_flow import needed_parameters
@@ -53,7 +54,8 @@ class Effects:
     ``changed`` are the names, with a known index as in ``$FLAG[3]``, of all that is assigned to or
     passed on; ``reset`` those that may become FALSE. ``switched_on`` has numbers of interrupts, and
     ``""`` where all or unknown ones are meant. ``needed`` are the parameters, by file and routine,
-    that are read without a guard.
+    that are read without a guard. ``literals`` are the variables that no file at hand declares, in
+    upper case, each beside a literal that it is compared with or receives, by the kind of that.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -64,9 +66,22 @@ class Effects:
     changed: frozenset[str] = frozenset()
     left_out: tuple[LeftOut, ...] = ()
     needed: dict[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
+    literals: tuple[tuple[str, str, Place], ...] = ()
 
 
 NO_EFFECTS = Effects()
+
+# Two places alike and one that differs.
+_FEWEST = 2
+
+#: What a variable of one type can be compared with.
+_KINDS: Mapping[type[ast.Node], str] = {
+    ast.BoolLiteral: "a truth value",
+    ast.IntegerLiteral: "a number",
+    ast.RealLiteral: "a number",
+    ast.BitLiteral: "a number",
+    ast.StringLiteral: "a text",
+}
 
 _OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
     "AND": operator.and_,
@@ -96,6 +111,7 @@ class _Collector:
         self._waits: list[tuple[Place, frozenset[str]]] = []
         self._changed: set[str] = set()
         self._left_out: list[LeftOut] = []
+        self._literals: list[tuple[str, str, Place]] = []
 
     def collect(self) -> Effects:
         context = self._context
@@ -118,6 +134,7 @@ class _Collector:
             frozenset(self._changed),
             tuple(self._left_out),
             needed,
+            tuple(self._literals),
         )
 
     def _place(self, node: ast.Node, what: str) -> Place:
@@ -147,6 +164,21 @@ class _Collector:
                     self._reset.add(key)
         for call in calls_of(node):
             self._call(call)
+        for part in parts_of(node):
+            match part:
+                case ast.Assignment(target=ast.Variable(name=name), value=value):
+                    self._literal(name, value)
+                case ast.Binary(operator="==" | "<>", left=ast.Variable(name=name), right=value):
+                    self._literal(name, value)
+
+    def _literal(self, name: ast.Name, value: ast.Expression) -> None:
+        """Note what an undeclared variable stands beside."""
+        value = without_parentheses(value)
+        if isinstance(value, ast.Unary) and value.operator in "+-":
+            value = value.operand
+        kind = _KINDS.get(type(value))
+        if kind is not None and self._context.found(name) is None and not name.key.startswith("$"):
+            self._literals.append((name.key, kind, self._place(value, name.text)))
 
     # --------------------------------------------------------------------------- keys
 
@@ -260,6 +292,7 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
     needed = {routine: some for one in files for routine, some in one.needed.items()}
+    yield from _of_two_kinds(files)
     for one in files:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on)
@@ -272,6 +305,24 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
         for call in one.left_out:
             if call.index in needed.get(call.routine, ()):
                 yield _left_out(call)
+
+
+def _of_two_kinds(files: Iterable[Effects]) -> Iterator[Diagnostic]:
+    """Undeclared variables that are one kind of value in all places of a file but one."""
+    uses: dict[tuple[str, str], list[tuple[str, Place]]] = {}
+    for one in files:
+        for key, kind, place in one.literals:
+            uses.setdefault((place.path, key), []).append((kind, place))
+    for some in uses.values():
+        counts = Counter(kind for kind, _ in some)
+        if len(counts) == 2 and len(some) > _FEWEST and 1 in counts.values():
+            (usual, count), (rare, _) = counts.most_common()
+            place = next(place for kind, place in some if kind == rare)
+            message = f"{place.what} is {usual} elsewhere, and this is {rare}"
+            reason = f"so it is in {count} places"
+            yield diagnose(
+                "wrong-value", place.path, place.region, message, reason=reason, severity="warning"
+            )
 
 
 def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:

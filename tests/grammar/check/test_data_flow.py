@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
+from grammar.diagnostics.diagnostic import Diagnostic
+
 Agrees = Callable[..., None]
 
 
@@ -166,3 +168,21 @@ def test_folds(agrees: Agrees) -> None:
     """Every fold is closed, and nothing is closed that is no fold."""
     agrees("DEF NEG()\n;FOLD A ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
     agrees("DEF NEG()\n;ENDFOLD ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
+
+
+@pytest.mark.parametrize(
+    ("lines", "mark"),
+    [
+        (["A = TRUE", "IF A == FALSE THEN", "HALT", "ENDIF", "A = 1.5"], True),
+        (["A = TRUE", "A = 1"], False),
+        (["A = 1", "A = 2.5", "A = 3"], False),
+        (["A = TRUE", "A = FALSE", "A = 1", "A = 2"], False),
+        (["A = 1", "A = -2", 'A = "X"'], True),
+    ],
+)
+def test_undeclared_variables_of_two_kinds(
+    finds: Callable[..., list[Diagnostic]], lines: list[str], mark: bool
+) -> None:
+    """An undeclared variable is one kind of value in all places: one that differs is a slip."""
+    found = finds({"NEG.src": "\n".join(["DEF NEG()", *lines, "END"])}, is_complete=None)
+    assert mark == any(one.code == "KSS1446" for one in found)
