@@ -49,8 +49,8 @@ function body({ shape, edges: [x, y, z] }, facets) {
 }
 
 /**
- * The arm in `scene`: `follow()` puts it where it is at the moment; `tip()` is then where its tool is, in mm
- * in $WORLD, null where there is no arm.
+ * The arm in `scene`: `follow(time)` puts it where it is at a time; `tip()` is then where its tool is, in mm in
+ * $WORLD, null where there is no arm.
  */
 function armIn(scene, facets, lines) {
   const { links, hand, flange, tools, objects } = page.arm;
@@ -67,7 +67,8 @@ function armIn(scene, facets, lines) {
     (joints[link.parent] ?? scene).add(frame);
   });
   const toolTimes = tools.map((frames) => frames.t);
-  const [tool, base] = [triad(80, lines.axes), triad(120, lines.axes)];
+  const reach = links.slice(1).reduce((sum, { frame }) => sum + Math.hypot(frame[3], frame[7], frame[11]), 0);
+  const [tool, base] = [0.06, 0.1].map((share) => triad(Math.max(30, share * reach), lines.axes));
   const wrist = fixed(flange);
   const stem = lineOf([[0, 0, 0], [0, 0, 0]], lines.tool);
   wrist.add(stem, tool);
@@ -80,17 +81,17 @@ function armIn(scene, facets, lines) {
   }
   const axes = links.map((link) => new THREE.Vector3(...link.axis));
 
-  function follow() {
-    const at = atMoment();
+  function follow(time) {
+    const at = valuesAt(time);
     links.forEach((link, n) => {
       if (!path.axes[link.joint]) return;
       const value = at(path.axes[link.joint]);
       if (link.linear) joints[n].position.copy(axes[n]).multiplyScalar(value);
       else joints[n].quaternion.setFromAxisAngle(axes[n], (value * Math.PI) / 180);
     });
-    const touched = new Set([...touching()].map((name) => name.replaceAll("_", " ")));
+    const touched = new Set([...touching(time)].map((name) => name.replaceAll("_", " ")));
     for (const { name, mesh, colour } of meshes) mesh.material.color.copy(touched.has(name) ? ALARM : colour);
-    const frames = tools[Math.max(0, placeAt(toolTimes, moment))];
+    const frames = tools[Math.max(0, placeAt(toolTimes, time))];
     if (!frames) return;
     tool.matrix.copy(frameOf(frames.tool));
     base.matrix.copy(frameOf(frames.base));

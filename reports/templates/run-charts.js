@@ -35,7 +35,7 @@ function chart(title, { height, series = [], lines = [], y, ticks = null, keys =
     const at = shown.valToPos(moment / 1e6, "x");
     cursor.hidden = at < -0.5 || at > shown.over.clientWidth + 0.5;
     cursor.style.left = `${at}px`;
-    const now = series.length ? atMoment() : null;
+    const now = series.length ? valuesAt(moment) : null;
     for (const [one, value] of values) value.textContent = `${now(one.told ?? one.values).toLocaleString("en-GB", { minimumFractionDigits: one.digits, maximumFractionDigits: one.digits })} ${one.unit}`;
   };
 

@@ -29,12 +29,12 @@ function placeAt(times, time) {
   return low - 1;
 }
 
-/** A function of columns of the path: their values at the moment, between two samples in proportion. */
-function atMoment() {
+/** A function of columns of the path: their values at a time, between two samples in proportion. */
+function valuesAt(time) {
   const last = path.t.length - 1;
-  const place = Math.min(Math.max(0, placeAt(path.t, moment)), last);
+  const place = Math.min(Math.max(0, placeAt(path.t, time)), last);
   const next = Math.min(place + 1, last);
-  const share = next > place ? (moment - path.t[place]) / (path.t[next] - path.t[place]) : 0;
+  const share = next > place ? (time - path.t[place]) / (path.t[next] - path.t[place]) : 0;
   return (values) => values[place] + (values[next] - values[place]) * share;
 }
 
@@ -64,8 +64,8 @@ const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addE
 /** A colour of the style sheet. */
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-/** The names of what touches something at the moment. */
-const touching = () => new Set(page.observations.flatMap(({ t, end: until, kind, parts }) => (kind === "collision" && t <= moment && moment <= until ? parts : [])));
+/** The names of what touches something at a time. */
+const touching = (time) => new Set(page.observations.flatMap(({ t, end: until, kind, parts }) => (kind === "collision" && t <= time && time <= until ? parts : [])));
 
 const motionStarts = events.filter((event) => event.kind === "motion_start");
 const startTimes = motionStarts.map((event) => event.t);

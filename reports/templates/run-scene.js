@@ -1,6 +1,7 @@
 // The arm and the path of its tool in space, with programmed points.
 
 const POINTS = 2_000; // points that are marked, and pieces of the path without WebGL, at most
+const POSES = 12; // at which the arm must be in the picture
 const DIRECTIONS = { slanted: [1, -1.2, 0.8], front: [1, 0, 0.001], side: [0, -1, 0.001], above: [0, -0.001, 1] };
 
 /** What draws, and how round it can afford things to be: WebGL, or SVG where the browser has none. */
@@ -31,7 +32,6 @@ function scene() {
   const lines = Object.fromEntries(hues.map((hue) => [hue, new THREE.LineBasicMaterial({ linewidth: 1.5 })]));
   const arm = armIn(world, facets, { axes: ["x-axis", "y-axis", "z-axis"].map((hue) => lines[hue]), tool: lines.ink });
   lines.mark.depthFunc = THREE.LessDepth; // measured and planned path are all but one: what was planned is seen
-  arm.follow();
   const points = page.points.filter((point) => point.place.length === 3).slice(0, POINTS);
   const toolTimes = page.arm.tools.map((frames) => frames.t);
   const tool = [0, 1, 2].map((i) => path.tool.map((place) => place[i]));
@@ -39,7 +39,10 @@ function scene() {
   if (trace.isEmpty()) trace.expandByPoint(new THREE.Vector3());
   tracePath();
   const whole = trace.clone();
-  if (arm.isThere) whole.expandByObject(world);
+  for (let n = 0; arm.isThere && n <= POSES; n += 1) {
+    arm.follow((n / POSES) * end);
+    whole.expandByObject(world);
+  }
   const { grid, step, arrow } = ground();
 
   /** The tool at a time, in words: where it changes the path begins anew. */
@@ -72,7 +75,9 @@ function scene() {
   /** A grid on the ground, as wide as what there is, with lines at a round distance. */
   function ground() {
     const size = whole.getSize(new THREE.Vector3());
-    const distance = 10 ** Math.round(Math.log10(Math.max(size.x, size.y, 10) / 6));
+    const rough = Math.max(size.x, size.y, 10) / 8;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const distance = power * [1, 2, 5, 10].find((n) => n * power >= rough);
     const count = 2 * Math.ceil(Math.max(size.x, size.y) / (2 * distance) + 1);
     const tiles = new THREE.GridHelper(count * distance, count);
     tiles.rotation.x = Math.PI / 2;
@@ -159,7 +164,7 @@ function scene() {
     const current = motionStarts[placeAt(startTimes, moment)]?.motion;
     const seen = points.map((point) => [point, seenAt(point.place)]).filter(([, at]) => at);
     for (const [point, at] of seen) dot(at, 3, point.blended ? paper : ink, ink);
-    const place = arm.tip() ?? (tool[0].length ? tool.map(atMoment()) : null);
+    const place = arm.tip() ?? (tool[0].length ? tool.map(valuesAt(moment)) : null);
     const now = place && seenAt(place);
     byId("place").textContent = place ? `tool at X ${place[0].toFixed(1)} Y ${place[1].toFixed(1)} Z ${place[2].toFixed(1)} mm` : "";
     if (now) dot(now, 4.5, mark, paper);
@@ -176,8 +181,7 @@ function scene() {
   }
 
   function draw() {
-    lines.mark.depthFunc = THREE.LessDepth; // measured and planned path are all but one: what was planned is seen
-  arm.follow();
+    arm.follow(moment);
     renderer.render(world, camera);
     marks();
   }
