@@ -13,6 +13,7 @@ from typing import Final, Literal
 
 from grammar.check.framework import typed_module
 from grammar.semantics.link import File, Project, extended
+from grammar.semantics.packages import load_packages
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Found, Module, SystemScope
 from grammar.semantics.symbols import Kind
@@ -35,12 +36,13 @@ _DEFAULT: Final = "_DEFAULT"
 _MOST_SHOWN: Final = 8
 _ORIGINS: Final = {
     "library": "from the library",
+    "package": "by the signature of an option package",
     "signature": "by its uses only",
     "default": "with the controller's default",
 }
-#: Where a stand-in comes from: our own version of it, its signature alone, or the controller's
-#: own default for data that $config.dat would declare.
-Origin = Literal["library", "signature", "default"]
+#: Where a stand-in comes from: our own version of it, the signature that its option package has,
+#: that which its uses tell, or the controller's default for data that $config.dat would declare.
+Origin = Literal["library", "package", "signature", "default"]
 _Kind = Literal["routine", "variable", "type"]
 _Places = dict[str, tuple[Module, ast.Name]]
 
@@ -146,6 +148,8 @@ def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ..
     for kind, names, known in kinds:
         for key, (module, name) in names.items():
             origin: Origin = "library" if key in known else "signature"
+            if origin == "signature" and kind == "routine" and key in load_packages().routines:
+                origin = "package"
             found.append(_stand_in(name, kind, origin, module, sources))
     for module, name in wanted.defaults.values():
         found.append(_stand_in(name, "variable", "default", module, sources))
@@ -171,6 +175,7 @@ class _Making:
         self._wanted = wanted
         self._texts: dict[str, str] = {}
         self._files: dict[tuple[str, str], File] = {}
+        self._add_types_of_packages()
         self._add_library()
         self.project = self._linked()
 
@@ -204,7 +209,8 @@ class _Making:
         for name in unknown:
             signatures.type(name, uses.types[name])
         for name, routine in uses.routines.items():
-            self._texts[_path(name)] = signatures.routine(name, routine)
+            known = load_packages().routines.get(name)
+            self._texts[_path(name)] = signatures.routine(name, routine, known)
         data = [
             line
             for name, use in uses.data.items()
@@ -217,6 +223,17 @@ class _Making:
         return not is_last
 
     # ------------------------------------------------------------------------- the library
+
+    def _add_types_of_packages(self) -> None:
+        """The types of what routines of packages take and give, where nothing declares them."""
+        packages = load_packages()
+        for name, place in self._wanted.routines.items():
+            known = packages.routines.get(name)
+            if known is None:
+                continue
+            for type_ in (known.result, *(one.type for one in known.parameters)):
+                if type_ in packages.types and self._type(type_) is None:
+                    self._wanted.types.setdefault(type_, place)
 
     def _add_library(self) -> None:
         """Routines of the library that are wanted, and what they want in turn."""

@@ -3,6 +3,7 @@
 A backup often lacks the routines behind inline forms, and $config.dat with what they need. They are
 written from the rules and from public manuals. Each routine and each declaration stands alone, so
 that only what a backup lacks is taken; the routines of spline forms are those of generated cells.
+Types and variables of option packages are those of `grammar.semantics.packages`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 
+from grammar.semantics.packages import load_packages
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 
@@ -74,7 +76,23 @@ def load_library() -> Library:
     reader = _Reader()
     for file in _files():
         reader.take(file.read_text(encoding="utf-8"))
+    reader.take(_of_packages())
     return Library(reader.routines, reader.types, reader.data)
+
+
+def _of_packages() -> str:
+    """Types and variables of option packages as a data list; a default for each type."""
+    packages = load_packages()
+    lines = [one.declaration for one in packages.types.values()]
+    lines += [
+        f"DECL GLOBAL {one.name} {one.name}_DEFAULT={one.default}"
+        for one in packages.types.values()
+        if one.default
+    ]
+    lines += [
+        f"DECL GLOBAL {one.type} {one.name}={one.value}" for one in packages.variables.values()
+    ]
+    return "\n".join(["DEFDAT PACKAGES PUBLIC", *lines, "ENDDAT", ""])
 
 
 def _files() -> Iterator[Traversable]:

@@ -15,11 +15,13 @@ from itertools import islice, product
 from math import prod
 from typing import Final
 
+from grammar.semantics.packages import PackageRoutine
 from grammar.semantics.types import (
     BOOL,
     CHAR,
     INT,
     REAL,
+    SCALARS,
     UNKNOWN,
     Array,
     Constant,
@@ -203,12 +205,18 @@ class Signatures:
 
     # ------------------------------------------------------------------------- routines
 
-    def routine(self, name: str, use: RoutineUse) -> str:
-        """The text of a routine, its signature alone."""
+    def routine(self, name: str, use: RoutineUse, known: PackageRoutine | None = None) -> str:
+        """The text of a routine, its signature alone; ``known`` is what a package says of it."""
         heads, declared, body = [], [], []
-        for place, given in enumerate(use.arguments, start=1):
+        parameters = () if known is None or known.has_more else known.parameters
+        given_to = [*use.arguments, *([] for _ in parameters[len(use.arguments) :])]
+        for place, given in enumerate(given_to, start=1):
             parameter = f"P{place}"
             kind, is_out, brackets = self._parameter(f"{name}_{parameter}", given)
+            told = parameters[place - 1] if place <= len(parameters) else None
+            if told is not None and not told.is_out and self._has_type(told.type):
+                is_out, brackets = False, "[]" if told.is_array else ""
+                kind = _Kind(told.type, kind.value, is_text=told.is_array)
             heads.append(f"{parameter}{brackets} :{'OUT' if is_out else 'IN'}")
             declared.append(f"DECL {kind.name} {parameter}{brackets}")
             if is_out and not brackets:
@@ -218,10 +226,14 @@ class Signatures:
                     "ENDIF",
                 ]
         lines = [f"GLOBAL DEF {name} ({','.join(heads)} )", *declared, *body, "END"]
-        if use.is_function:
+        if use.is_function or (known is not None and known.result):
             kind = self._kind(f"{name}_R", use.result) or self._number(DataUse(is_assigned=True))
+            if known is not None and self._has_type(known.result):
+                kind = self._result(known)
             value = kind.value
-            if kind.name == "BOOL":
+            if known is not None and known.default:
+                value = known.default
+            elif kind.name == "BOOL":
                 value = "FALSE" if use.result.is_left_by_false else "TRUE"
             elif kind.name in ("INT", "REAL"):
                 value = "0" if kind.name == "INT" else "0.0"
@@ -235,6 +247,16 @@ class Signatures:
                 "ENDFCT",
             ]
         return "\n".join(lines) + "\n"
+
+    def _has_type(self, name: str) -> bool:
+        return name in SCALARS or (bool(name) and self._find_type(name) is not None)
+
+    def _result(self, known: PackageRoutine) -> _Kind:
+        """What a routine of a package gives back."""
+        found = SCALARS.get(known.result) or self._find_type(known.result)
+        assert found is not None, "it was looked for"
+        value = self._values.get(known.result)
+        return _Kind(known.result, default(found) if value is None else value)
 
     def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool, str]:
         """The type of a parameter, whether it is passed :OUT, and the brackets of an array."""

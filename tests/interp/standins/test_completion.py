@@ -212,3 +212,23 @@ def test_negative_numbers_are_asked_for() -> None:
     """A number that a program compares with something negative is that number."""
     program = _main("IF APP_NUMBER<>-17 THEN\n$OUT[1]=TRUE\nENDIF\n")
     assert "DECL GLOBAL INT APP_NUMBER=-17" in _data_list(program)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_option_packages(executor: str) -> None:
+    """Routines of a package have its signature: types, optional parameters, results that go on."""
+    declared = "DECL EKI_STATUS RET\nINT CONTAINER,OK,N\nREAL X\n"
+    body = (
+        'RET=EKI_OPEN("C")\nRET=EKI_SEND("C","Robot/Data")\nRET=EKI_GETINT("C","Robot/N",N)\n'
+        'IF RET.CONNECTED THEN\n$OUT[1]=TRUE\nENDIF\nEKI_CHECK(RET,#QUIT,"C")\n'
+        'OK=RSI_CREATE("sensor.rsi",CONTAINER,TRUE)\nIF OK==RSIOK THEN\n$OUT[2]=TRUE\nENDIF\n'
+        "OK=RSI_ON(#ABSOLUTE,#IPO_FAST)\nRSI_MOVECORR()\nOK=RSI_OFF()\n"
+        'MSGNOTIFY("Text",,3)\nX=RSI_SETPUBLICPAR(CONTAINER,"POS","Limit",2)\n'
+    )
+    program = _main(body, declared=declared)
+    run = _run(program, executor)
+    outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
+    assert (("end", ""), [1, 2]) == (_outcome(run), outputs)
+    assert ("EKI_OPEN", "routine", "package") in _names(program)
+    calls = [event.fields["name"] for event in run.events if event.kind == "call"]
+    assert ["EKI_OPEN", "EKI_SEND", "EKI_GETINT", "EKI_CHECK"] == [one.upper() for one in calls[:4]]
