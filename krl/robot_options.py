@@ -32,6 +32,9 @@ def robot_options(
     has_robot: bool,
 ) -> OwnRobot:
     """What --machine, --urdf, --mjcf and --scene name. Raises `InputError`."""
+    for file in (machine, urdf, mjcf, scene):
+        if file is not None and file.is_dir():
+            raise InputError(f"{file}: a folder, not a file")
     named = [file for file in (machine, urdf, mjcf) if file is not None]
     if len(named) > 1:
         raise InputError("--machine, --urdf and --mjcf: only one of them can be the arm")

@@ -258,12 +258,13 @@ def _seen(done: "RunResult") -> Iterator[str]:
 @contextmanager
 def _expected_errors() -> Iterator[None]:
     """Turn what the rooms raise about input into what the door prints."""
+    from interp.robot.simulation.scene import SceneError
     from interp.values.faults import RuntimeFailure
 
     try:
         with expected_extras(*ARM):
             yield
-    except RuntimeFailure as error:
+    except (RuntimeFailure, SceneError) as error:
         raise InputError(str(error)) from error
 
 

@@ -65,6 +65,16 @@ def test_contacts_are_told_and_change_nothing(run: Run, tmp_path: Path) -> None:
     assert ["gripper", "table"] == first["parts"]
 
 
+def test_a_mesh_that_is_none(run: Run, tmp_path: Path) -> None:
+    """What only MuJoCo finds wrong with a scene is one line as well."""
+    (tmp_path / "a.stl").write_text("solid", encoding="ascii")
+    scene = '[[object]]\nname = "floor"\nshape = "mesh"\nfile = "a.stl"\n'
+    status, _, err = run("--robot", "kinematic", "--scene", "@s.toml", s_toml=scene)
+    assert 2 == status
+    assert err.startswith("krl: s.toml:1: ")
+    assert 1 == len(err.splitlines())
+
+
 def test_no_contact_no_finding(run: Run) -> None:
     """A table out of the way is nothing to tell."""
     scene = TABLE + "frame = {X = 500, Z = -300}\n" + GRIPPER

@@ -22,7 +22,7 @@ from interp.values.poses import Pose
 if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
 
-__all__ = ["Cell", "put_loads"]
+__all__ = ["MESH", "OBJECT", "Cell", "put_loads"]
 
 _LOADS: Final = {"$LOAD": 6, "$LOAD_A1": 1, "$LOAD_A2": 2, "$LOAD_A3": 3}
 """The links that carry loads."""
@@ -34,6 +34,8 @@ _SHAPES: Final = {
 }
 _STANDING, _HELD = (0.45, 0.55, 0.65, 1.0), (0.35, 0.65, 0.4, 1.0)
 _HAND = "flange of the arm"
+#: What the names of geoms and meshes of a scene begin with, so that they are no others'.
+OBJECT, MESH = "object ", "mesh of "
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,10 @@ class Cell:
         try:
             return self._spec().compile()
         except ValueError as error:
-            raise SceneError(f"the scene: {' '.join(str(error).split())}") from None
+            said = " ".join(str(error).split())
+            meshes = (one for one in self.scene.objects if f"{MESH}{one.name}'" in said)
+            where = next((one.where for one in meshes), "the scene")
+            raise SceneError(f"{where}: {said}") from None
 
     def xml(self) -> str:
         """The model as MJCF."""
@@ -115,13 +120,13 @@ class Cell:
 
     def _add(self, spec: Any, one: SceneObject) -> None:
         body = spec.body(_HAND) if one.is_held else spec.worldbody
-        geom = body.add_geom(name=one.name, type=_SHAPES[one.shape])
+        geom = body.add_geom(name=f"{OBJECT}{one.name}", type=_SHAPES[one.shape])
         geom.rgba = _HELD if one.is_held else _STANDING
         geom.mass = one.mass
         x, y, z = (edge / 2000.0 for edge in one.edges)
         geom.size = (x, z, 0.0) if one.shape == "cylinder" else (x, y, z)
         if one.file is not None:
-            name = f"mesh of {one.name}"
+            name = f"{MESH}{one.name}"
             scale = one.scale / 1000.0
             spec.add_mesh(name=name, file=str(one.file.resolve()), scale=(scale,) * 3)
             geom.meshname = name

@@ -14,7 +14,7 @@ import numpy as np
 
 from interp.robot.kinematics.machine_data import AxisKind
 from interp.robot.kinematics.solver import Array
-from interp.robot.simulation.cell import Cell
+from interp.robot.simulation.cell import OBJECT, Cell
 from interp.robot.simulation.links import reach_of
 from interp.robot.simulation.observations import Observation, Periods, Times
 
@@ -79,4 +79,4 @@ class ContactCheck:
 
     def _name(self, geom: int) -> str:
         name = self._model.geom(geom).name or self._model.body(self._model.geom_bodyid[geom]).name
-        return str(name).replace("_", " ")
+        return str(name).removeprefix(OBJECT).replace("_", " ")

@@ -57,7 +57,8 @@ class SceneObject:
     """An obstacle in $WORLD, or a workpiece on the flange where ``is_held``.
 
     ``edges`` are those of a box; of a cylinder twice its radius and its height, of a sphere twice
-    its radius, in mm. A mesh has a ``file`` and a ``scale`` to mm. ``mass`` is in kg.
+    its radius, in mm. A mesh has a ``file`` and a ``scale`` to mm. ``mass`` is in kg,
+    ``where`` its place as ``file:line``.
     """
 
     name: str
@@ -68,6 +69,7 @@ class SceneObject:
     scale: float = 1.0
     is_held: bool = False
     mass: float = 0.0
+    where: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +141,7 @@ class _Reader:
             self._positive("scale", 1.0),
             held,
             self._positive("mass", 0.0) if "mass" in entry else 0.0,
+            self._where,
         )
 
     def _edges(self, shape: str) -> Point:

@@ -151,7 +151,8 @@ def test_a_scene_that_cannot_be_built(tmp_path: Path) -> None:
     from interp.robot.simulation.scene import SceneError
 
     (tmp_path / "bad.stl").write_bytes(b"solid nothing")
-    bad = SceneObject("bad", "mesh", IDENTITY, file=tmp_path / "bad.stl")
-    with pytest.raises(SceneError, match="the scene: ") as caught:
+    file = tmp_path / "bad.stl"
+    bad = SceneObject("bad", "mesh", IDENTITY, file=file, where="scene.toml:3")
+    with pytest.raises(SceneError, match=r"^scene.toml:3: ") as caught:
         Cell(default_machine(), Scene((bad,))).model()
     assert "\n" not in str(caught.value)

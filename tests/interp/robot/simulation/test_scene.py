@@ -25,7 +25,8 @@ def test_objects_are_read(tmp_path: Path) -> None:
     )
     table, pin, ball = read_scene(written(tmp_path, text)).objects
     frame = Pose.of(x=700, z=200, a=30)
-    assert SceneObject("table", "box", frame, (800.0, 600.0, 40.0)) == table
+    where = f"{tmp_path / 'scene.toml'}:1"
+    assert SceneObject("table", "box", frame, (800.0, 600.0, 40.0), where=where) == table
     assert ((10.0, 10.0, 80.0), True, 1.5) == (pin.edges, pin.is_held, pin.mass)
     assert (20.0, 20.0, 20.0) == ball.edges
 
