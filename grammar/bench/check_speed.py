@@ -7,6 +7,7 @@ measurement helps the next; importing modules is not counted. MB are 1,000,000 b
 from __future__ import annotations
 
 import platform
+import shutil
 import tempfile
 import time
 from collections import Counter
@@ -59,7 +60,8 @@ def measure_check(
     """Measure on everything below ``roots``, and on synthetic corpora of ``sizes`` MB.
 
     ``on_step`` is called `steps` times. In the record, ``s_per_mb`` is for a first check, the best
-    of ``rounds``, ``unchanged_s_per_mb`` for one that finds all results kept from the one before;
+    of ``rounds``, ``unchanged_s_per_mb`` for one that finds all results kept from the one before,
+    ``one_changed_seconds`` for one after a line was added to one file, if any file is no archive;
     ``linear`` is the cost of a MB in the last of ``scaling`` over that in the first. The phase
     "loading" is the grammar and the tables of the controller, which cost the same for any volume.
 
@@ -80,6 +82,8 @@ def measure_check(
     on_step()
     unchanged = _unchanged(roots)
     on_step()
+    one_changed = _one_changed(roots)
+    on_step()
     scaling = []
     for size in sizes:
         scaling.append(_scaled(size, seed))
@@ -92,6 +96,7 @@ def measure_check(
         **best,
         "s_per_mb": best["seconds"] * MB / best["bytes"],
         "unchanged_s_per_mb": unchanged * MB / best["bytes"],
+        "one_changed_seconds": one_changed,
         "phases": [
             {"name": name, "seconds": phases[name], "share": phases[name] / total}
             for name in PHASES
@@ -104,7 +109,7 @@ def measure_check(
 
 def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
     """How often `measure_check` calls ``on_step``."""
-    return rounds + 2 + len(sizes)
+    return rounds + 3 + len(sizes)
 
 
 # -------------------------------------------------------------------------- in a fresh process
@@ -131,6 +136,25 @@ def _unchanged(roots: Sequence[Path]) -> float:
     with tempfile.TemporaryDirectory() as folder:
         call_isolated(_timed, roots, Path(folder))
         return float(call_isolated(_timed, roots, Path(folder))["seconds"])
+
+
+def _one_changed(roots: Sequence[Path]) -> float | None:
+    """Seconds for a check after a change in one file of all, that of the middle by its size."""
+    with tempfile.TemporaryDirectory() as folder:
+        copies = []
+        for number, root in enumerate(roots):
+            copy = Path(folder, str(number), root.resolve().name)
+            copy.parent.mkdir()
+            shutil.copytree(root, copy) if root.is_dir() else shutil.copy(root, copy)
+            copies.append(copy)
+        cache = Path(folder, "kept")
+        call_isolated(_timed, copies, cache)
+        files = [one for one in discover(copies) if isinstance(one, Found) and one.member is None]
+        if not files:
+            return None
+        file = sorted(files, key=lambda one: (one.size, one.path))[len(files) // 2].file
+        file.write_bytes(file.read_bytes() + b"\n; a comment\n")
+        return float(call_isolated(_timed, copies, cache)["seconds"])
 
 
 def _scaled(size: float, seed: int) -> dict[str, Any]:

@@ -43,6 +43,7 @@ from support.files import archives
 from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
+from support.parallel.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 from support.parallel.sticky_pool import StickyPool
 
@@ -113,7 +114,7 @@ def check_paths(
     size = sum(candidate.size for project in projects for candidate in project)
     processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
-    with ResultStore(cache, "check") as store, StickyPool(processes) as pool:
+    with gc_paused(0), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
         for result in _run(iter(projects), pool, store, options):
             on_done(result.files + len(result.skipped))
             results.append(_reported(result, names))

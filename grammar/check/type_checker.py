@@ -139,6 +139,8 @@ class TypeChecker:
         value = self.infer(node, to)
         if value is to:
             return
+        if isinstance(to, Enumeration) and isinstance(node, ast.Variable):
+            self._note_constant(to, node.name)
         if type(value) is Array and type(node) in _NAMES:
             brackets = Fix("write empty brackets where the whole array is meant")
             self.reject("array-without-index", node, without_index(value), brackets)
@@ -155,6 +157,12 @@ class TypeChecker:
             self.settle(node, to)
         elif to is REAL and value is INT:
             self._report_quotient(node)
+
+    def _note_constant(self, to: Enumeration, name: ast.Name) -> None:
+        """A name that nothing declares may be a constant without its # [TYP-16]."""
+        meant = next((one for one in to.constants if one.upper() == name.key), None)
+        if meant is not None and self.context.found(name) is None:
+            self.context.constants[name] = f"#{meant}"
 
     def settle(self, node: ast.Expression, to: Type) -> None:
         """Note the enumeration of a constant, which is that of its place [TYP-16]."""

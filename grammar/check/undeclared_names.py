@@ -169,6 +169,8 @@ def _unknown(context: Context, use: Use) -> Diagnostic:
         slug = "routine-not-global" if space is Space.ROUTINE else _SLUGS[space]
         return context.finding(slug, name, message, reason=_why_hidden(hidden))
     fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
+    if name in context.constants:
+        fix = Fix(f"did you mean {context.constants[name]}?")
     return context.finding(_SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
 
 
@@ -286,6 +288,8 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
     if space is None or isinstance(use.answer, Found):
         return ()
     name = use.name.text
+    if use.name in context.constants:
+        return (context.constants[use.name],)
     if space is Space.VALUE and f"${use.name.key}" in context.system.variables:
         return (f"${name}",)
     bare = name.rstrip("0123456789")

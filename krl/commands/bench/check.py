@@ -67,6 +67,7 @@ def _print(record: Mapping[str, Any]) -> None:
             [
                 ("first check", f"{record['s_per_mb']:.2f} s/MB", "6 s/MB"),
                 ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
+                ("one file changed", _seconds(record["one_changed_seconds"]), ""),
             ],
         )
     )
@@ -94,6 +95,10 @@ def _print(record: Mapping[str, Any]) -> None:
             figures(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows)
         )
         print_growth(console, record, "cost of a MB")
+
+
+def _seconds(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f} s"
 
 
 def _plain(value: float | None) -> str:

@@ -31,6 +31,7 @@ def test_record(tmp_path: Path) -> None:
     assert 1 == pytest.approx(sum(phase["share"] for phase in record["phases"]))
     assert all(phase["seconds"] > 0 for phase in record["phases"])
     assert 0 < record["unchanged_s_per_mb"] < record["s_per_mb"]
+    assert 0 < record["one_changed_seconds"]
     small, large = record["scaling"]
     assert (10_000, 20_000) <= (small["bytes"], large["bytes"])
     assert record["linear"] == large["s_per_mb"] / small["s_per_mb"]

@@ -39,6 +39,17 @@ END"""
     agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
 
 
+def test_a_constant_without_its_mark_is_told() -> None:
+    """A name that nothing declares where a constant of that name fits is told with its #."""
+    text = "DEF CELL()\n$IPO_MODE = BASE\n$ORI_TYPE = VAR\nEND\n"
+    syntax = read_module(text, "cell.src")
+    assert not isinstance(syntax, list)
+    found = check(link([File("cell.src", syntax)]), lambda _: Source(text, "cell.src"))
+    assert ["did you mean #BASE?", "did you mean #VAR?"] == [
+        one.fix.text for one in found if one.code == "KRL101" and one.fix
+    ]
+
+
 def test_a_slip_of_a_routine_is_a_warning(agrees: Agrees) -> None:
     """A routine that is not there is probably the one that is called nearly so."""
     cell = """DEF CELL()
