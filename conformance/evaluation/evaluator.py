@@ -2,7 +2,8 @@
 
 Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
 settle it (a path without a robot, times that were not measured). `evaluate` adds what every case
-expects implicitly: that the front end reports no other error, that the program ends.
+expects implicitly: that the front end reports no other error, that an output of which it expects a
+change changes only as it says, that the program ends.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
             continue
         evaluated = evaluate_on_trace if one.needs == "none" else evaluate_on_path
         found.append(_check(one, *evaluated(one, seen, marks)))
-    return [*found, *_ended(case, seen)]
+    return [*found, *_unsaid_outputs(case, seen), *_ended(case, seen)]
 
 
 def _marks(case: Case) -> Marks:
@@ -117,6 +118,21 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
         if found.severity == "error" and (found.file, found.line) not in said:
             text = "no error but those expected"
             yield Check(found.file, found.line, text, "unmet", f"{found.code} {found.message}")
+
+
+def _unsaid_outputs(case: Case, seen: Observation) -> Iterator[Check]:
+    """An output that a case sees changing changes where it says, to what it says, nowhere else."""
+    said = {
+        (*one.arguments, one.file, one.line)
+        for one in case.expectations
+        if one.kind == "out" and "never" not in one.arguments
+    }
+    watched = {number for number, *_ in said}
+    for event in seen.of_kind("out"):
+        number, value = str(event.fields.get("number")), str(event.fields.get("value")).upper()
+        if number in watched and (number, value, event.file, event.line) not in said:
+            text = f"output {number} changes only as it is said"
+            yield Check(event.file, event.line, text, "unmet", f"{value} at {event.time} us")
 
 
 def _ended(case: Case, seen: Observation) -> Iterator[Check]:

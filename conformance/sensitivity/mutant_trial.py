@@ -11,6 +11,7 @@ import os
 import pickle
 import signal
 import tomllib
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -169,6 +170,7 @@ def _load(case: Case) -> None:
 
 
 def _in_copy(mutant: Mutant, cases: Sequence[Case], most: int, pipe: int) -> NoReturn:
+    warnings.simplefilter("ignore")  # of computing with what a mutant has made
     try:
         with os.fdopen(pipe, "wb", buffering=0) as told:
             for trial in _trials(mutant, cases, most):

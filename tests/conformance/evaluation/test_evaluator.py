@@ -121,7 +121,7 @@ def test_events_are_at_their_time(text: str, time: int, state: str) -> None:
         event("motion_end", 1_000_000, 9, motion=1),
     ]
     seen = event("out", time, number=2, value=True)
-    assert [state] == states(case(text), *motion, seen)
+    assert state == states(case(text), *motion, seen)[0]
 
 
 def test_what_nobody_measured_is_open() -> None:
@@ -211,3 +211,16 @@ def test_first_failure_counts_in_phase_parse() -> None:
     assert ["met"] == [one.state for one in evaluate(asked, Observation(findings=(first, second)))]
     assert "unmet" in [one.state for one in evaluate(asked, Observation(findings=(second, first)))]
     assert ["unmet"] == [one.state for one in evaluate(asked, Observation())]
+
+
+def test_watched_outputs_change_only_as_it_is_said() -> None:
+    """Elsewhere, or to another value, a change of an output that is watched is a failure."""
+    asked = case("out 2 TRUE")
+    right = event("out", number=2, value=True)
+    assert ["met"] == states(asked, right)
+    assert ["met"] == states(asked, right, event("out", number=3, value=True, line=4))
+    for wrong in (
+        event("out", number=2, value=True, line=4),
+        event("out", number=2, value=False),
+    ):
+        assert ["met", "unmet"] == states(asked, right, wrong)
