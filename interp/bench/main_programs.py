@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
+from grammar.semantics.link import words_of
 from grammar.syntax import ast
 from grammar.syntax.references import calls_in
 from grammar.syntax.source import Source
@@ -25,8 +26,10 @@ from interp.controller.input_script import Script, ScriptError
 from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
+from interp.port.requests import At
 from interp.program.load import CheckedProgram, load_all
 from interp.session import RunSetup, run_program, submit_of
+from interp.standins.uses import FOLDER
 from interp.values.faults import Fault, LinkError
 
 __all__ = [
@@ -82,7 +85,7 @@ class Ran:
     from its set-point at most, where the robot measures. ``inputs``: how many changes of inputs it
     took to fulfil its waits. ``skipped`` are motions that could not be planned where something
     stood in for what the backup lacks, ``stood_in`` what did. ``is_own_fault``: it
-    stopped at a fault with nothing that stood in.
+    stopped in a line of the backup that names nothing that stood in.
     """
 
     result: Result
@@ -252,8 +255,17 @@ def run_main(
         run.controller.automatic_inputs.count,
         len(run.controller.skipped_motions),
         stood_in,
-        result == "fault" and not stood_in,
+        result in ("fault", "unlinked") and _is_own(program, outcome.at, stood_in),
     )
+
+
+def _is_own(program: CheckedProgram, at: At | None, stood_in: Iterable[str]) -> bool:
+    """Whether the line of a fault is one of the backup and names nothing that stood in."""
+    texts = {unit.module.path: unit.source for unit in program.units.values()}
+    if at is None or at.file not in texts or at.file.startswith(FOLDER):
+        return False
+    names = {name.upper() for name in stood_in}
+    return names.isdisjoint(words_of(texts[at.file].line(at.line)))
 
 
 @dataclass(slots=True)

@@ -75,6 +75,21 @@ def test_what_stands_in(backup: Path) -> None:
     assert ("fault", [], True) == (fails["result"], fails["stood_in"], fails["is_own_fault"])
 
 
+def test_whose_fault_it_is(backup: Path) -> None:
+    """A fault is not the program's own where its line names something that stood in."""
+    texts = {
+        "own": f"own ( )\nREAL X\n{MOVE}nothing ( )\nX=X+1.0\n",
+        "ours": f"ours ( )\n{MOVE}$VEL.CP=other[99]\n$VEL.CP=-other[1]\n",
+    }
+    for name, text in texts.items():
+        file = backup / "R1" / "Program" / f"{name}.src"
+        file.write_text(f"DEF {text}END\n", encoding="utf-8")
+    found = results(backup)
+    assert {"own": ("fault", True), "ours": ("fault", False)} == {
+        name: (found[name]["result"], found[name]["is_own_fault"]) for name in texts
+    }
+
+
 def test_where_and_why(backup: Path) -> None:
     """Each row has the place where it ended, why, the motions made and the machine."""
     row = results(backup)["fails"]

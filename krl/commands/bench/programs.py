@@ -108,6 +108,7 @@ def programs(
         "results": {},
         "moved": 0,
         "served": 0,
+        "own_faults": 0,
         "programs": [],
         "unread": [],
     }
@@ -176,6 +177,7 @@ def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
     record["results"] = dict(Counter(row["result"] for row in rows))
     record["moved"] = sum(row["motions"] > 0 for row in rows)
     record["served"] = sum(row["result"] in _SERVED for row in rows)
+    record["own_faults"] = sum(row["is_own_fault"] for row in rows)
 
 
 def _print_origin(console: Console, done: "Surveyed") -> None:
@@ -218,4 +220,8 @@ def _print_summary(console: Console, record: Mapping[str, Any]) -> None:
     console.print("; ".join(told), soft_wrap=True)
     if rows:
         moved, served = (record[name] / len(rows) for name in ("moved", "served"))
-        console.print(f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever")
+        console.print(
+            f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever, "
+            f"{record['own_faults'] / len(rows):.0%} stopped at a fault of their own",
+            soft_wrap=True,
+        )
