@@ -237,9 +237,9 @@ def measure_planted(
     """Plant ``count`` mistakes in programs below ``roots``, each by itself.
 
     ``on_step`` is called once a mistake. The record has for all of them and by kind: ``planted``,
-    the shares ``found`` and ``in_place``, and the ``median`` and 95th percentile ``p95`` of the
-    number of findings of a mistake that is found; ``survivors`` are the first that were not found,
-    ``elsewhere`` those that were found in another place.
+    the shares ``found`` and ``in_place``, and of the number of findings of a mistake that is found
+    the ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors``
+    are the first that were not found, ``elsewhere`` those that were found in another place.
 
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
@@ -298,6 +298,16 @@ def _trial(
     return None
 
 
+def _median_file(trials: Sequence[Mapping[str, Any]]) -> float | None:
+    """The mean number of findings of a mistake that is found, in the median file."""
+    files: dict[str, list[int]] = {}
+    for one in trials:
+        if one["findings"]:
+            files.setdefault(one["path"], []).append(one["findings"])
+    means = [statistics.mean(counts) for counts in files.values()]
+    return round(statistics.median(means), 2) if means else None
+
+
 def _next_code(source: Source, line: int) -> int:
     """The next line that is neither blank nor a comment: what is missing is missed there.
 
@@ -321,6 +331,7 @@ def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "in_place": round(sum(one["in_place"] for one in trials) / found, 4) if found else None,
         "median": statistics.median(counts) if counts else None,
         "p95": counts[min(found - 1, int(0.95 * found))] if counts else None,
+        "median_file": _median_file(trials),
     }
 
 

@@ -203,9 +203,8 @@ class Project:
 
     def _add_packages(self, packages: frozenset[str]) -> None:
         """Take what option packages declare as seen from everywhere, unless a file declares it."""
-        if packages:
-            for space, found in PackageScope(packages, self._globals.near("")).all():
-                self._names[space].setdefault(found.symbol.key, [found])
+        for space, found in PackageScope(packages, self._globals.near("")).all():
+            self._names[space].setdefault(found.symbol.key, [found])
 
     def _collect(self) -> None:
         """Sort what the modules declare by whether it is seen from everywhere."""

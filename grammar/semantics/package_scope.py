@@ -1,7 +1,9 @@
 """What option packages declare, as a scope: names that no file at hand has to declare.
 
 A package is there where it is named, or where a project calls one of its routines. What a file
-declares itself always counts more. Signatures come from `grammar.semantics.packages`.
+declares itself always counts more. Signatures come from `grammar.semantics.packages`. With them
+come the routines that inline forms call on every controller, BAS before all, as repositories seldom
+have the files that they stand in.
 """
 
 from __future__ import annotations
@@ -28,6 +30,11 @@ from grammar.syntax.references import Space
 __all__ = ["PackageScope", "called_packages"]
 
 _NO_SPAN = (0, 0)
+#: What takes anything, by whether it has a value; of the parameters nothing certain is known.
+_OF_INLINE_FORMS = {
+    **dict.fromkeys("SVEL_CP SVEL_JOINT SACC_JOINT SJERK SGEAR_JERK".split(), True),
+    **dict.fromkeys("STOOL STOOL2 SBASE SLOAD SIPO_MODE SAPO SAPO_PTP".split(), True),
+}
 
 
 def called_packages(calls: Iterable[str]) -> frozenset[str]:
@@ -69,19 +76,38 @@ def _table(packages: frozenset[str]) -> Table:
     for routine in known.routines.values():
         if routine.package in packages:
             spaces[Space.ROUTINE][routine.name] = _routine(routine)
+    for symbol in _of_every_controller():
+        spaces[Space.ROUTINE].setdefault(symbol.key, symbol)
     return Table(spaces, ())
 
 
+def _of_every_controller() -> Iterator[RoutineSymbol]:
+    """BAS takes a command and a number, IR_STOPM nothing [MOT-03, INT-16]."""
+    command = PackageParameter("COMMAND", "?", False, False, False)
+    number = PackageParameter("VALUE", "REAL", False, False, True)
+    yield _symbol("BAS", False, (command, number), has_more=False)
+    yield _symbol("IR_STOPM", False, (), has_more=False)
+    for name, has_value in _OF_INLINE_FORMS.items():
+        yield _symbol(name, has_value, (), has_more=True)
+
+
 def _routine(routine: PackageRoutine) -> RoutineSymbol:
+    has_more = routine.has_more or routine.is_unconfirmed
+    return _symbol(routine.name, bool(routine.result), routine.parameters, has_more=has_more)
+
+
+def _symbol(
+    name: str, has_value: bool, parameters: tuple[PackageParameter, ...], *, has_more: bool
+) -> RoutineSymbol:
     return RoutineSymbol(
         Kind.ROUTINE,
-        routine.name,
+        name,
         _NO_SPAN,
         Access.GLOBAL,
-        # there is a value, and working programs receive it in variables of several types
-        given=UNKNOWN if routine.result else None,
-        parameters=tuple(map(_parameter, routine.parameters)),
-        has_more=routine.has_more or routine.is_unconfirmed,
+        # working programs receive a value in variables of several types
+        given=UNKNOWN if has_value else None,
+        parameters=tuple(map(_parameter, parameters)),
+        has_more=has_more,
     )
 
 

@@ -14,8 +14,8 @@ KNOWN = {
     ("signs.src", "KRL409"),
     ("soft_names.src", "KRL412"),
 }
-#: What is written by chance assigns a variable to itself and waits for its own variables.
-POINTLESS = {"KRL411", "KRL412"}
+#: What is written by chance assigns variables to themselves, waits for them, and sets any voltage.
+POINTLESS = {"KRL411", "KRL412", "KSS1422"}
 
 
 def graver(root: Path) -> set[tuple[str, str]]:

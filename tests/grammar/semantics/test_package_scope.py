@@ -52,3 +52,16 @@ def test_a_run_knows_no_packages() -> None:
     known = project(CALLS, packages=None)
     scope = known.scope(known.modules[0])
     assert isinstance(scope.find(Space.ROUTINE, "EKI_OPEN"), MaybeElsewhere)
+
+
+def test_every_controller_has_bas() -> None:
+    """Routines of inline forms are known without their files, and only where they are missing."""
+    text = "DEF M0()\nBAS(#INITMOV, 0)\nEND\n"
+    known = project(text)
+    found = known.scope(known.modules[0]).find(Space.ROUTINE, "BAS")
+    assert isinstance(found, Found)
+    assert found.module is None
+    known = project(text, "DEF M1()\nEND\nGLOBAL DEF BAS(A:IN)\nEND\n")
+    found = known.scope(known.modules[0]).find(Space.ROUTINE, "BAS")
+    assert isinstance(found, Found)
+    assert found.module is not None
