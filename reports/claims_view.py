@@ -305,10 +305,16 @@ def _sensitivity(record: Record) -> Claim:
     aim = number(record, "aim")
     failing = count(record, "failing")
     found = (
-        f"{planted:,} faults were planted, one at a time, into the controller, the arm and the "
-        f"machine. Cases noticed {killed:,} of them, {percent(killed, planted)}; {failing:,} of "
+        f"{planted:,} faults were planted, one at a time, into the controller and the arm. "
+        f"Cases noticed {killed:,} of them, {percent(killed, planted)}; {failing:,} of "
         f"these fail a case, the others change the verdict of a case whose rule is not sure."
     )
+    drawn = nested(record, "drawn")
+    if count(drawn, "mutants"):
+        found += (
+            f" Of {count(drawn, 'mutants'):,} changes of the code that were drawn by chance "
+            f"{count(drawn, 'red'):,} fail a case."
+        )
     if number(record, "cases_per_s"):
         found += (
             f" {count(record, 'cases'):,} cases run at {number(record, 'cases_per_s'):,.0f} a "
