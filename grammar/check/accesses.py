@@ -70,7 +70,10 @@ def _later(context: Context, node: ast.InterruptDeclaration | ast.Trigger) -> It
 
 def own_parts(node: ast.Node) -> Iterator[ast.Node]:
     """The nodes directly below one, without the statements of a block; the values of each CASE."""
-    inner = BODIES.get(type(node), ())
+    inner = BODIES.get(type(node))
+    if inner is None:
+        yield from children(node)
+        return
     held = {id(one) for name in inner for one in getattr(node, name) or ()}
     for child in children(node):
         if id(child) not in held:

@@ -25,6 +25,8 @@ from grammar.syntax.walk import root_variable, walk, without_parentheses
 __all__ = ["check", "needed_parameters"]
 
 _WORD = re.compile(r"[A-Za-z_$][\w$]*")
+# A text, or a comment, which is none.
+_TEXT = re.compile(r';[^\r\n]*|"([^"\r\n]*)"')
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -69,7 +71,7 @@ class _DataFlow:
         self._routine = routine
         told = context.module.words or frozenset()
         symbols = routine.table.table.spaces[Space.VALUE].values()
-        asked = _names_in_texts(routine)
+        asked = _names_in_texts(context, routine)
         followed = {one.key: one for one in symbols if one.key not in told and one.key not in asked}
         self.parameters = frozenset(
             key for key, one in followed.items() if one.kind is Kind.PARAMETER
@@ -200,14 +202,11 @@ def _position(node: FlowNode) -> tuple[int, int]:
     return node.statement.span[node.is_test], node.is_test
 
 
-def _names_in_texts(routine: RoutineBody) -> frozenset[str]:
+def _names_in_texts(context: Context, routine: RoutineBody) -> frozenset[str]:
     """The names that a routine hands over in texts, as VARSTATE("NAME") does."""
-    return frozenset(
-        word.upper()
-        for node in walk(routine.node)
-        if isinstance(node, ast.StringLiteral)
-        for word in _WORD.findall(node.text)
-    )
+    start, end = routine.node.span
+    texts = _TEXT.findall(context.source.text, start, end)  # a walk over the tree takes long
+    return frozenset(word.upper() for text in texts for word in _WORD.findall(text))
 
 
 # ------------------------------------------------------------------------------- single statements

@@ -24,12 +24,24 @@ def _names(node: Node) -> tuple[str, ...]:
 
 def children(node: Node) -> Iterator[Node]:
     """The nodes directly below a node, in the order of the text where that has a meaning."""
-    for name in _names(node):
+    kind = type(node)
+    names = _INNER.get(kind)
+    if names is None:
+        plain = ("span", *(one.name for one in fields(node) if one.type in _PLAIN))
+        names = _INNER[kind] = tuple(name for name in _names(node) if name not in plain)
+    found: list[Node] = []
+    for name in names:
         value = getattr(node, name)
-        if isinstance(value, Node):
-            yield value
-        elif isinstance(value, tuple):
-            yield from (item for item in value if isinstance(item, Node))
+        if isinstance(value, tuple):
+            found += [item for item in value if isinstance(item, Node)]
+        elif isinstance(value, Node):
+            found.append(value)
+    return iter(found)
+
+
+#: The fields of each kind of node that may hold nodes, and the types of those that cannot.
+_INNER: dict[type[Node], tuple[str, ...]] = {}
+_PLAIN = frozenset({"str", "int", "bool", "str | None", "int | None", "bool | None"})
 
 
 #: The fields of each kind of block that hold nodes on lines of their own, in the order of the text.
@@ -57,7 +69,7 @@ def walk(node: Node) -> Iterator[Node]:
     while todo:
         here = todo.pop()
         yield here
-        todo.extend(reversed(list(children(here))))
+        todo += [*children(here)][::-1]
 
 
 def same(left: Node, right: Node) -> bool:
