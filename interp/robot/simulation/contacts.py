@@ -2,7 +2,8 @@
 
 Shapes of machine data are assumed (`interp.robot.simulation.links`), so what they touch is a hint;
 between set-points the axes are taken to go straight, in steps in which nothing moves more than
-`_STEP`.
+`_STEP`. Parts of a robot's own file that touch while all its joints are at zero overlap by design,
+and are no contact.
 """
 
 from __future__ import annotations
@@ -40,6 +41,10 @@ class ContactCheck:
         self._before: tuple[int, Array] | None = None
         self._touched: frozenset[tuple[str, str]] = frozenset()
         self._periods = Periods("collision")
+        self._usual: frozenset[tuple[str, str]] = frozenset()
+        if cell.robot is not None:
+            names = {one.name.replace("_", " ") for one in cell.scene.objects}
+            self._usual = frozenset(pair for pair in self._pairs() if not names & set(pair))
 
     def observe(self, times: Times, axes: Array) -> None:
         """Look at axes (n, axes)."""
@@ -63,6 +68,11 @@ class ContactCheck:
 
     def _look(self, time: int, axes: Array) -> None:
         self._data.qpos[:] = axes[self._columns] * self._units
+        self._touched = self._pairs() - self._usual
+        self._note(time)
+
+    def _pairs(self) -> frozenset[tuple[str, str]]:
+        """What touches now."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
         touched = set()
@@ -71,8 +81,7 @@ class ContactCheck:
             if contact.dist < 0.0:
                 first, second = sorted(self._name(int(geom)) for geom in contact.geom)
                 touched.add((first, second))
-        self._touched = frozenset(touched)
-        self._note(time)
+        return frozenset(touched)
 
     def _note(self, time: int) -> None:
         self._periods.at(time, ((pair, 0.0, 0.0) for pair in sorted(self._touched)))

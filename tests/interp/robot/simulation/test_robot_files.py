@@ -10,12 +10,15 @@ from hypothesis import strategies as st
 
 from interp.robot.arm import Samples
 from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.simulation.scene import Scene, SceneObject
+from interp.values.poses import Pose
 
 pytest.importorskip("mujoco")
 
 import mujoco
 
 from interp.robot.simulation.cell import Cell
+from interp.robot.simulation.contacts import ContactCheck
 from interp.robot.simulation.mujoco import MujocoRobot
 from interp.robot.simulation.robot_files import RobotFile, RobotFileError, read_robot
 
@@ -163,6 +166,21 @@ def test_an_arm_of_four_axes_with_a_gripper(tmp_path: Path) -> None:
 
 
 FREE = '<mujoco><worldbody><body><freejoint name="f"/><geom size="1"/></body></worldbody></mujoco>'
+
+
+def test_parts_that_overlap_by_design_touch_nothing(tmp_path: Path) -> None:
+    """A hand within the reach of its own link is no contact; a post in its way is one."""
+    found = read(tmp_path, MJCF, "scara.xml")
+    times = 12_000 * np.arange(20, dtype=np.int64)
+    axes = np.zeros((20, 6))
+    axes[:, 0] = np.linspace(0.0, 90.0, 20)
+    post = SceneObject("post", "box", Pose.of(0, 600, 300), (60.0, 60.0, 200.0))
+    for objects, touched in (((), set()), ((post,), {"post"})):
+        check = ContactCheck(Cell(found.machine, Scene(objects), found))
+        check.observe(times, axes)
+        parts = {part for one in check.observations() for part in one.parts}
+        assert touched == parts & {"post"}
+        assert bool(objects) == bool(parts)
 
 
 @pytest.mark.parametrize(
