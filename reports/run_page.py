@@ -56,13 +56,13 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
     data = embedded_json(
         {
             "end": count(nested(record, "outcome"), "time"),
-            "events": [plain(one, 200) for one in _events(records(record, "events"))],
+            "events": [_event(one) for one in _events(records(record, "events"))],
             "files": [_file(one) for one in records(record, "files")[:_MAX_FILES]],
             "path": _path(nested(record, "path")),
             "limits": _limits(nested(record, "limits")),
             "arm": _arm(nested(record, "arm")),
             "observations": [
-                plain(one, 200) for one in records(record, "observations")[:_MAX_OBJECTS]
+                _observation(one) for one in records(record, "observations")[:_MAX_OBJECTS]
             ],
             "points": [_point(one) for one in records(record, "points")[:_MAX_POINTS]],
         }
@@ -91,6 +91,23 @@ def _events(events: Sequence[Record]) -> Sequence[Record]:
         if is_told or (room and step % stride == 0)
     ]
     return kept[:_MAX_EVENTS]
+
+
+def _event(event: Record) -> Json:
+    """An event with all its fields; what the page reckons with has its type."""
+    fields: Json = plain(event, 200)
+    named = {name: printable(clip(text(event, name), 200)) for name in ("task", "kind", "at")}
+    return {**fields, **named, "t": count(event, "t")}
+
+
+def _observation(seen: Record) -> Json:
+    return {
+        **_event({name: seen[name] for name in ("t", "kind", "at") if name in seen}),
+        "end": count(seen, "end"),
+        "parts": [printable(clip(part, 60)) for part in texts(seen, "parts")],
+        "value": number(seen, "value"),
+        "limit": number(seen, "limit"),
+    }
 
 
 def _file(file: Record) -> Json:

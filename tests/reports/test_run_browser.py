@@ -278,8 +278,11 @@ def test_a_run_without_robot_says_how_to_see_the_arm(shown: Shown) -> None:
     assert "0.100 s" == find(browser, "#moment").text
 
 
-def test_nothing_at_all_gives_a_page(shown: Shown) -> None:
-    """An empty record has nothing to draw and breaks nothing."""
-    browser = shown({})
+@pytest.mark.parametrize(
+    "record", [{}, {"events": [{"kind": 7, "t": "x"}], "observations": [{"parts": HOSTILE}]}]
+)
+def test_next_to_nothing_gives_a_page(shown: Shown, record: Json) -> None:
+    """An empty or damaged record has nothing to draw and breaks nothing."""
+    browser = shown(record)
     assert find(browser, "#no-charts").is_displayed()
     assert "No source was recorded." == find(browser, "#program").text
