@@ -11,5 +11,8 @@
 `bench`              how many are noticed, and cases a second
 ==================== ===============================================================================
 
+``survivors.tsv`` is what `krl bench conform --mutants 70 --seed 7001 --seed 7002 --seed 7003` left
+over the last time that it was written (``--survivors``): what cases are still missing for.
+
 A case notices a fault if it passes without it and does not pass with it.
 """
