@@ -73,6 +73,7 @@ bench: $(DEV)
 	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
 	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
 	@$(BIN)/krl bench arm --json reports/out/bench/arm.json
+	@$(BIN)/krl bench blends --json reports/out/bench/blends.json
 	@$(BIN)/krl bench conform --json reports/out/bench/conform.json
 
 clean:

@@ -1,7 +1,7 @@
 """Curves: what the axes do along a path, over its parameter u from 0 to 1.
 
 Axes are arrays ``(n, axes)``, the six of the robot first, then the external ones, which go along in
-step with u. `Curve.rates` are first and second derivatives by u: exact for joint curves, elsewhere
+step with u. `Curve.rates` are first to third derivatives by u: exact for joint curves, elsewhere
 those of a spline through enough points of the curve. The axes themselves are always exact.
 """
 
@@ -19,6 +19,7 @@ from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import check_path, follow
 from interp.robot.path.pose_path import PosePath, poses_of
+from interp.robot.path.transition import Transition, chained
 from interp.robot.path.uniform_spline import Table
 from interp.values.faults import Fault
 
@@ -35,10 +36,16 @@ __all__ = [
     "Others",
     "Piecewise",
     "PosePathCurve",
+    "Rates",
     "tool_positions",
 ]
 
+#: First to third derivatives of axes by u, each ``(n, axes)``.
+Rates = tuple[Array, Array, Array]
+
 _FEWEST = 33
+_BLENDED = 65
+"""Points of a blend at the fewest: its third derivative changes quickly."""
 _MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
@@ -82,8 +89,8 @@ class Curve(Protocol):
         """Axes at parameters."""
         ...
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
-        """First and second derivatives of the axes by u."""
+    def rates(self, u: Array) -> Rates:
+        """First to third derivatives of the axes by u."""
         ...
 
 
@@ -94,8 +101,8 @@ class Others(Protocol):
         """Axes at parameters."""
         ...
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
-        """First and second derivatives by u."""
+    def rates(self, u: Array) -> Rates:
+        """First to third derivatives by u."""
         ...
 
 
@@ -110,10 +117,10 @@ class InStep:
         """See `Others.at`."""
         return self.start + u[:, None] * (self.end - self.start)
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Others.rates`."""
         zeros = np.zeros((len(u), len(self.start)))
-        return zeros + (self.end - self.start), zeros
+        return zeros + (self.end - self.start), zeros, zeros
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,18 +128,17 @@ class BlendedOthers:
     """External axes of a blend, as `BlendedAxes` has all of them."""
 
     first: Others
-    before: float
     second: Others
-    after: float
+    transition: Transition
 
     def at(self, u: Array) -> Array:
         """See `Others.at`."""
-        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        one, other = self.transition.at(u)
         corner = self.first.at(np.ones(1))
         axes: Array = self.first.at(one) - corner + self.second.at(other)
         return axes
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Others.rates`."""
         return _blended_rates(self, u)
 
@@ -150,10 +156,11 @@ class Piecewise:
         axes: Array = self.spline(self.start + u * self.length)
         return axes
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Others.rates`."""
         where = self.start + u * self.length
-        return self.spline(where, 1) * self.length, self.spline(where, 2) * self.length**2
+        first, second, third = (self.spline(where, n) * self.length**n for n in (1, 2, 3))
+        return first, second, third
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +189,7 @@ class JointSpline:
         """See `Curve.axes`."""
         return self.part.at(u)
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Curve.rates`."""
         return self.part.rates(u)
 
@@ -208,23 +215,23 @@ class JointLine:
         """See `Curve.axes`."""
         return self.start + u[:, None] * (self.end - self.start)
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Curve.rates`."""
         shape = (len(u), len(self.start))
-        return np.broadcast_to(self.end - self.start, shape), np.zeros(shape)
+        zeros = np.zeros(shape)
+        return np.broadcast_to(self.end - self.start, shape), zeros, zeros
 
 
 @dataclass(frozen=True, eq=False)
 class BlendedAxes:
-    """A blend of axes: ``first(1 - before·(1 - u)²) - P + second(after·u²)`` [BLD-12].
+    """A blend of axes: ``first(one(u)) - P + second(other(u))`` [BLD-12].
 
-    P are the axes at the point between. Between two PTP that is a parabola in the space of axes.
+    P are the axes at the point between.
     """
 
     first: Curve
-    before: float
     second: Curve
-    after: float
+    transition: Transition
 
     pose_path = None
     is_straight = False
@@ -248,17 +255,21 @@ class BlendedAxes:
     @property
     def grid(self) -> Array:
         """See `Curve.grid`."""
-        parts = ((self.first, self.before), (self.second, self.after))
-        needed = [math.ceil(2.0 * share * len(curve.grid)) + 1 for curve, share in parts]
-        return np.linspace(0.0, 1.0, max(_FEWEST, *needed))
+        shares = (self.transition.before, self.transition.after)
+        curves = (self.first, self.second)
+        needed = [
+            math.ceil(2.0 * share * len(curve.grid)) + 1
+            for curve, share in zip(curves, shares, strict=True)
+        ]
+        return np.linspace(0.0, 1.0, max(_BLENDED, *needed))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
-        one, other = 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
+        one, other = self.transition.at(u)
         axes: Array = self.first.axes(one) - self.first.end + self.second.axes(other)
         return axes
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Curve.rates`."""
         return _blended_rates(self, u)
 
@@ -297,11 +308,13 @@ class PosePathCurve:
         robot = self._beside(u, self._table.at(u))
         return np.concatenate((robot, self.others.at(u)), axis=1)
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
+    def rates(self, u: Array) -> Rates:
         """See `Curve.rates`."""
-        first, second = self._table.rates(u)
-        others, bends = self.others.rates(u)
-        return np.concatenate((first, others), axis=1), np.concatenate((second, bends), axis=1)
+        first, second, third = (
+            np.concatenate(both, axis=1)
+            for both in zip(self._table.rates(u), self.others.rates(u), strict=True)
+        )
+        return first, second, third
 
     def _beside(self, u: Array, references: Array) -> Array:
         """The six axes exactly, from some beside them."""
@@ -332,7 +345,7 @@ class PosePathCurve:
 
     def _points(self, start: Array) -> tuple[Array, Array]:
         """Parameters and axes of so many points that a spline through them is the curve."""
-        count = _FEWEST
+        count = _BLENDED if self._pose_path.kind == "BLEND" else _FEWEST
         while True:
             grid = np.linspace(0.0, 1.0, count)
             axes = self._along(grid, start)
@@ -350,19 +363,13 @@ class PosePathCurve:
         return grid, axes
 
 
-def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> tuple[Array, Array]:
-    """First and second derivatives of a blend by u, from those of both its parts."""
-    one, other = 1.0 - blend.before * (1.0 - u) ** 2, blend.after * u * u
-    one_rate, other_rate = 2.0 * blend.before * (1.0 - u)[:, None], 2.0 * blend.after * u[:, None]
-    first, first_bend = blend.first.rates(one)
-    second, second_bend = blend.second.rates(other)
-    return (
-        first * one_rate + second * other_rate,
-        first_bend * one_rate**2
-        - 2.0 * blend.before * first
-        + second_bend * other_rate**2
-        + 2.0 * blend.after * second,
-    )
+def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> Rates:
+    """Derivatives of a blend by u, from those of both its parts."""
+    parameters, rates = blend.transition.at(u), blend.transition.rates(u)
+    leaving = chained(blend.first.rates(parameters[0]), rates[0])
+    joining = chained(blend.second.rates(parameters[1]), rates[1])
+    first, second, third = (one + other for one, other in zip(leaving, joining, strict=True))
+    return first, second, third
 
 
 def tool_positions(curve: Curve, u: Array) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation
+from interp.robot.path.transition import Transition
 
 __all__ = ["Arc", "Blend", "PosePath", "StraightLine", "Way", "poses_of"]
 
@@ -142,26 +143,21 @@ class Arc:
 class Blend:
     """From one path into the next around the point P between them [BLD-12].
 
-    ``first(1 - before·(1 - u)²) - P + second(after·u²)``, and the same with rotations. It leaves
-    the first path at ``1 - before`` and joins the second at ``after``, tangent to both. Between
-    straight lines that is a parabola; its ``points`` are those of the quadratic Bézier curve:
-    where it leaves the first path, P, and where it joins the second.
+    ``first(one(u)) - P + second(other(u))``, and the same with rotations. Between straight lines it
+    lies in their plane; its ``points`` are where it leaves the first path, P, and where it joins
+    the second.
     """
 
     first: PosePath
-    before: float
     second: PosePath
-    after: float
+    transition: Transition
     kind: str = "BLEND"
-
-    def _parameters(self, u: Array) -> tuple[Array, Array]:
-        return 1.0 - self.before * (1.0 - u) ** 2, self.after * u * u
 
     @property
     def points(self) -> Array:
         """See `PosePath.points`."""
-        leaves, _ = self.first.at(np.array([1.0 - self.before, 1.0]))
-        joins, _ = self.second.at(np.array([self.after]))
+        leaves, _ = self.first.at(np.array([1.0 - self.transition.before, 1.0]))
+        joins, _ = self.second.at(np.array([self.transition.after]))
         return np.concatenate((leaves, joins))
 
     @property
@@ -173,11 +169,12 @@ class Blend:
     def angles(self) -> tuple[float, float]:
         """See `PosePath.angles`."""
         (a, b), (c, d) = self.first.angles, self.second.angles
-        return a * self.before + c * self.after, b * self.before + d * self.after
+        before, after = self.transition.before, self.transition.after
+        return a * before + c * after, b * before + d * after
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `PosePath.at`."""
-        one, other = self._parameters(u)
+        one, other = self.transition.at(u)
         (*before, corner), (*turned, turn) = self.first.at(np.append(one, 1.0))
         behind, onward = self.second.at(other)
         rotations: Array = np.array(turned) @ turn.T @ onward
@@ -185,10 +182,11 @@ class Blend:
 
     def tangents(self, u: Array) -> Array:
         """See `PosePath.tangents`."""
-        one, other = self._parameters(u)
-        leaving = (2.0 * self.before * (1.0 - u))[:, None] * self.first.tangents(one)
-        joining = (2.0 * self.after * u)[:, None] * self.second.tangents(other)
-        tangents: Array = leaving + joining
+        one, other = self.transition.at(u)
+        leaving, joining = self.transition.rates(u)
+        tangents: Array = leaving[0][:, None] * self.first.tangents(one) + joining[0][
+            :, None
+        ] * self.second.tangents(other)
         return tangents
 
     def distances(self, u: Array) -> Array:

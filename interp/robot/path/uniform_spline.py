@@ -6,7 +6,7 @@ worked out once; then a spline is one product of matrices.
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -38,10 +38,27 @@ class Table:
         values: Array = c0 + dt * (c1 + dt * (c2 + dt * c3))
         return values
 
-    def rates(self, u: Array) -> tuple[Array, Array]:
-        """First and second derivatives."""
+    def rates(self, u: Array) -> tuple[Array, Array, Array]:
+        """First to third derivatives; the third is a line from point to point."""
         (c3, c2, c1, _), dt = self._local(u)
-        return c1 + dt * (2.0 * c2 + dt * 3.0 * c3), 2.0 * c2 + dt * 6.0 * c3
+        share = u * self._count
+        place = np.minimum(share.astype(np.intp), self._count - 1)
+        share = (share - place)[:, None]
+        third = self._thirds[place] * (1.0 - share) + self._thirds[place + 1] * share
+        return c1 + dt * (2.0 * c2 + dt * 3.0 * c3), 2.0 * c2 + dt * 6.0 * c3, third
+
+    @cached_property
+    def _thirds(self) -> Array:
+        """Third derivatives at the points, from those of the cubics between them.
+
+        The two cubics at either end are one, whose third derivative is that between them.
+        """
+        between = 6.0 * self._coefficients[0]
+        thirds = np.empty((self._count + 1, between.shape[1]))
+        thirds[1:-1] = (between[:-1] + between[1:]) / 2.0
+        thirds[0] = between[1] - (between[2] - between[1]) / 1.5
+        thirds[-1] = between[-2] - (between[-3] - between[-2]) / 1.5
+        return thirds
 
     def _local(self, u: Array) -> tuple[Array, Array]:
         """The coefficients in force at each parameter, and how far it lies behind their point."""

@@ -8,30 +8,40 @@ paths of the tool in the same frames, the blend is one as well; else it is one o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from interp.robot.arm import Approximation, Motion
-from interp.robot.kinematics.machine_data import ROBOT_AXES, CartesianLimits, MachineData
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_path
-from interp.robot.path.axis_path import BlendedAxes, BlendedOthers, Curve, PosePathCurve
-from interp.robot.path.pose_path import Blend, Way
-from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of
+from interp.robot.path.axis_path import BlendedAxes, BlendedOthers, Curve, PosePathCurve, Rates
+from interp.robot.path.pose_path import Blend, StraightLine, Way
+from interp.robot.path.transition import Overlap, Rounding, Transition
+from interp.robot.planning.limits import AxisLimits, Ceiling, even_ceiling
 from interp.robot.planning.profile import Bounds, ramp
+from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
 from interp.robot.planning.timeline import tool_tangents
 from interp.robot.planning.tracks import Piece, Track
 
-__all__ = ["Zone", "blend_of", "wants_blend", "zone_of"]
+__all__ = ["Joint", "Zone", "blend_of", "wants_blend", "zone_of"]
 
 _HALF = 0.5
 _SMALLEST = 1e-6
 """Share of a path below which there is nothing to blend."""
 _METRE = 1000.0
-_SHARE = 0.2
-"""Of an axis's acceleration for changes of speed: a blend is short, and bends all along."""
+_PARABOLA, _SMOOTH = 1.0, 2.0
+"""Slopes of roundings; the first is nearly a parabola, which is said of lines [BLD-12]."""
+_SOONER = 0.95
+"""Share of a duration from which on a transition nearer to a parabola is preferred."""
+_SAVED = 0.97
+"""Share of the duration with an exact stop that such a transition has to keep below."""
+_TINY = 1e-9
+_STRAIGHT = 1e-3
+"""Relative difference of directions that counts as none."""
+_EVEN = 1e-6
+_GRID = np.linspace(0.0, 1.0, 65)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,43 +95,201 @@ def zone_of(first: Track, second: Track) -> Zone | None:
     return zone if min(zone.before, zone.after) > _SMALLEST else None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Joint:
+    """A blend: its curve, how fast that may be travelled, and how it joins what it is between.
+
+    ``into`` and ``out`` are gear and bend at its start and at its end, as in `GearedStretch`.
+    """
+
+    curve: Curve
+    ceiling: Ceiling
+    into: tuple[float, float]
+    out: tuple[float, float]
+
+
 def blend_of(
     first: Track, second: Track, zone: Zone, machine: MachineData, limits: AxisLimits
-) -> tuple[Curve, Ceiling]:
-    """The blend of a zone, and how fast it may be travelled.
+) -> Joint:
+    """The blend of a zone.
 
+    Of the transitions that are about as soon over, its shape is the one nearest to a parabola.
     ``limits`` are those of the machine data, which hold for all axes; on the path of the tool the
     acceleration is at most $ACC_MA.CP (an assumption: no rule tells). So the speed may drop
     [BLD-15]. Raises `Fault` where the blend leads out of the working range.
     """
     axes = first.axis_limits.widest(second.axis_limits)
-    one, other = first.pieces[-1].curve, second.pieces[0].curve
-    pose_path = _common_pose_path(first, second, zone)
+    one, other = first.pieces[-1], second.pieces[0]
+    directions = _Directions.of(first, second, limits)
+    transition = _soonest(first, second, zone, directions, axes, machine)
+    curves = (one.curve, other.curve)
+    paths = (one.curve.pose_path, other.curve.pose_path)
     if (
-        pose_path is None
-        or not isinstance(one, PosePathCurve)
-        or not isinstance(other, PosePathCurve)
+        not _has_common_frames(first, second)
+        or not isinstance(curves[0], PosePathCurve)
+        or not isinstance(curves[1], PosePathCurve)
+        or paths[0] is None
+        or paths[1] is None
     ):
-        curve: Curve = BlendedAxes(one, zone.before, other, zone.after)
-        if not (one.is_straight and other.is_straight):  # a parabola keeps between its points
-            check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
-        paths = _tool_limits(first, second, curve, machine)
+        curve: Curve = BlendedAxes(*curves, transition)
+        check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
+        most = _most_of_axes(first, second, curve, machine)
     else:
-        (start,) = one.axes(np.array([1.0 - zone.before]))
-        others = BlendedOthers(one.others, zone.before, other.others, zone.after)
-        curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
-        paths = _path_limits(first, second, pose_path, machine)
-    return curve, ceiling_of(curve, limits, axes, paths, _SHARE)
+        pose_path = Blend(paths[0], paths[1], transition)
+        (start,) = curves[0].axes(np.array([1.0 - zone.before]))
+        others = BlendedOthers(curves[0].others, curves[1].others, transition)
+        arm, placement = curves[0].arm, curves[0].placement
+        curve = PosePathCurve(arm, placement, pose_path, start[:ROBOT_AXES], others)
+        most = _most_of_tool(pose_path.tangents(_GRID), one, other, machine)
+    into, out = _gears(transition)
+    beside = _beside(one, other, into, out)
+    size = one.ceiling.stretches[-1].size / into[0]
+    # The spline of the axes sees little of how quickly the curve begins to bend.
+    ends = directions.rates(transition, np.array([0.0, 1.0]))
+    x, y, z = (np.concatenate(both) for both in zip(curve.rates(curve.grid), ends, strict=True))
+    ceiling = even_ceiling((x, y, z), axes, beside, most, size)
+    return Joint(curve, ceiling, into, out)
 
 
-def _common_pose_path(first: Track, second: Track, zone: Zone) -> Blend | None:
-    """The blend of two paths of the tool, if both are such and in the same frames."""
-    one, other = first.pieces[-1].curve.pose_path, second.pieces[0].curve.pose_path
-    if one is None or other is None:
-        return None
-    if first.motion.settings.placement != second.motion.settings.placement:
-        return None
-    return Blend(one, zone.before, other, zone.after)
+def _soonest(
+    first: Track,
+    second: Track,
+    zone: Zone,
+    directions: _Directions,
+    axes: AxisLimits,
+    machine: MachineData,
+) -> Transition:
+    """The transition with which both motions are soonest over, judged by their directions at P."""
+    one, other = first.pieces[-1], second.pieces[0]
+    weights = directions.weights(zone)
+    paths = (one.curve.pose_path, other.curve.pose_path)
+    are_lines = all(isinstance(path, StraightLine) for path in paths)
+    choices: list[Transition] = [
+        Rounding(zone.before, zone.after, weights, slope)
+        for slope in ((_PARABOLA, _SMOOTH) if are_lines else (_SMOOTH,))
+    ]
+    ending, starting = alone(one.ceiling), alone(other.ceiling)
+    if ending is not None and starting is not None:
+        choices.append(Overlap(ending.since(1.0 - zone.before), starting.until(zone.after)))
+    times = []
+    for transition in choices:
+        rates = directions.rates(transition, _GRID)
+        most = math.inf
+        if (tangents := directions.tangents(transition)) is not None:
+            most = _most_of_tool(tangents, one, other, machine)
+        times.append(_duration(one, other, transition, rates, most, axes))
+    most = min(times) / _SOONER
+    if ending is not None and starting is not None:
+        most = min(most, _SAVED * (ending.duration + starting.duration))
+    most = max(most, min(times))
+    return choices[next(place for place, time in enumerate(times) if time <= most)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Directions:
+    """Derivatives of both paths at the point between: of axes, and of the tool where both have it.
+
+    ``lengths`` are those of both paths in one unit: mm of the tool, else seconds of axes.
+    """
+
+    axes: tuple[Array, Array]
+    tool: tuple[Array, Array] | None
+    lengths: tuple[float, float]
+
+    @classmethod
+    def of(cls, first: Track, second: Track, limits: AxisLimits) -> _Directions:
+        one, other = first.pieces[-1].curve, second.pieces[0].curve
+        (leaving,), _, _ = one.rates(np.ones(1))
+        (joining,), _, _ = other.rates(np.zeros(1))
+        paths = one.pose_path, other.pose_path
+        tool, lengths = None, (0.0, 0.0)
+        if _has_common_frames(first, second) and paths[0] is not None and paths[1] is not None:
+            tool = (paths[0].tangents(np.ones(1))[0], paths[1].tangents(np.zeros(1))[0])
+            lengths = (float(np.linalg.norm(tool[0])), float(np.linalg.norm(tool[1])))
+        if min(lengths) <= 0.0:
+            before, after = (float((np.abs(r) / limits.velocity).max()) for r in (leaving, joining))
+            lengths = (max(before, _TINY), max(after, _TINY))
+        onward = leaving * lengths[1] / lengths[0]
+        if np.abs(joining - onward).max() <= _STRAIGHT * np.abs(joining).max():
+            joining = onward  # but for the splines of the axes, they go straight on
+        return cls((leaving, joining), tool, lengths)
+
+    def weights(self, zone: Zone) -> tuple[float, float]:
+        """The lengths of both sides of a zone."""
+        return zone.before * self.lengths[0], zone.after * self.lengths[1]
+
+    def rates(self, transition: Transition, u: Array) -> Rates:
+        """Derivatives of the axes in a blend between straight lines."""
+        leaving, joining = transition.rates(u)
+        x, y, z = (
+            before[:, None] * self.axes[0] + after[:, None] * self.axes[1]
+            for before, after in zip(leaving, joining, strict=True)
+        )
+        return x, y, z
+
+    def tangents(self, transition: Transition) -> Array | None:
+        """Derivatives of the tool's place in such a blend."""
+        if self.tool is None:
+            return None
+        (before, *_), (after, *_) = transition.rates(_GRID)
+        tangents: Array = before[:, None] * self.tool[0] + after[:, None] * self.tool[1]
+        return tangents
+
+
+def _duration(
+    one: Piece,
+    other: Piece,
+    transition: Transition,
+    rates: Rates,
+    most: float,
+    axes: AxisLimits,
+) -> float:
+    """How long both pieces take from rest to rest with a blend of such derivatives."""
+    into, out = _gears(transition)
+    beside = _beside(one, other, into, out)
+    size = one.ceiling.stretches[-1].size / into[0]
+    (zone,) = even_ceiling(rates, axes, beside, most, size).stretches
+    before = one.ceiling.between(0.0, 1.0 - transition.before)
+    after = other.ceiling.between(transition.after, 1.0)
+    steps = [
+        *(GearedStretch(stretch, 1.0) for stretch in before),
+        GearedStretch(zone, *into),
+        *(GearedStretch(s, *((1.0, 0.0) if n else out)) for n, s in enumerate(after)),
+    ]
+    profiles = schedule(steps, AtRest, 1.0)
+    return math.inf if profiles is None else sum(profile.duration for profile in profiles)
+
+
+def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Gear and bend at both ends of a blend."""
+    leaving, joining = transition.rates(np.array([0.0, 1.0]))
+    into = (1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3)
+    out = (joining[0, 1], joining[1, 1])
+    (gear_in, bend_in), (gear_out, bend_out) = into, out
+    if abs(leaving[1, 0]) < _EVEN * leaving[0, 0]:
+        bend_in = 0.0
+    if abs(bend_out) < _EVEN * gear_out:
+        bend_out = 0.0
+    return (float(gear_in), float(bend_in)), (float(gear_out), float(bend_out))
+
+
+def _beside(
+    one: Piece, other: Piece, into: tuple[float, float], out: tuple[float, float]
+) -> tuple[Bounds, Bounds]:
+    """The bounds on both sides in units of the blend."""
+    before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
+    return tuple(  # type: ignore[return-value]
+        Bounds(own.velocity * gear, own.acceleration * gear, own.jerk * gear)
+        for own, gear in ((before, into[0]), (after, 1.0 / out[0]))
+    )
+
+
+def _has_common_frames(first: Track, second: Track) -> bool:
+    """Whether both are paths of the tool, in the same frames."""
+    curves = (first.pieces[-1].curve, second.pieces[0].curve)
+    return all(isinstance(curve, PosePathCurve) and curve.pose_path for curve in curves) and (
+        first.motion.settings.placement == second.motion.settings.placement
+    )
 
 
 # ---------------------------------------------------------------------------------------- zones
@@ -176,7 +344,7 @@ def _axis_share(
 
 def _turning_share(curve: Curve, share: float) -> float:
     """Where no axis is farther from the point than a share of $APO_DIS_PTP [BLD-03]."""
-    (travel,), _ = curve.rates(np.ones(1))
+    (travel,), _, _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
     reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
     return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
@@ -195,35 +363,23 @@ def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
 # ---------------------------------------------------------------------------------------- speed
 
 
-def _path_limits(
-    first: Track, second: Track, pose_path: Blend, machine: MachineData
-) -> Sequence[PathLimits]:
-    """As fast as the faster of both, and with no more path acceleration than the machine's."""
-    grid = np.linspace(0.0, 1.0, 65)
-    tangents = pose_path.tangents(grid)
+def _most_of_tool(tangents: Array, one: Piece, other: Piece, machine: MachineData) -> float:
+    """The speed at which the tool is no faster than beside the blend [BLD-15].
+
+    And has no more acceleration than the machine's.
+    """
+    bends = np.gradient(tangents, _GRID, axis=0)
+    sharpest = float(np.linalg.norm(bends, axis=1).max())
     fastest = float(np.linalg.norm(tangents, axis=1).max())
-    sharpest = float(np.linalg.norm(np.gradient(tangents, grid, axis=0), axis=1).max())
-    most: CartesianLimits = machine.acceleration
-    paths = [*first.pieces[-1].paths[:1], *second.pieces[0].paths[:1]]
-    limits = []
-    if fastest > 0.0 and paths:
-        speed = max(path.velocity for path in paths)
-        limits.append(PathLimits(fastest, speed, min(path.acceleration for path in paths)))
-    if sharpest > 0.0:
-        limits.append(PathLimits(1.0, math.sqrt(most.path * _METRE / sharpest), math.inf))
-    return limits
+    speed = max(path.velocity for piece in (one, other) for path in piece.paths[:1])
+    most = machine.acceleration.path * _METRE
+    return min(speed / max(fastest, _TINY), math.sqrt(most / max(sharpest, _TINY)))
 
 
-def _tool_limits(
-    first: Track, second: Track, curve: Curve, machine: MachineData
-) -> Sequence[PathLimits]:
-    """Beside a path of the tool, or in T1, a blend of axes is no faster than the path or T1."""
-    sides = (first.pieces[-1], second.pieces[0])
-    speeds = [path.velocity for piece in sides for path in piece.paths[:1]]
-    if any(track.motion.settings.is_reduced for track in (first, second)):
-        speeds.append(machine.t1_speed * _METRE)
-    if not speeds:
-        return ()
+def _most_of_axes(first: Track, second: Track, curve: Curve, machine: MachineData) -> float:
+    """In T1 the tool is no faster than $VEL_CP_T1 on a blend of axes either [MOT-07]."""
+    if not any(track.motion.settings.is_reduced for track in (first, second)):
+        return math.inf
     tangents: Array = tool_tangents(curve, np.linspace(0.0, 1.0, 33))
     fastest = float(np.linalg.norm(tangents, axis=1).max())
-    return (PathLimits(fastest, max(speeds), math.inf),) if fastest > 0.0 else ()
+    return machine.t1_speed * _METRE / fastest if fastest > 0.0 else math.inf

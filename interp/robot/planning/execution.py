@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from interp.robot.planning.profile import SpeedProfile, standing
+from interp.robot.planning.profile import standing
 from interp.robot.planning.schedule import GearedStretch, PathState, braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
@@ -82,17 +82,16 @@ class PathExecution:
         leg = self._under_way(time)
         if leg is None or leg.section.key != route[0].key:
             begins, u = self._waiting(route[0], time)
-            return self._lay(route, PathState(u, 0.0, 0.0), begins, None, override, is_strict)
-        time = max(time, leg.begins)
-        laid = self._lay(route, leg.state(time), time, leg, override, is_strict)
-        if laid:
-            return True
-        # The acceleration cannot be taken back before the leg ends, or the override has dropped
-        # and the leg ends faster than it allows now. Neither is the fault of what comes far behind.
-        rest, state = _behind(leg, route)
-        if is_strict and not any(section is new_behind for section in rest):
-            return False
-        return not rest or self._lay(rest, state, leg.ends, None, override, is_strict)
+            return self._lay(route, PathState(u, 0.0, 0.0), begins, override, is_strict)
+        # The acceleration may be such that it cannot be taken back in time, or the override has
+        # dropped and what is under way ends faster than it allows now. Neither is the fault of what
+        # comes far behind, so it begins where that can be.
+        for state, begins, rest in self._ahead_of(leg, route, max(time, leg.begins)):
+            if is_strict and not any(section is new_behind for section in rest):
+                return False
+            if not rest or self._lay(rest, state, begins, override, is_strict):
+                return True
+        return False
 
     def halt(
         self, route: Sequence[Section], time: float, override: float, *, is_hard: bool
@@ -104,7 +103,7 @@ class PathExecution:
             self._timeline.cut(time if past is None else max(time, past.ends))
             return
         time = max(time, leg.begins)
-        begins, legs = _ramp_down(leg, route, time, override, is_hard)
+        begins, legs = self._ramp_down(leg, route, time, override, is_hard)
         self._timeline.cut(begins)
         for each in legs:
             self._timeline.append(each)
@@ -116,7 +115,7 @@ class PathExecution:
         leg = self._timeline.leg_at(time)
         if leg is None or leg.ends <= time:
             return None
-        _, legs = _ramp_down(leg, route, time, override, is_hard=False)
+        _, legs = self._ramp_down(leg, route, time, override, is_hard=False)
         last = legs[-1] if legs else leg
         return last.section.key, last.last
 
@@ -135,64 +134,68 @@ class PathExecution:
         passed = [leg for leg in legs if leg.begins < begins]
         return max(time, begins), passed[-1].last if passed else section.start
 
+    def _ahead_of(
+        self, leg: Leg, route: Sequence[Section], time: float
+    ) -> Iterator[tuple[PathState, float, tuple[Section, ...]]]:
+        """Where a plan may begin: now, or at the end of a leg that is under way or follows.
+
+        The state there, the time, and what is left of the route.
+        """
+        yield leg.state(time), time, tuple(route)
+        following = self._timeline.after(leg)
+        for each in (leg, *following):
+            while route and route[0].key < each.section.key:
+                route = route[1:]
+            if not route or route[0].key != each.section.key:
+                return
+            rest, state = _behind(each, route)
+            yield state, each.ends, rest
+            if not rest:
+                return
+
+    def _ramp_down(
+        self, leg: Leg, route: Sequence[Section], time: float, override: float, is_hard: bool
+    ) -> tuple[float, list[Leg]]:
+        """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
+        while route and route[0].key < leg.section.key:
+            route = route[1:]
+        for state, begins, rest in self._ahead_of(leg, route, time):
+            entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
+            profiles = braking(_steps(entries), state, override, is_hard=is_hard)
+            if profiles is None:  # it cannot before the leg ends
+                continue
+            legs, start = [], begins
+            for (section, step), profile in zip(entries, profiles, strict=False):
+                if step is not None:
+                    ends = start + profile.duration
+                    legs.append(Leg(section, step.stretch, profile, start, ends))
+                    start = ends
+            return begins, legs
+        return self._timeline.end, []
+
     def _lay(
         self,
         route: Sequence[Section],
         state: PathState,
         begins: float,
-        leg: Leg | None,
         override: float,
         is_strict: bool,
     ) -> bool:
-        """Schedule a route from a state on and put its legs behind what is kept of the timeline.
-
-        ``leg`` is the one under way, which stays where nothing about it changes.
-        """
+        """Schedule a route from a state on and put its legs behind what is kept of the timeline."""
         entries = _entries(route, state.u)
         steps = _steps(entries)
-        planned = None
-        if leg is not None and steps and _goes_on(leg, steps[0], override):
-            planned = leg.state(leg.ends).speed
-        profiles: list[SpeedProfile | None] | None = []
-        if steps:
-            profiles = schedule(steps, state, override, planned=planned, is_strict=is_strict)
+        profiles = schedule(steps, state, override, is_strict=is_strict) if steps else []
         if profiles is None:
             return False
-        if profiles and profiles[0] is None and leg is not None:
-            begins = leg.ends
         self._timeline.cut(begins)
         queue = iter(profiles)
         for section, step in entries:
             profile = standing(0.0) if step is None else next(queue)
-            if profile is None:
-                continue
             stretch = step.stretch if step is not None else section.ceiling.stretches[0]
             ends = begins + profile.duration
-            self._timeline.append(Leg(section, stretch, profile, begins, ends, override))
+            self._timeline.append(Leg(section, stretch, profile, begins, ends))
             begins = ends
         return True
-
-
-def _ramp_down(
-    leg: Leg, route: Sequence[Section], time: float, override: float, is_hard: bool
-) -> tuple[float, list[Leg]]:
-    """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
-    while route and route[0].key < leg.section.key:
-        route = route[1:]
-    begins, state = time, leg.state(time)
-    entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
-    profiles = braking(_steps(entries), state, override, is_hard=is_hard)
-    if profiles is None:  # it cannot before the leg ends
-        begins = leg.ends
-        route, state = _behind(leg, route)
-        entries = [entry for entry in _entries(route, state.u) if entry[1] is not None]
-        profiles = braking(_steps(entries), state, override, is_hard=is_hard) or []
-    legs, start = [], begins
-    for (section, step), profile in zip(entries, profiles, strict=False):
-        if step is not None:
-            legs.append(Leg(section, step.stretch, profile, start, start + profile.duration))
-            start += profile.duration
-    return begins, legs
 
 
 def _steps(entries: Sequence[Entry]) -> list[GearedStretch]:
@@ -201,40 +204,34 @@ def _steps(entries: Sequence[Entry]) -> list[GearedStretch]:
 
 def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:
     """What of a route is left when a leg has ended, and the state there."""
-    speed = leg.state(leg.ends).speed
-    if route[0].key != leg.section.key or leg.last < route[0].end - _THERE:
-        return tuple(route), PathState(leg.last, speed, 0.0)
+    state = leg.state(leg.ends)
+    if leg.last < route[0].end - _THERE:
+        return tuple(route), replace(state, u=leg.last)
     rest = list(route[1:])
     while rest and rest[0].is_used_up:
-        speed *= rest.pop(0).gear
+        used = rest.pop(0)
+        state = state.behind(used.start, used.gear, used.bend)
     if not rest:
         return (), PathState(leg.last, 0.0, 0.0)
-    return tuple(rest), PathState(rest[0].start, speed * rest[0].gear, 0.0)
+    return tuple(rest), state.behind(rest[0].start, rest[0].gear, rest[0].bend)
 
 
 def _entries(route: Sequence[Section], start: float) -> list[Entry]:
     """The steps of a route from a parameter of its first section on.
 
-    A section that two blends have used up has no step; its gear goes on to the next.
+    A section that two blends have used up has no step; how it changes speeds counts for the next.
     """
     entries: list[Entry] = []
-    gear = 1.0
+    gear, bend = 1.0, 0.0
     for place, section in enumerate(route):
         if section.is_still:
             entries.append((section, None))
-            gear = 1.0
+            gear, bend = 1.0, 0.0
             continue
         steps = section.steps(start if place == 0 else section.start)
-        gear *= section.gear
+        gear, bend = gear * section.gear, section.gear * bend + section.bend * gear**2
         for number, step in enumerate(steps):
-            entries.append((section, replace(step, gear=gear) if number == 0 else step))
-            gear = 1.0
+            first = replace(step, gear=gear, bend=bend) if number == 0 else step
+            entries.append((section, first))
+            gear, bend = 1.0, 0.0
     return entries
-
-
-def _goes_on(leg: Leg, step: GearedStretch, override: float) -> bool:
-    """Whether the leg under way is one with all the bounds that are in force now."""
-    own, other = leg.stretch, step.stretch
-    if leg.override is None or leg.last < own.end - _THERE:
-        return False
-    return own.end == other.end and own.bounds(leg.override) == other.bounds(override)

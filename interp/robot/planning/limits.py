@@ -17,10 +17,19 @@ import numpy as np
 
 from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
 from interp.robot.kinematics.solver import Array
-from interp.robot.path.axis_path import Curve
+from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.profile import Bounds
 
-__all__ = ["AxisLimits", "Ceiling", "PathLimits", "Stretch", "axis_limits", "ceiling_of"]
+__all__ = [
+    "AxisLimits",
+    "Ceiling",
+    "PathLimits",
+    "Stretch",
+    "axis_limits",
+    "ceiling_of",
+    "even_ceiling",
+    "steady_speed",
+]
 
 _MARGIN = 0.97
 """Share of a limit that is used, for what lies between samples."""
@@ -28,6 +37,11 @@ _ROUNDING = 1.0 - 1e-9
 _SHARE = 0.5
 """Share of an axis's acceleration that a change of speed may take on a curve; the rest is left for
 the bends of the curve."""
+_BENT = 0.25
+"""Share of an axis's jerk that the bends of a curve may take, and as much of it changes of speed in
+the bends; the rest is left for how quickly an acceleration builds up."""
+_EASED = 0.8
+"""Share of the speed at which a blend can be passed evenly, where speeds change in it."""
 _UNEVEN = 1.25
 """Ratio of speeds within a stretch above which it is worth cutting."""
 _SHORTEST = 4  # samples of a stretch
@@ -89,6 +103,8 @@ class Stretch:
     ``velocity`` is what the axes allow, ``programmed`` the speed that the override takes shares of.
     ``hardest`` and ``sharpest`` are acceleration and jerk for the hardest ramp there is [INT-09].
     ``size`` is a length in mm or degrees that u stands for: it keeps numbers of a sensible size.
+    A blend may be passed at one speed up to ``even``, more than ``velocity``; ``hardest``
+    and ``sharpest`` are what is left at that speed.
     """
 
     start: float
@@ -100,6 +116,7 @@ class Stretch:
     hardest: float
     sharpest: float
     size: float
+    even: float = 0.0
 
     def bounds(self, override: float, is_hard: bool = False) -> Bounds:
         """Bounds under an override of 0 to 1."""
@@ -107,6 +124,10 @@ class Stretch:
         if is_hard:
             return Bounds(speed, self.hardest, self.sharpest)
         return Bounds(speed, self.acceleration, self.jerk)
+
+    def even_bounds(self, override: float) -> Bounds:
+        """Bounds of a blend that is passed at one speed, or is left at that."""
+        return Bounds(min(self.even, self.programmed * override), self.hardest, self.sharpest)
 
     def between(self, start: float, end: float) -> Stretch:
         """The part of it between two parameters."""
@@ -146,7 +167,6 @@ def ceiling_of(
     machine: AxisLimits,
     programmed: AxisLimits,
     paths: Sequence[PathLimits],
-    share: float = _SHARE,
 ) -> Ceiling:
     """The bounds of a curve.
 
@@ -155,25 +175,39 @@ def ceiling_of(
     path in mm/s³; where it is infinite, accelerations build up over a fixed time.
     """
     grid = curve.grid
-    first, second = (np.abs(rates) for rates in curve.rates(grid))
-    per_axis = _least(programmed.acceleration / _positive(first))
+    first, second, third = (np.abs(rates) for rates in curve.rates(grid))
     wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
-    acceleration = np.minimum((1.0 if curve.is_straight else share) * per_axis, wanted)
-    velocity = _least(machine.velocity / _positive(first))
-    if not curve.is_straight:
-        left = programmed.acceleration - first * acceleration[:, None]
-        velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
-        acceleration = acceleration * _MARGIN
     slowest = np.minimum(
         _least(programmed.velocity / _positive(first)),
         min((path.velocity / path.length for path in paths), default=math.inf),
     )
-    used = np.minimum(velocity, slowest)
-    bent = second * used[:, None] ** 2
-    hardest = _least((machine.acceleration - bent) / _positive(first)) * _MARGIN
-    hardest = np.maximum(hardest, acceleration)
+    velocity = _least(machine.velocity / _positive(first))
+    per_axis = _least(programmed.acceleration / _positive(first))
+    smooth = _least(programmed.jerk / _positive(first))
+    hardest = _least(machine.acceleration / _positive(first))
     sharpest = _least(machine.jerk / _positive(first))
-    smooth = np.minimum(_least(programmed.jerk / _positive(first)), sharpest)
+    acceleration = np.minimum(per_axis, wanted)
+    if not curve.is_straight:
+        acceleration = np.minimum(_SHARE * _MARGIN * per_axis, wanted)
+        left = programmed.acceleration - first * acceleration[:, None]
+        velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
+        velocity = np.minimum(velocity, np.cbrt(_least(_BENT * programmed.jerk / _positive(third))))
+        used = np.minimum(velocity, slowest)[:, None]
+        room = _least(_BENT * programmed.jerk / _positive(3.0 * second * used))
+        acceleration = np.minimum(acceleration, room)
+        bent = second * used**2
+        hardest = _least((machine.acceleration - bent) / _positive(first)) * _MARGIN
+        hardest = np.maximum(np.minimum(hardest, room), acceleration)
+        for limits in (programmed, machine):
+            turned = third * used**3 + 3.0 * second * used * acceleration[:, None]
+            left = _least((limits.jerk - turned) / _positive(first)) * _MARGIN
+            smooth, sharpest = (
+                (np.minimum(smooth, left), sharpest)
+                if limits is programmed
+                else (smooth, np.minimum(sharpest, left))
+            )
+    used = np.minimum(velocity, slowest)
+    smooth = np.minimum(smooth, sharpest)
     for path in paths:
         is_known = math.isfinite(path.jerk)
         smooth = np.minimum(smooth, path.jerk / path.length if is_known else acceleration / _RAMP)
@@ -182,6 +216,65 @@ def ceiling_of(
     columns *= _ROUNDING
     cuts = _cuts(used, 0, len(grid) - 1)
     return Ceiling(tuple(_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts)))
+
+
+def steady_speed(rates: Rates, limits: AxisLimits, share: float) -> float:
+    """The greatest speed at which a curve can be travelled evenly, from samples of it.
+
+    No more than a share of that at which its bends alone take all of an acceleration or jerk.
+    """
+    first, second, third = (np.abs(each) for each in rates)
+    return float(
+        min(
+            (limits.velocity / _positive(first)).min() * _ROUNDING,
+            share * math.sqrt((limits.acceleration / _positive(second)).min()),
+            share * math.cbrt((limits.jerk / _positive(third)).min()),
+        )
+    )
+
+
+def even_ceiling(
+    rates: Rates, limits: AxisLimits, beside: Sequence[Bounds], most: float, size: float
+) -> Ceiling:
+    """The bounds of a blend with such derivatives, which may be passed at one speed.
+
+    ``beside`` are the bounds of what it joins, in the units of its own u; ``most`` is a speed that
+    it has to keep for other reasons. Where speed changes in it, it is no more than a share of what
+    it may be otherwise.
+    """
+    programmed = min(bounds.velocity for bounds in beside)
+    even = min(steady_speed(rates, limits, _MARGIN), most)
+    eased = min(steady_speed(rates, limits, _MARGIN * _EASED), most)
+    velocity = min(eased, programmed)
+    acceleration, jerk = _left(rates, limits, velocity, beside)
+    hardest, sharpest = _left(rates, limits, min(even, programmed), beside)
+    stretch = Stretch(
+        start=0.0,
+        end=1.0,
+        velocity=eased,
+        programmed=programmed,
+        acceleration=acceleration,
+        jerk=jerk,
+        hardest=hardest,
+        sharpest=sharpest,
+        size=size,
+        even=even,
+    )
+    return Ceiling((stretch,))
+
+
+def _left(
+    rates: Rates, limits: AxisLimits, speed: float, beside: Sequence[Bounds]
+) -> tuple[float, float]:
+    """Acceleration and jerk along a curve that are left at a speed, and no more than beside it."""
+    first, second, third = (np.abs(each) for each in rates)
+    straight = _positive(first)
+    acceleration = float(((limits.acceleration - second * speed**2) / straight).min())
+    turned = limits.jerk - third * speed**3
+    room = float((turned / 2.0 / _positive(3.0 * second * speed)).min())
+    acceleration = min(acceleration, room, *(bounds.acceleration for bounds in beside))
+    jerk = float(((turned - 3.0 * second * speed * acceleration) / straight).min())
+    return acceleration * _ROUNDING, min(jerk, *(bounds.jerk for bounds in beside)) * _ROUNDING
 
 
 def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:

@@ -162,16 +162,16 @@ class PlannedArm:
         if leaves < body.start or reached > leaves:
             return False
         try:
-            curve, ceiling = blend_of(
-                before.last, track, zone, self._tracks.machine, self._tracks.limits
-            )
+            joint = blend_of(before.last, track, zone, self._tracks.machine, self._tracks.limits)
         except Fault:
             return False
         number = track.motion.number
         shorter = replace(body, end=leaves)
-        blend = Section(body.number, number, curve, ceiling, gear=1.0 / (2.0 * zone.before))
+        gear, bend = joint.into
+        blend = Section(body.number, number, joint.curve, joint.ceiling, gear=gear, bend=bend)
         first, *others = _sections(track)
-        rest = (replace(first, start=zone.after, gear=2.0 * zone.after), *others)
+        gear, bend = joint.out
+        rest = (replace(first, start=zone.after, gear=gear, bend=bend), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
         if not self._reschedule(route, new_behind=shorter):
             return False

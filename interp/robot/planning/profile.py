@@ -8,7 +8,7 @@ times in seconds.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,6 +35,18 @@ class Bounds:
     acceleration: float
     jerk: float
 
+    def merged(self, other: Bounds, choose: Callable[[float, float], float]) -> Bounds:
+        """Of each the lower or the higher one."""
+        return Bounds(
+            choose(self.velocity, other.velocity),
+            choose(self.acceleration, other.acceleration),
+            choose(self.jerk, other.jerk),
+        )
+
+    def scaled(self, share: float) -> Bounds:
+        """The same in another unit."""
+        return Bounds(self.velocity * share, self.acceleration * share, self.jerk * share)
+
 
 class SpeedProfile:
     """Cubics one after the other, each with its start: time, position, speed, acceleration, jerk.
@@ -44,16 +56,17 @@ class SpeedProfile:
 
     def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
         """From a speed on, with pieces of duration, acceleration at their start, and jerk."""
-        time = position = 0.0
+        time = position = last = 0.0
         knots: list[tuple[float, ...]] = []
         for duration, acceleration, jerk in pieces:
             knots.append((time, position, speed, acceleration, jerk))
             position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
             speed += duration * (acceleration + duration * jerk / 2.0)
             time += duration
+            last = acceleration + duration * jerk
         self.knots = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
-        #: Seconds from start to end, the position and the speed there.
-        self.duration, self.length, self.final = time, position, speed
+        #: Seconds from start to end; the position, the speed and the acceleration there.
+        self.duration, self.length, self.final, self.last = time, position, speed, last
 
     @property
     def lowest(self) -> float:
@@ -121,20 +134,43 @@ class SpeedProfile:
 
     def stretched(self, length: float) -> SpeedProfile:
         """The same with its end at a length that differs in rounding only."""
-        if self.length <= 0.0:
-            return self
-        share = length / self.length
+        return self if self.length <= 0.0 else self.scaled(length / self.length, length)
+
+    def scaled(self, share: float, length: float | None = None) -> SpeedProfile:
+        """The same with positions in another unit."""
         other = SpeedProfile(0.0, ())
         other.knots = [
             (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
         ]
-        other.duration, other.length, other.final = self.duration, length, self.final * share
+        other.duration = self.duration
+        other.length = self.length * share if length is None else length
+        other.final, other.last = self.final * share, self.last * share
         return other
+
+    def split(self, ends: Sequence[float]) -> list[SpeedProfile]:
+        """The parts up to each of some rising positions; the last of them is the end."""
+        parts: list[SpeedProfile] = []
+        before, place = 0.0, 0.0
+        for number, end in enumerate(ends, start=1):
+            after = self.duration if number == len(ends) else self.time_at(end)
+            parts.append(self._part(before, max(after, before)).stretched(end - place))
+            before, place = max(after, before), end
+        return parts
+
+    def _part(self, start: float, end: float) -> SpeedProfile:
+        _, speed, _ = self.state(start)
+        pieces = []
+        times = [*(knot[0] for knot in self.knots[1:]), self.duration]
+        for (begin, _, _, acceleration, jerk), finish in zip(self.knots, times, strict=True):
+            first, last = max(begin, start), min(finish, end)
+            if last > first:
+                pieces.append((last - first, acceleration + (first - begin) * jerk, jerk))
+        return SpeedProfile(speed, pieces)
 
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """The quickest change of speed, with the acceleration at zero in the end.
+    """The quickest change of speed and acceleration.
 
     ``pieces`` are up to three of duration, acceleration at the start, and jerk.
     """
@@ -147,22 +183,24 @@ class Ramp:
 _NONE = Ramp(0.0, 0.0, ())
 
 
-def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ramp:
-    """The change from a speed and acceleration to a target speed.
+def ramp(
+    speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
+) -> Ramp:
+    """The change from a speed and acceleration to a target speed, and a final acceleration.
 
-    The acceleration has to be within its bound.
+    Where one of both is beyond the bound of acceleration, that is the bound.
     """
-    jerk, most = bounds.jerk, bounds.acceleration
-    eased = speed + acceleration * abs(acceleration) / (2 * jerk)
-    sign = 1.0 if target >= eased else -1.0
-    start = sign * acceleration  # as if speeding up
+    jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
+    slew = abs(final - acceleration) / jerk
+    sign = 1.0 if target >= speed + slew * (acceleration + final) / 2 else -1.0
+    start, end = sign * acceleration, sign * final  # as if speeding up
     change = sign * (target - speed)
-    peak = math.sqrt(max(jerk * change + start * start / 2, 0.0))
+    peak = math.sqrt(max(jerk * change + (start * start + end * end) / 2, 0.0))
     hold = 0.0
     if peak > most:
-        hold = (change - (2 * most * most - start * start) / (2 * jerk)) / most
+        hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most
         peak = most
-    rise, fall = max(peak - start, 0.0) / jerk, peak / jerk
+    rise, fall = max(peak - start, 0.0) / jerk, max(peak - end, 0.0) / jerk
     # Distances in the mirrored frame, from the speed at the start of each phase.
     first = sign * speed
     second = first + rise * (start + peak) / 2
@@ -181,20 +219,25 @@ def ramp(speed: float, acceleration: float, target: float, bounds: Bounds) -> Ra
 
 
 def travel(
-    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+    length: float,
+    speed: float,
+    acceleration: float,
+    target: float,
+    bounds: Bounds,
+    final: float = 0.0,
 ) -> SpeedProfile:
-    """The quickest way over a length, from a speed and acceleration to a target speed.
+    """The quickest way over a length, from a speed and acceleration to others.
 
-    The acceleration is zero in the end. The caller has seen by `ramp` that it can be done; where
-    the length is just what the change of speed takes, that change is all there is.
+    The caller has seen by `ramp` that it can be done; where the length is just what the change of
+    speed takes, that change is all there is.
     """
-    direct = ramp(speed, acceleration, target, bounds)
+    direct = ramp(speed, acceleration, target, bounds, final)
     if direct.distance >= length * (1.0 - _SLACK):
         return SpeedProfile(speed, _lasting(direct.pieces)).stretched(length)
-    found = _solved(length, speed, acceleration, target, bounds)
+    found = _solved(length, speed, acceleration, target, bounds, final)
     misses = found is None or abs(found.length - length) > _EXACT * length
     if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
-        found = _searched(length, speed, acceleration, target, bounds)
+        found = _searched(length, speed, acceleration, target, bounds, final)
     return found.stretched(length)
 
 
@@ -209,7 +252,12 @@ def standing(duration: float) -> SpeedProfile:
 
 
 def _solved(
-    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+    length: float,
+    speed: float,
+    acceleration: float,
+    target: float,
+    bounds: Bounds,
+    final: float,
 ) -> SpeedProfile | None:
     """What Ruckig finds, if anything.
 
@@ -222,9 +270,9 @@ def _solved(
     asked.current_acceleration = [acceleration / unit]
     asked.target_position = [length / unit]
     asked.target_velocity = [target / unit]
-    asked.target_acceleration = [0.0]
+    asked.target_acceleration = [final / unit]
     asked.max_velocity = [1.0]
-    asked.max_acceleration = [bounds.acceleration / unit]
+    asked.max_acceleration = [max(bounds.acceleration, abs(final)) / unit]
     asked.max_jerk = [bounds.jerk / unit]
     trajectory = ruckig.Trajectory(1)
     try:
@@ -242,25 +290,35 @@ def _solved(
 
 
 def _searched(
-    length: float, speed: float, acceleration: float, target: float, bounds: Bounds
+    length: float,
+    speed: float,
+    acceleration: float,
+    target: float,
+    bounds: Bounds,
+    final: float,
 ) -> SpeedProfile:
     """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
 
     def parts(cruise: float) -> tuple[Ramp, Ramp]:
-        return ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds)
+        return (
+            ramp(speed, acceleration, cruise, bounds),
+            ramp(cruise, 0.0, target, bounds, final),
+        )
 
     def fits(cruise: float) -> bool:
         return sum(part.distance for part in parts(cruise)) <= length
 
     eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
-    low, high = max(eased, target), max(bounds.velocity, target)
+    rejoined = target + final * abs(final) / (2.0 * -bounds.jerk)
+    low = max(eased, rejoined)
+    high = max(bounds.velocity, low)
     if fits(low):
         for _ in range(_ROUNDS):
             middle = (low + high) / 2
             low, high = (middle, high) if fits(middle) else (low, middle)
         ramps = parts(low)
     else:  # it brakes already, and all that is left over is travelled behind that
-        low, ramps = target, (ramp(speed, acceleration, target, bounds), _NONE)
+        low, ramps = target, (ramp(speed, acceleration, target, bounds, final), _NONE)
     rest = max(length - sum(part.distance for part in ramps), 0.0)
     cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
     return SpeedProfile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))

@@ -1,37 +1,55 @@
-"""When the path is passed where: speeds at the seams of stretches, then a profile for each.
+"""When the path is passed where: speeds at the ends of spans of path, then a profile for each span.
 
-Along a stretch the bounds are the same, and at its end the acceleration is zero. What speed a seam
-is passed with follows from two looks: backwards, from what can still be braked down to what comes;
-forwards, from what can be reached until there.
+Stretches whose bounds are alike are one span, however many motions they belong to: within it the
+arm speeds up and brakes as if there were no seams. Between spans the acceleration is zero. A blend
+that bends is a span that is passed at one speed; where it was made of the end of one motion and the
+start of the next, it is entered while braking and left while speeding up.
+
+What speed the end of a span is passed with follows from two looks: backwards, from what can still
+be braked down to what comes; forwards, from what can be reached until there.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
-from interp.robot.planning.limits import Stretch
+import numpy as np
+
+from interp.robot.path.transition import Cubics
+from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
 
-__all__ = ["AtRest", "GearedStretch", "PathState", "braking", "schedule"]
+__all__ = ["AtRest", "GearedStretch", "PathState", "alone", "braking", "schedule"]
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may fill, so that rounding never makes one impossible."""
-_SAME = 1e-5
-"""Relative difference of speeds at a seam below which what was planned stays."""
+_ALIKE = 1.0 - 1e-3
+"""Ratio of speeds that counts as 1."""
+_LOOSE = 0.6
+"""Ratio of speeds from which the lower one may be no loss, since neither is reached."""
+_ABOUT = 0.8
+"""Ratio of accelerations or jerks from which it is better to have the lower one than a seam."""
+_JUMP = 0.01
+"""Share of the acceleration by which that of the path may jump where two blends touch."""
+_HELD = 0.8
+"""Share of the speed at which a blend could be passed evenly below which it is held up."""
+_HALVINGS = 48
 
 
 @dataclass(frozen=True, slots=True)
 class GearedStretch:
-    """A stretch, and by what its speed differs from that of the one before.
+    """A stretch, and how its speed and acceleration follow from those of the one before.
 
-    Both count speeds in units of their own parameter; ``gear`` times the one before is that of this
-    one. It is 0 where the arm stands between them.
+    Both count in units of their own parameter: the speed is ``gear`` times that before, the
+    acceleration ``gear`` times that before plus ``bend`` times the square of the speed before. A
+    gear of 0 is where the arm stands between them.
     """
 
     stretch: Stretch
     gear: float
+    bend: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +60,67 @@ class PathState:
     speed: float
     acceleration: float
 
+    def behind(self, start: float, gear: float, bend: float) -> PathState:
+        """The state behind a seam, at the start of what comes there."""
+        acceleration = gear * self.acceleration + bend * self.speed**2
+        return PathState(start, self.speed * gear, acceleration)
+
 
 AtRest = PathState(0.0, 0.0, 0.0)
+
+
+@dataclass(slots=True)
+class _Span:
+    """Stretches travelled as one, all in the unit of the first span behind a stop.
+
+    ``scales`` are what the parameters of its stretches are multiplied with, ``ends`` where each of
+    them ends. A blend that is a span of its own ``is_blend``; ``even`` is the speed up to which it
+    may be passed at one speed, as it ``is_even``. ``bend`` times the square of the speed at its
+    start is by how much more the acceleration is there than at the end of the span before;
+    ``stands``: the arm stands before it. ``highest`` are the greatest bounds of its stretches.
+    """
+
+    bounds: Bounds
+    even: float
+    bend: float
+    stands: bool
+    is_blend: bool
+    is_even: bool
+    highest: Bounds
+    scales: list[float] = field(default_factory=list)
+    ends: list[float] = field(default_factory=list)
+
+    @property
+    def length(self) -> float:
+        return self.ends[-1]
+
+    @property
+    def fastest(self) -> float:
+        return self.even if self.is_even else self.bounds.velocity
+
+    def add(self, scale: float, length: float) -> None:
+        self.scales.append(scale)
+        self.ends.append((self.ends[-1] if self.ends else 0.0) + length)
+
+    def takes(self, bounds: Bounds, is_blend: bool, is_loose: bool) -> bool:
+        """Whether a stretch with such bounds can be travelled with it as one; then it will be.
+
+        A blend counts only where it would be an obstacle, something else also where it would be
+        held up.
+        """
+        if self.is_blend and is_blend and not is_loose:
+            return False
+        ratio = _LOOSE if is_loose else _ALIKE
+        if not (self.is_blend or _is_about(self.highest, bounds, ratio)) or not (
+            is_blend or _is_about(bounds, self.bounds, ratio)
+        ):
+            return False
+        if self.is_blend or not is_blend:
+            self.highest = self.highest.merged(bounds, max)
+        self.bounds = self.bounds.merged(bounds, min)
+        self.is_blend = self.is_blend and is_blend
+        self.is_even = False
+        return True
 
 
 def schedule(
@@ -51,40 +128,54 @@ def schedule(
     state: PathState,
     override: float,
     *,
-    planned: float | None = None,
     is_strict: bool = False,
-) -> list[SpeedProfile | None] | None:
+) -> list[SpeedProfile] | None:
     """A profile for each step from a state on, to stand still in the end of the last.
 
-    Positions of a profile are u from its start times `Stretch.size`. ``planned`` is the speed at
-    the end of the first step as planned until now, where nothing but what follows has changed; if
-    it may stay, the first profile is ``None``. Returns ``None`` where it cannot be done: the
-    acceleration cannot be taken back in time, or, with ``is_strict``, the first seam would be
-    passed faster than what follows allows.
+    Positions of a profile are u from its start times `Stretch.size`. Returns ``None`` where it
+    cannot be done: the acceleration cannot be taken back in time, or, with ``is_strict``, the end
+    of a span would be passed faster than what follows allows.
     """
-    bounds = [step.stretch.bounds(override) for step in steps]
-    allowed = _allowed(steps, bounds)
-    profiles: list[SpeedProfile | None] = []
-    for place, (step, bound) in enumerate(zip(steps, bounds, strict=True)):
-        stretch = step.stretch
-        length = stretch.end - state.u
-        found = _out(state, length, allowed[place], bound, stretch.size)
-        if found is None or (is_strict and found > allowed[place] * (1.0 + 1e-9) + 1e-12):
+    best: list[SpeedProfile] | None = None
+    known: list[list[float]] = []
+    for is_loose in (True, False):
+        spans = _spans(steps, state, override, is_loose=is_loose)
+        if (lengths := [span.length for span in spans]) in known:
+            continue
+        known.append(lengths)
+        start = _start(spans, state)
+        found = _planned(spans, start, is_strict)
+        best = _sooner(best, found, steps, spans)
+        if _ease(spans, found):
+            best = _sooner(best, _planned(spans, start, is_strict), steps, spans)
+    return best
+
+
+def _sooner(
+    best: list[SpeedProfile] | None,
+    found: list[SpeedProfile] | None,
+    steps: Sequence[GearedStretch],
+    spans: Sequence[_Span],
+) -> list[SpeedProfile] | None:
+    """The quicker of a plan in the units of the steps and one in those of the spans."""
+    if found is None or (best is not None and _duration(best) <= _duration(found)):
+        return best
+    return _own_units(steps, spans, found)
+
+
+def _planned(
+    spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
+) -> list[SpeedProfile] | None:
+    """A profile for each stretch of all spans."""
+    allowed = _allowed(spans)
+    speed, acceleration = start
+    profiles: list[SpeedProfile] = []
+    for place, span in enumerate(spans):
+        found = _reached(spans, place, speed, acceleration, allowed[place])
+        if found is None or (is_strict and found > allowed[place] * (1.0 + 1e-6) + 1e-9):
             return None
-        out = found
-        if (
-            place == 0
-            and planned is not None
-            and planned <= allowed[0] * (1.0 + 1e-9)
-            and abs(planned - out) <= _SAME * out
-        ):
-            profiles.append(None)
-            out = planned
-        else:
-            profiles.append(_profile(state, length, out, bound, stretch.size))
-        if place + 1 < len(steps):
-            following = steps[place + 1]
-            state = PathState(following.stretch.start, out * following.gear, 0.0)
+        profiles += _parts(span, _travelled(spans, place, speed, acceleration, found))
+        speed, acceleration = found, _behind(spans, place, found)
     return profiles
 
 
@@ -93,66 +184,234 @@ def braking(
 ) -> list[SpeedProfile] | None:
     """Profiles that stand still as soon as can be; the last ends within its step.
 
-    ``None`` where the acceleration cannot be taken back on the first step.
+    ``None`` where the acceleration cannot be taken back on the first span.
     """
-    profiles = []
+    spans = _spans(steps, state, override, is_hard=is_hard)
+    speed, acceleration = _start(spans, state)
+    profiles: list[SpeedProfile] = []
+    for place, span in enumerate(spans):
+        way = ramp(speed, acceleration, 0.0, span.bounds).distance
+        if _fits(way, span.length):
+            whole = stop(speed, acceleration, span.bounds)
+            last = next(n for n, end in enumerate(span.ends) if _fits(way, end))
+            profiles += whole.split([*span.ends[:last], whole.length])
+            break
+        found = _reached(spans, place, speed, acceleration, 0.0)
+        if found is None:
+            return None
+        profiles += _parts(span, _travelled(spans, place, speed, acceleration, found))
+        speed, acceleration = found, _behind(spans, place, found)
+    return _own_units(steps, spans, profiles)
+
+
+def alone(ceiling: Ceiling) -> Cubics | None:
+    """The parameter of a curve over time from rest to rest; ``None`` where it cannot be."""
+    steps = [GearedStretch(stretch, 1.0) for stretch in ceiling.stretches]
+    profiles = schedule(steps, AtRest, 1.0)
+    if profiles is None:
+        return None
+    knots, time = [], 0.0
+    for step, profile in zip(steps, profiles, strict=True):
+        start, size = step.stretch.start, step.stretch.size
+        for begin, place, *rates in profile.knots:
+            knots.append((time + begin, start + place / size, *(rate / size for rate in rates)))
+        time += profile.duration
+    return Cubics(np.array(knots), time)
+
+
+# ---------------------------------------------------------------------------------------- spans
+
+
+def _spans(
+    steps: Sequence[GearedStretch],
+    state: PathState,
+    override: float,
+    *,
+    is_hard: bool = False,
+    is_loose: bool = True,
+) -> list[_Span]:
+    """The spans of a row of stretches; loosely, where a lower speed is taken for fewer seams."""
+    spans: list[_Span] = []
+    scale = 0.0
     for place, step in enumerate(steps):
         stretch = step.stretch
-        size, length = stretch.size, stretch.end - state.u
-        bound = stretch.bounds(override, is_hard)
-        sized = _sized(bound, size)
-        way = ramp(state.speed * size, state.acceleration * size, 0.0, sized).distance
-        if _fits(way, length * size):
-            profiles.append(stop(state.speed * size, state.acceleration * size, sized))
-            return profiles
-        out = _out(state, length, 0.0, bound, size)
-        if out is None:
-            return None
-        profiles.append(_profile(state, length, out, bound, size))
-        if place + 1 < len(steps):
-            following = steps[place + 1]
-            state = PathState(following.stretch.start, out * following.gear, 0.0)
-    return profiles
+        stands = place > 0 and step.gear <= 0.0
+        before, scale = scale, stretch.size if not place or stands else scale / step.gear
+        bend = 0.0 if not place or stands else scale * step.bend / before**2
+        is_blend, is_first = stretch.even > 0.0, place == 0
+        own = stretch.bounds(override, is_hard)
+        if is_blend and is_first and state.speed * _ALIKE > own.velocity:
+            own = stretch.even_bounds(override)
+        bounds = own.scaled(scale)
+        if not spans or stands or bend != 0.0 or not spans[-1].takes(bounds, is_blend, is_loose):
+            even = stretch.even_bounds(override).velocity * scale
+            is_even = is_blend and not is_first
+            spans.append(_Span(bounds, even, bend, stands, is_blend, is_even, bounds))
+        length = stretch.end - (state.u if is_first else stretch.start)
+        spans[-1].add(scale, length * scale)
+    return spans
 
 
-def _allowed(steps: Sequence[GearedStretch], bounds: Sequence[Bounds]) -> list[float]:
-    """The greatest speed at the end of each step from which all that follows can be braked for."""
-    allowed = [0.0] * len(steps)
-    for place in range(len(steps) - 1, 0, -1):
-        stretch, gear = steps[place].stretch, steps[place].gear
-        if gear <= 0.0:
+def _ease(spans: Sequence[_Span], profiles: Sequence[SpeedProfile] | None) -> bool:
+    """Let speeds change in blends that what is beside them holds up; whether there are any."""
+    is_eased, place = False, 0
+    for span in spans:
+        if span.is_even:
+            held = profiles is None or profiles[place].final < _HELD * span.even
+            span.is_even = not held
+            is_eased = is_eased or held
+        place += len(span.ends)
+    return is_eased
+
+
+def _duration(profiles: Sequence[SpeedProfile]) -> float:
+    return sum(profile.duration for profile in profiles)
+
+
+def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
+    """Whether some bounds are no more than others, but for what is not worth a seam."""
+    return (
+        inner.velocity * ratio <= outer.velocity
+        and inner.acceleration * _ABOUT <= outer.acceleration
+        and inner.jerk * _ABOUT <= outer.jerk
+    )
+
+
+def _start(spans: Sequence[_Span], state: PathState) -> tuple[float, float]:
+    scale = spans[0].scales[0] if spans else 1.0
+    return state.speed * scale, state.acceleration * scale
+
+
+def _parts(span: _Span, profile: SpeedProfile) -> list[SpeedProfile]:
+    return profile.split(span.ends) if len(span.ends) > 1 else [profile]
+
+
+def _own_units(
+    steps: Sequence[GearedStretch], spans: Sequence[_Span], profiles: Sequence[SpeedProfile]
+) -> list[SpeedProfile]:
+    scales = (scale for span in spans for scale in span.scales)
+    return [
+        profile if scale == step.stretch.size else profile.scaled(step.stretch.size / scale)
+        for step, scale, profile in zip(steps, scales, profiles, strict=False)
+    ]
+
+
+# ---------------------------------------------------------------------------- speeds at the ends
+
+
+def _allowed(spans: Sequence[_Span]) -> list[float]:
+    """The greatest speed at the end of each span from which all that follows can be braked for."""
+    allowed = [0.0] * len(spans)
+    for place in range(len(spans) - 1, 0, -1):
+        span, before = spans[place], spans[place - 1]
+        if span.stands:
             continue
-        length = (stretch.end - stretch.start) * _SPARE
-        into = min(_other_end(allowed[place], length, bounds[place]), bounds[place].velocity)
-        allowed[place - 1] = min(into / gear, bounds[place - 1].velocity)
+        most = min(span.fastest, before.fastest)
+        if span.is_even:
+            most = min(most, allowed[place])
+        if span.is_blend is not before.is_blend:  # the other has the acceleration of the seam
+            most = min(most, _most_with(span.bend, (before if span.is_blend else span).bounds))
+        elif span.bend:
+            most = min(most, math.sqrt(_JUMP * span.bounds.acceleration / abs(span.bend)))
+        allowed[place - 1] = most if span.is_even else _into(spans, place, allowed[place], most)
     return allowed
 
 
-def _out(
-    state: PathState, length: float, allowed: float, bound: Bounds, size: float
+def _into(spans: Sequence[_Span], place: int, out: float, most: float) -> float:
+    """The greatest speed at the start of a span, up to a given one, to leave it with a speed."""
+    span = spans[place]
+    if not _entering(spans, place, 1.0) and not _leaving(spans, place, 1.0):
+        return min(_other_end(out, span.length * _SPARE, span.bounds), most)
+
+    def fits(speed: float) -> bool:
+        end = min(out, speed)
+        acceleration, final = _entering(spans, place, speed), _leaving(spans, place, end)
+        way = ramp(speed, acceleration, end, span.bounds, final).distance
+        return _fits(way, span.length * _SPARE)
+
+    return most if fits(most) else _bisected(fits, 0.0, most)
+
+
+def _reached(
+    spans: Sequence[_Span], place: int, speed: float, acceleration: float, allowed: float
 ) -> float | None:
-    """The speed in which a stretch ends: at best the allowed one, else the nearest that can be.
+    """The speed in which a span ends: at best the allowed one, else the nearest that can be.
 
     Lower where that can be; ``None`` where not even the acceleration can be taken back.
     """
-    eased = state.speed + state.acceleration * abs(state.acceleration) / (2.0 * bound.jerk)
-    sized = _sized(bound, size)
+    span = spans[place]
+    if span.is_even:
+        return speed
+    bounds = span.bounds
 
     def fits(target: float) -> bool:
-        way = ramp(state.speed * size, state.acceleration * size, target * size, sized).distance
-        return _fits(way, length * size)
+        final = _leaving(spans, place, target)
+        return _fits(ramp(speed, acceleration, target, bounds, final).distance, span.length)
 
     if fits(allowed):
         return allowed
-    if state.acceleration == 0.0 and allowed > state.speed:
-        return max(_other_end(state.speed, length * _SPARE, bound), state.speed)
+    if acceleration == 0.0 and allowed > speed and not _leaving(spans, place, 1.0):
+        return max(_other_end(speed, span.length * _SPARE, bounds), speed)
     # Not every speed between two that can be reached can be reached: braking hard, it may take
     # longer to ease off the brake at some speed than to stand still.
+    eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
     within = 0.0 if fits(0.0) else eased
     if within < 0.0 or not fits(within):
         return None
-    beyond = allowed
-    for _ in range(48):
+    return _bisected(fits, within, allowed)
+
+
+def _travelled(
+    spans: Sequence[_Span], place: int, speed: float, acceleration: float, out: float
+) -> SpeedProfile:
+    span = spans[place]
+    if span.is_even:
+        return SpeedProfile(speed, ((span.length / speed, 0.0, 0.0),) if speed > 0.0 else ())
+    final = _leaving(spans, place, out)
+    return travel(span.length, speed, acceleration, out, span.bounds, final)
+
+
+def _behind(spans: Sequence[_Span], place: int, speed: float) -> float:
+    """The acceleration with which the next span begins."""
+    return _entering(spans, place + 1, speed) if place + 1 < len(spans) else 0.0
+
+
+def _entering(spans: Sequence[_Span], place: int, speed: float) -> float:
+    """The acceleration at the start of a span behind a blend."""
+    span = spans[place]
+    if not place or span.is_blend or not spans[place - 1].is_blend:
+        return 0.0
+    return span.bend * speed**2
+
+
+def _leaving(spans: Sequence[_Span], place: int, speed: float) -> float:
+    """The acceleration at the end of a span before a blend."""
+    if place + 1 == len(spans) or spans[place].is_blend or not spans[place + 1].is_blend:
+        return 0.0
+    return -spans[place + 1].bend * speed**2
+
+
+def _most_with(bend: float, bounds: Bounds) -> float:
+    """The greatest speed at which an acceleration of ``bend`` times its square can be taken back.
+
+    Without being faster than the bound in doing so.
+    """
+    if not bend:
+        return bounds.velocity
+
+    def fits(speed: float) -> bool:
+        gain = abs(bend) * speed**2
+        return (
+            gain * _ALIKE <= bounds.acceleration
+            and (speed + gain**2 / (2.0 * bounds.jerk)) * _ALIKE <= bounds.velocity
+        )
+
+    return bounds.velocity if fits(bounds.velocity) else _bisected(fits, 0.0, bounds.velocity)
+
+
+def _bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
+    """The speed nearest to one that does not fit which still fits."""
+    for _ in range(_HALVINGS):
         middle = (beyond + within) / 2.0
         if fits(middle):
             within = middle
@@ -183,19 +442,3 @@ def _other_end(speed: float, length: float, bound: Bounds) -> float:
     b = speed / a + a / (2.0 * j)
     c = speed * a / j - length
     return speed + a * (math.sqrt(b * b - 2.0 * c / a) - b)
-
-
-def _sized(bound: Bounds, size: float) -> Bounds:
-    return Bounds(bound.velocity * size, bound.acceleration * size, bound.jerk * size)
-
-
-def _profile(
-    state: PathState, length: float, out: float, bound: Bounds, size: float
-) -> SpeedProfile:
-    return travel(
-        length * size,
-        state.speed * size,
-        state.acceleration * size,
-        out * size,
-        _sized(bound, size),
-    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -35,9 +35,9 @@ class Section:
 
     ``number`` is that of the motion, of a blend's first; ``following`` that of its second, else
     ``None``. ``start`` and ``end`` are the parameters of the curve between which it is travelled.
-    ``gear`` times the speed in which the section before ends is that in which this one begins, both
-    per unit of their own u; 0 where the arm stands between them. ``is_still`` is a motion of
-    length zero, which takes no time. The segments of a spline block have a ``part`` from 0 on.
+    ``gear`` and ``bend`` tell the speed and acceleration in which this one begins from those in
+    which the section before ends, as in `GearedStretch`. ``is_still`` is a motion of length zero,
+    which takes no time. The segments of a spline block have a ``part`` from 0 on.
     """
 
     number: int
@@ -47,6 +47,7 @@ class Section:
     start: float = 0.0
     end: float = 1.0
     gear: float = 0.0
+    bend: float = 0.0
     is_still: bool = False
     part: int = 0
 
@@ -64,7 +65,8 @@ class Section:
         """The stretches from a parameter on; at the start of the section its gear counts."""
         parts = () if self.is_used_up else self.ceiling.between(start, self.end)
         return [
-            GearedStretch(part, 1.0 if place else self.gear) for place, part in enumerate(parts)
+            GearedStretch(part, 1.0) if place else GearedStretch(part, self.gear, self.bend)
+            for place, part in enumerate(parts)
         ]
 
     @cached_property
@@ -77,8 +79,7 @@ class Section:
 class Leg:
     """A section travelled from ``begins`` on, in seconds; cut off at ``ends``.
 
-    The profile's positions count from ``stretch.start`` in units of ``stretch.size``. ``override``
-    is the one that it was laid under, ``None`` for a ramp to a stop.
+    The profile's positions count from ``stretch.start`` in units of ``stretch.size``.
     """
 
     section: Section
@@ -86,7 +87,6 @@ class Leg:
     profile: SpeedProfile
     begins: float
     ends: float
-    override: float | None = None
 
     def at(self, times: Array) -> tuple[Array, Array, Array]:
         """u, u̇ and ü at times."""
@@ -181,6 +181,10 @@ class Timeline:
         place = bisect_right(self._begins, time)
         return self.legs[place - 1] if place else None
 
+    def after(self, leg: Leg) -> Sequence[Leg]:
+        """The legs that begin where a leg ends, or later."""
+        return self.legs[bisect_left(self._begins, leg.ends) :]
+
     def of(self, key: Key) -> Sequence[Leg]:
         """The legs of a section, in their order."""
         return self._of.get(key, ())
@@ -202,7 +206,7 @@ class Timeline:
         axes[places < 0] = self.start
         for curve, wanted, parts in self._grouped(places, seconds):
             u, speed, acceleration = (np.concatenate(column) for column in zip(*parts, strict=True))
-            first, second = curve.rates(u)
+            first, second, _ = curve.rates(u)
             axes[wanted] = curve.axes(u)
             speeds[wanted] = first * speed[:, None]
             accelerations[wanted] = second * speed[:, None] ** 2 + first * acceleration[:, None]

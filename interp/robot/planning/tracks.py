@@ -267,7 +267,7 @@ class Tracks:
         if may_reduce or (settings.speed_type == "#VAR_T1" and settings.is_reduced) or not paths:
             return
         grid = curve.grid
-        first, _ = curve.rates(grid)
+        first, _, _ = curve.rates(grid)
         most = min(path.velocity / path.length for path in paths)
         gain = min(path.acceleration / path.length for path in paths)
         speeds = np.minimum(np.sqrt(2.0 * gain * np.minimum(grid, 1.0 - grid)), most)

@@ -8,6 +8,7 @@ import pytest
 from interp.robot.path.circle import circle_through
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import Arc, Blend, PosePath, StraightLine, Way
+from interp.robot.path.transition import Rounding
 
 STILL = turning(np.eye(3), np.eye(3))
 FIRST = StraightLine(np.zeros(3), np.array([100.0, 0.0, 0.0]), STILL)
@@ -18,7 +19,12 @@ ARC = Arc(
     ),
     STILL,
 )
-PATHS = [FIRST, ARC, Blend(FIRST, 0.3, SECOND, 0.5), Blend(FIRST, 0.2, ARC, 0.4)]
+PATHS = [
+    FIRST,
+    ARC,
+    Blend(FIRST, SECOND, Rounding(0.3, 0.5, (30.0, 50.0), 1.0)),
+    Blend(FIRST, ARC, Rounding(0.2, 0.4, (20.0, 60.0), 2.0)),
+]
 
 
 @pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: pose_path.kind)
@@ -40,19 +46,23 @@ def test_from_the_way_to_the_place(pose_path: PosePath) -> None:
     assert np.allclose(lengths, way.at(way.parameters(lengths)), atol=1e-9)
 
 
-def test_the_length_of_a_parabola() -> None:
-    """A parabola with a right angle at its point has the length that calculus says."""
-    corner = Blend(
-        FIRST, 0.4, StraightLine(SECOND.start, np.array([100.0, 100.0, 0.0]), STILL), 0.4
+def test_a_rounded_corner_is_nearly_a_parabola() -> None:
+    """Its apex is that of the parabola with the same ends, all of it within 0.3 per cent."""
+    other = StraightLine(SECOND.start, np.array([100.0, 100.0, 0.0]), STILL)
+    corner = Blend(FIRST, other, Rounding(0.4, 0.4, (40.0, 40.0), 1.0))
+    places, _ = corner.at(np.linspace(0.0, 1.0, 101))
+    assert (90.0, 10.0) == pytest.approx(tuple(places[50, :2]))
+    roots = np.sqrt(100.0 - places[:, 0]) + np.sqrt(places[:, 1])
+    beside = np.abs(roots - math.sqrt(40.0)) * np.sqrt(
+        np.minimum(100.0 - places[:, 0], places[:, 1])
     )
-    wanted = 40.0 * (1.0 + math.asinh(1.0) / math.sqrt(2.0))
-    assert wanted == pytest.approx(corner.length, rel=1e-9)
+    assert 0.003 * 40.0 > beside.max()
 
 
 def test_a_way_that_turns_back() -> None:
     """Where a line goes back on itself the blend does too, and its way is that of both legs."""
     back = StraightLine(FIRST.end, FIRST.start, STILL)
-    blend = Blend(FIRST, 0.4, back, 0.4)
+    blend = Blend(FIRST, back, Rounding(0.4, 0.4, (40.0, 40.0), 1.0))
     places, _ = blend.at(np.array([0.0, 0.5, 1.0]))
     assert [60.0, 80.0, 60.0] == pytest.approx(places[:, 0])
     assert 40.0 == pytest.approx(blend.length, rel=1e-6)

@@ -145,7 +145,7 @@ def test_a_block_of_ptp(driver: Driver) -> None:
         (axes,) = section.curve.axes(np.ones(1))
         assert (part.target["A1"], part.target["A3"]) == pytest.approx((axes[0], axes[2]))
     for one, other in pairwise(sections):
-        (first, bend), (second, onward) = (
+        (first, bend, _), (second, onward, _) = (
             one.curve.rates(np.ones(1)),
             other.curve.rates(np.zeros(1)),
         )

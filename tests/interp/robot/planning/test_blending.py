@@ -30,12 +30,13 @@ CORNER = {**FIRST, "Y": -100.0}
 LAST = {**CORNER, "X": 400.0}
 
 
-def corner(driver: Driver, criteria: tuple[str, ...], **values: Any) -> None:
+def corner(driver: Driver, criteria: tuple[str, ...], velocity: float = 2.0, **values: Any) -> None:
     """A line of 300 mm, and across it one of 100 mm."""
     driver.move("PTP", FIRST)
     driver.play()
-    driver.move("LIN", CORNER, criteria=criteria, approximation=Approximation(**values))
-    driver.move("LIN", LAST)
+    near = Approximation(**values)
+    driver.move("LIN", CORNER, criteria=criteria, approximation=near, velocity=velocity)
+    driver.move("LIN", LAST, velocity=velocity)
 
 
 def blend(driver: Driver) -> Section:
@@ -45,9 +46,9 @@ def blend(driver: Driver) -> Section:
     return found
 
 
-def test_a_blend_of_lines_is_a_parabola(driver: Driver) -> None:
-    """The path is the Bézier curve of the ends of the zone and the point, to a nanometre."""
-    corner(driver, ("C_DIS",), cdis=40.0)
+def test_a_blend_of_lines_is_nearly_a_parabola(driver: Driver) -> None:
+    """Where nothing is gained otherwise, it has the ends of one and keeps 0.12 mm to it."""
+    corner(driver, ("C_DIS",), 0.2, cdis=40.0)
     driver.play()
     section = blend(driver)
     assert isinstance(section.curve.pose_path, Blend)
@@ -58,17 +59,18 @@ def test_a_blend_of_lines_is_a_parabola(driver: Driver) -> None:
     places = np.array([driver.tool(time) for time in range(begin, end, 2000)])
     # On that parabola the roots of the distances from both lines add to that of the zone.
     across, along = 500.0 - places[:, 0], places[:, 1] + 100.0
-    roots = np.sqrt(np.clip(across, 0, None)) + np.sqrt(np.clip(along, 0, None))
-    assert np.allclose(np.sqrt(40.0), roots, atol=1e-6)
+    least, most = np.minimum(across, along), np.maximum(across, along)
+    assert 0.12 > np.abs((np.sqrt(40.0) - np.sqrt(most)) ** 2 - least).max()
     driver.check_limits()
 
 
-def test_the_point_is_not_passed(driver: Driver) -> None:
-    """At the apex the path is a quarter of the zone away, on the inner side [BLD-08]."""
-    corner(driver, ("C_DIS",), cdis=40.0)
+@pytest.mark.parametrize(("velocity", "away"), [(0.2, 10.0), (2.0, 7.5)])
+def test_the_point_is_not_passed(driver: Driver, velocity: float, away: float) -> None:
+    """The apex is a quarter of the zone away, nearer where that is sooner over [BLD-08]."""
+    corner(driver, ("C_DIS",), velocity, cdis=40.0)
     driver.play()
-    assert (490.0, -90.0, 600.0) == pytest.approx(
-        driver.tool(driver.time("blend_apex", 2)), abs=0.01
+    assert (500.0 - away, -100.0 + away, 600.0) == pytest.approx(
+        driver.tool(driver.time("blend_apex", 2)), abs=0.15
     )
 
 
@@ -125,15 +127,16 @@ def test_where_a_blend_begins(
 
 
 def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
-    """Between PTP the path is a parabola of all axes, its zone that of $APO_DIS_PTP [BLD-03]."""
+    """Between PTP all axes go over into the next; the zone is that of $APO_DIS_PTP [BLD-03]."""
     values = {"approximation": Approximation(cptp=50)}
     driver.move("PTP", {"A1": 100.0}, criteria=("C_PTP",), **values)
     driver.move("PTP", {"A2": 0.0}, **values)
     curve = blend(driver).curve
     assert isinstance(curve, BlendedAxes)
-    axes = curve.axes(np.array([0.0, 0.5, 1.0]))[:, :2]
+    axes = curve.axes(np.linspace(0.0, 1.0, 50))[:, :2]
     # 50 % of 90 degrees on the first side; half of the path is that on the second.
-    assert np.allclose([(55.0, -90.0), (88.75, -78.75), (100.0, -45.0)], axes)
+    assert np.allclose([(55.0, -90.0), (100.0, -45.0)], axes[[0, -1]])
+    assert (np.diff(axes, axis=0) > -1e-12).all()
     driver.play()
     driver.check_limits()
 
@@ -146,7 +149,9 @@ def test_cptp_counts_for_each_side(driver: Driver, first: float, second: float) 
     curve = blend(driver).curve
     assert isinstance(curve, BlendedAxes)
     wanted = (min(first * 0.9, 80.0), min(second * 0.9, 90.0))
-    assert wanted == pytest.approx((curve.before * 160.0, curve.after * 180.0))
+    assert wanted == pytest.approx(
+        (curve.transition.before * 160.0, curve.transition.after * 180.0)
+    )
 
 
 def test_cdis_of_a_ptp_counts_for_both_sides(driver: Driver) -> None:
@@ -159,7 +164,10 @@ def test_cdis_of_a_ptp_counts_for_both_sides(driver: Driver) -> None:
     assert isinstance(section.curve, BlendedAxes)
     one, other = section.curve.first, section.curve.second
     points = np.array([CORNER[name] for name in "XYZ"])
-    for curve, u in ((one, 1.0 - section.curve.before), (other, section.curve.after)):
+    for curve, u in (
+        (one, 1.0 - section.curve.transition.before),
+        (other, section.curve.transition.after),
+    ):
         (axes,) = curve.axes(np.array([u]))
         place = curve.arm.forward(axes[:6])[:3, 3]
         assert 25.0 == pytest.approx(float(np.linalg.norm(place - points)), rel=0.02)
@@ -176,12 +184,17 @@ def test_mixed_blends(driver: Driver, kinds: tuple[str, str]) -> None:
     driver.move(kinds[1], LAST, velocity=0.5, **values)
     curve = blend(driver).curve
     assert isinstance(curve, BlendedAxes)
-    share = curve.after if kinds[1] == "LIN" else curve.before
+    share = curve.transition.after if kinds[1] == "LIN" else curve.transition.before
     assert 30.0 / (100.0 if kinds[1] == "LIN" else 300.0) == pytest.approx(share)
-    rates, _ = curve.rates(np.array([0.0, 1.0]))
-    leaving, _ = curve.first.rates(np.array([1.0 - curve.before]))
-    joining, _ = curve.second.rates(np.array([curve.after]))
-    assert np.allclose(rates, [2 * curve.before * leaving[0], 2 * curve.after * joining[0]])
+    (rates, bends, _), zone = curve.rates(np.array([0.0, 1.0])), curve.transition
+    leaving, leaving_bend, _ = curve.first.rates(np.array([1.0 - zone.before]))
+    joining, joining_bend, _ = curve.second.rates(np.array([zone.after]))
+    (one, _), (other, _) = zone.rates(np.array([0.0])), zone.rates(np.array([1.0]))
+    other = zone.rates(np.array([1.0]))[1]
+    assert np.allclose(rates, [one[0] * leaving[0], other[0] * joining[0]])
+    one_bend = one[0] ** 2 * leaving_bend[0] + one[1] * leaving[0]
+    other_bend = other[0] ** 2 * joining_bend[0] + other[1] * joining[0]
+    assert np.allclose(bends, [one_bend, other_bend])
     driver.play()
     driver.check_limits()
 
@@ -213,12 +226,12 @@ def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
     assert isinstance(pose_path, Blend)
     (start, end), _ = pose_path.at(np.array([0.0, 1.0]))
     assert (500.0, -80.0, 600.0) == pytest.approx(start)
-    assert np.allclose(pose_path.second.at(np.array([pose_path.after]))[0][0], end)
+    assert np.allclose(pose_path.second.at(np.array([pose_path.transition.after]))[0][0], end)
     tangents = pose_path.tangents(np.array([0.0, 1.0]))
     wanted = np.stack(
         (
             pose_path.first.tangents(np.ones(1))[0],
-            pose_path.second.tangents(np.array([pose_path.after]))[0],
+            pose_path.second.tangents(np.array([pose_path.transition.after]))[0],
         )
     )
     cosines = (tangents * wanted).sum(axis=1)
@@ -312,7 +325,7 @@ def test_a_blend_of_axes_keeps_within_software_limits(driver: Driver) -> None:
     first, there = tracks.track(turn, here)
     second, _ = tracks.track(line, there)
     zone = Zone(0.4, 0.4)
-    curve, _ = blend_of(first, second, zone, driver.machine, tracks.limits)
+    curve = blend_of(first, second, zone, driver.machine, tracks.limits).curve
     most = float(curve.axes(np.linspace(0.0, 1.0, 500))[:, 0].max())
     axis = driver.machine.axes[0]
     for upper, is_beyond in ((most + 0.01, False), (most - 0.5, True)):

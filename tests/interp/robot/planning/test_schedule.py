@@ -25,7 +25,7 @@ def laid(
     """The profiles of a schedule that can be."""
     profiles = schedule(steps, state, override)
     assert profiles is not None
-    return [profile for profile in profiles if profile is not None]
+    return profiles
 
 
 def test_a_slow_stretch_between_fast_ones() -> None:

@@ -1,0 +1,227 @@
+"""How a blend goes over from one path into the next: parameters of both, over one of its own.
+
+A blend is ``first(one(u)) - P + second(other(u))`` with u from 0 to 1. ``one`` runs from the start
+of the zone to the end of the first path, ``other`` from the start of the second path to the end of
+the zone. Where ``one`` ends and where ``other`` starts, derivatives up to the second are zero. So
+the curve leaves one path and joins the other with tangent and curvature unbroken, whatever they
+are, and its jerk is bounded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from interp.robot.kinematics.solver import Array
+
+__all__ = ["Cubics", "Overlap", "Rounding", "Transition", "chained"]
+
+_ROUNDS = 60
+_EXACT = 1e-15
+
+
+class Transition(Protocol):
+    """The parameters of both paths in a blend; ``before`` and ``after`` are the shares it takes."""
+
+    @property
+    def before(self) -> float:
+        """Share of the first path."""
+        ...
+
+    @property
+    def after(self) -> float:
+        """Share of the second path."""
+        ...
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """Parameters ``(n,)`` of the first path and of the second."""
+        ...
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """First to third derivatives of both by u, each ``(3, n)``."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Rounding:
+    """A corner that is rounded; where the paths go straight on, a line at constant speed.
+
+    ``weights`` are the lengths of both sides of the zone in one unit. Over a parameter v both sides
+    follow ``h = (4 - slope)·v³ + (slope - 3)·v⁴``. With a slope of 1 the curve between two lines
+    has the apex of a parabola and is within 0.3 per cent of the zone of it; its curvature rises
+    quickly. A slope of 2 takes the whole zone for that. u grows with the sum of both sides.
+    """
+
+    before: float
+    after: float
+    weights: tuple[float, float]
+    slope: float
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `Transition.at`."""
+        v = self._inner(u)
+        return 1.0 - self.before * self._side(1.0 - v)[0], self.after * self._side(v)[0]
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Transition.rates`."""
+        v = self._inner(u)
+        _, *left = self._side(1.0 - v)
+        _, *right = self._side(v)
+        signs = (1.0, -1.0, 1.0)
+        one = np.stack([self.before * s * side for s, side in zip(signs, left, strict=True)])
+        other = np.stack([self.after * side for side in right])
+        a, b = self._shares
+        w1, w2, w3 = (a * s * x + b * y for s, x, y in zip(signs, left, right, strict=True))
+        inner = np.stack((1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5))
+        return _composed(one, inner), _composed(other, inner)
+
+    @property
+    def _shares(self) -> tuple[float, float]:
+        total = sum(self.weights)
+        return self.weights[0] / total, self.weights[1] / total
+
+    def _side(self, v: Array) -> tuple[Array, Array, Array, Array]:
+        """The polynomial h and its derivatives."""
+        c, d = 4.0 - self.slope, self.slope - 3.0
+        return (
+            v**3 * (c + d * v),
+            v**2 * (3.0 * c + 4.0 * d * v),
+            v * (6.0 * c + 12.0 * d * v),
+            6.0 * c + 24.0 * d * v,
+        )
+
+    def _inner(self, u: Array) -> Array:
+        """The parameter v for u, by Newton's method within bounds that close in."""
+        a, b = self._shares
+        v, low, high = u.copy(), np.zeros_like(u), np.ones_like(u)
+        for _ in range(_ROUNDS):
+            left, right = self._side(1.0 - v), self._side(v)
+            beyond = a * (1.0 - left[0]) + b * right[0] - u
+            if np.abs(beyond).max(initial=0.0) < _EXACT:
+                break
+            low, high = np.where(beyond <= 0.0, v, low), np.where(beyond >= 0.0, v, high)
+            following = v - beyond / (a * left[1] + b * right[1])
+            outside = (following <= low) | (following >= high)
+            following = np.where(outside, (low + high) / 2.0, following)
+            if np.array_equal(following, v):
+                break
+            v = following
+        return v
+
+
+@dataclass(frozen=True, eq=False)
+class Cubics:
+    """A parameter over time: cubics in a row, each with start, value and three derivatives there.
+
+    ``knots`` is ``(n, 5)``; it lasts for ``duration``.
+    """
+
+    knots: Array
+    duration: float
+
+    def at(self, times: Array) -> Array:
+        """Values and first to third derivatives, ``(4, n)``."""
+        place = np.maximum(np.searchsorted(self.knots[:, 0], times, side="right") - 1, 0)
+        start, value, speed, bend, jerk = self.knots.T[:, place]
+        dt = times - start
+        found = np.empty((4, len(times)))
+        found[0] = value + dt * (speed + dt * (bend / 2.0 + dt * jerk / 6.0))
+        found[1] = speed + dt * (bend + dt * jerk / 2.0)
+        found[2] = bend + dt * jerk
+        found[3] = jerk
+        return found
+
+    def since(self, value: float) -> Cubics:
+        """The part from where a value is reached on; values rise."""
+        time = self._time(value)
+        return self._between(time, self.duration)
+
+    def until(self, value: float) -> Cubics:
+        """The part up to where a value is reached; values rise."""
+        return self._between(0.0, self._time(value))
+
+    def _time(self, value: float) -> float:
+        place = max(int(np.searchsorted(self.knots[:, 1], value)) - 1, 0)
+        start, origin, speed, bend, jerk = self.knots[place].tolist()
+        ends = [*self.knots[1:, 0].tolist(), self.duration]
+        low, high = 0.0, ends[place] - start
+        for _ in range(_ROUNDS):
+            dt = (low + high) / 2.0
+            if origin + dt * (speed + dt * (bend / 2.0 + dt * jerk / 6.0)) < value:
+                low = dt
+            else:
+                high = dt
+        return float(start + high)
+
+    def _between(self, start: float, end: float) -> Cubics:
+        times = self.knots[:, 0]
+        inside = self.knots[(times > start) & (times < end)] - [start, 0.0, 0.0, 0.0, 0.0]
+        first = np.concatenate(([0.0], self.at(np.array([start]))[:, 0]))
+        return Cubics(np.vstack((first, inside)), end - start)
+
+
+@dataclass(frozen=True, eq=False)
+class Overlap:
+    """The end of one motion and the start of the next at once, each as if it were alone.
+
+    ``ending`` is the parameter of the first path over time while it brakes to its end, ``starting``
+    that of the second while it speeds up from its start. Both zones are entered and left as they
+    are alone; so travelling the blend takes the longer of both times, where stopping takes their
+    sum.
+    """
+
+    ending: Cubics
+    starting: Cubics
+
+    @cached_property
+    def duration(self) -> float:
+        """Seconds, where no axis finds both at once too fast."""
+        return max(self.ending.duration, self.starting.duration)
+
+    @cached_property
+    def before(self) -> float:
+        """See `Transition.before`."""
+        return 1.0 - float(self.ending.knots[0, 1])
+
+    @cached_property
+    def after(self) -> float:
+        """See `Transition.after`."""
+        return float(self.starting.at(np.array([self.starting.duration]))[0, 0])
+
+    def at(self, u: Array) -> tuple[Array, Array]:
+        """See `Transition.at`."""
+        one, other = self._both(u)
+        return np.minimum(one[0], 1.0), np.maximum(other[0], 0.0)
+
+    def rates(self, u: Array) -> tuple[Array, Array]:
+        """See `Transition.rates`."""
+        times = u * self.duration
+        one, other = self._both(u)
+        one = one[1:] * (times <= self.ending.duration)
+        other = other[1:] * (times >= self.duration - self.starting.duration)
+        return one, other
+
+    def _both(self, u: Array) -> tuple[Array, Array]:
+        """Values and derivatives by u, ``(4, n)`` each."""
+        times, powers = u * self.duration, self.duration ** np.arange(4.0)[:, None]
+        ending = np.minimum(times, self.ending.duration)
+        starting = np.maximum(times - (self.duration - self.starting.duration), 0.0)
+        return self.ending.at(ending) * powers, self.starting.at(starting) * powers
+
+
+def chained(outer: tuple[Array, Array, Array], inner: Array) -> tuple[Array, Array, Array]:
+    """First to third derivatives ``(n, columns)`` of a curve over a parameter that has its own."""
+    (f1, f2, f3), (x1, x2, x3) = outer, inner[:, :, None]
+    return (
+        f1 * x1,
+        f2 * x1**2 + f1 * x2,
+        f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3,
+    )
+
+
+def _composed(outer: Array, inner: Array) -> Array:
+    (f1, f2, f3), (x1, x2, x3) = outer, inner
+    return np.stack((f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3))

@@ -1,0 +1,84 @@
+"""The laws of blends, on programs drawn by seed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("ruckig")
+
+from interp.bench.blends import draw, exact, measure, straight, travel
+from interp.values.faults import Fault
+
+SEEDS = st.integers(0, 10_000_000)
+FEW = settings(
+    max_examples=8, deadline=None, derandomize=True, phases=[Phase.explicit, Phase.generate]
+)
+_DIFFERENCES = 1e-3  # what differences of samples miss of derivatives
+
+
+@FEW
+@given(seed=SEEDS)
+def test_no_program_is_slower_for_its_blends(seed: int) -> None:
+    """With exact stops in the place of blends it takes as long or longer."""
+    program = draw(seed)
+    try:
+        blended, stopped = travel(program)[0], travel(exact(program))[0]
+    except Fault:
+        assume(False)
+    assert blended.seconds <= stopped.seconds * (1.0 + _DIFFERENCES)
+
+
+@FEW
+@given(seed=SEEDS)
+def test_points_on_a_straight_way_cost_next_to_nothing(seed: int) -> None:
+    """A line or a PTP takes as long with points on it that are blended, to half a per cent."""
+    try:
+        whole, parts = (travel(row)[0].seconds for row in straight(seed))
+    except Fault:
+        assume(False)
+    assert parts <= whole * 1.005
+
+
+@FEW
+@given(seed=SEEDS)
+def test_no_axis_exceeds_speed_acceleration_or_jerk(seed: int) -> None:
+    """At every millisecond, by differences of the axes themselves."""
+    try:
+        blended, _ = travel(draw(seed))
+    except Fault:
+        assume(False)
+    assert max(blended.speed, blended.acceleration, blended.jerk) <= 1.0 + _DIFFERENCES
+
+
+@FEW
+@given(seed=SEEDS, override=st.floats(1.0, 99.0))
+def test_the_path_does_not_depend_on_the_override(seed: int, override: float) -> None:
+    """Each section is the same curve at any override."""
+    try:
+        _, fast = travel(draw(seed))
+        _, slow = travel(draw(seed), override)
+    except Fault:
+        assume(False)
+    u = np.linspace(0.0, 1.0, 9)
+    curves = [
+        {leg.section.key: leg.section.curve.axes(u) for leg in arm.path()} for arm in (fast, slow)
+    ]
+    assert curves[0].keys() == curves[1].keys()
+    for key, axes in curves[0].items():
+        assert np.array_equal(axes, curves[1][key])
+
+
+def test_the_record_counts_what_is_broken() -> None:
+    """Each law has its worst value, and the seed of the program that has it."""
+    record = measure(2, 1)
+    assert 2 == record["programs"]
+    assert record["laws"]["time"]["broken"] == 0
+    worst = record["laws"]["time"]["worst"]
+    seed = record["laws"]["time"]["seed"]
+    program = draw(seed)
+    ratio = travel(program)[0].seconds / travel(exact(program))[0].seconds
+    assert ratio == pytest.approx(worst)
