@@ -25,6 +25,7 @@ _MUCH_LESS = 0.8
 _MANY_LISTS = 8
 _SHORT_LIST = 3
 _COMMA = "','"
+_EQUALS = "'='"
 #: A list of pieces with commas between: its text is this, ``inside`` is none.
 _LIST = "…"
 
@@ -249,6 +250,9 @@ def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int)
         return len(first)
     for size in range(min(longest, len(first)), 0, -1):
         if tuple(s.text for s in first[len(first) - size :]) in shapes:
+            # what one operand of a list is set to belongs to it
+            if size == 1 and [s.text for s in first[-3:-1]] == ["", _EQUALS]:
+                return 3
             return size
     return 0
 

@@ -468,7 +468,7 @@ class Inference:
         texts = [symbol.text for symbol in symbols[:3]]
         if symbols[0].is_operand:
             return " ".join(["_", *texts[1:2]])
-        if len(texts) > 1 and texts[0] in self._prefixes and texts[1] in self._leading:
+        if len(texts) > 1 and texts[0] in self._prefixes and _WORD.fullmatch(texts[1]):
             texts = texts[1:]
         # where several alternatives begin alike the second word tells them apart
         if self._leading.get(texts[0], 0) > 1 and len(texts) > 1 and _WORD.fullmatch(texts[1]):

@@ -7,6 +7,7 @@ program which must stay rejected, and that lose lines which could be read.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -49,14 +50,12 @@ _ADVANCED = 0.25
 # The least share of what an edit does that no edit before it in the round has done.
 _FRESH = 0.5
 # Files with lines that an edit mends, for one program more that it accepts and should not.
-_GAIN_PER_NEGATIVE = 100
+_GAIN_PER_NEGATIVE = 75
 # The least share of lines with a word ahead that others begin without it, by so many tokens.
 _PREFIX_SHARE = 0.6
 _PREFIX_TOKENS = 5
 # Lines that use a word as a name, from which on it stays one.
 _NAMED_LINES = 3
-# Lines that may fail anew, as a share of those that can be read.
-_LOST_SHARE = 0.05
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -410,6 +409,8 @@ class Induction:
             wrong = problem(apply(grammar, edits))
         except GrammarError as error:
             return str(error)
+        if apply(grammar, edits).rules == grammar.rules:
+            return "changes nothing"
         if wrong:
             return f"the grammar would be ill formed: line {wrong}"
         wider = edited(recognizer, alone)
@@ -423,29 +424,38 @@ class Induction:
     def _kept(
         self, taken: Sequence[Taken], failures: Sequence[Sequence[Failure]]
     ) -> tuple[list[Taken], list[Refused]]:
-        """The steps without those that lose lines which could be read."""
+        """The steps without those under which a file fails earlier than it did."""
         _, after = self._reading(apply(self.grammar, _joined(taken)))
-        if not _loses(failures, after):
+        worse = [p for p, found in enumerate(after) if _first(found) < _first(failures[p])]
+        if not worse:
             return list(taken), []
-        worse = [p for p, found in enumerate(after) if len(found) > len(failures[p])]
         kept: list[Taken] = []
         lost: list[Refused] = []
         for step in taken:
-            tried = [*kept, step]
-            try:
-                finder = FailureFinder(Recognizer(apply(self.grammar, _joined(tried))))
-            except GrammarError as error:
-                lost.append(Refused(step.title, step.edits, 0.0, str(error)))
-                continue
-            read = {p: finder.find(self.shown[p].text) for p in worse}
-            more = sum(max(0, len(found) - len(failures[p])) for p, found in read.items())
-            if more > _LOST_SHARE * step.evidence.files or any(
-                found and not failures[p] for p, found in read.items()
-            ):
-                lost.append(Refused(step.title, step.edits, 0.0, "loses lines that can be read"))
+            for version in dict.fromkeys((step, self._with_names_kept(step))):
+                try:
+                    grammar = apply(self.grammar, _joined([*kept, version]))
+                except GrammarError as error:
+                    reason = str(error)
+                    continue
+                finder = FailureFinder(Recognizer(grammar))
+                read = {p: finder.find(self.shown[p].text) for p in worse}
+                if all(_first(found) >= _first(failures[p]) for p, found in read.items()):
+                    kept.append(version)
+                    break
+                reason = "loses lines that can be read"
             else:
-                kept = tried
+                lost.append(Refused(step.title, step.edits, 0.0, reason))
         return kept, lost
+
+    def _with_names_kept(self, step: Taken) -> Taken:
+        """The step with all words that it reserves left names as well."""
+        words = [edit.name for edit in step.edits if isinstance(edit, AddToken)]
+        if self._names is None or not words:
+            return step
+        more = tuple(AddAlternative(self._names, word) for word in words)
+        edits = (*step.edits, *(edit for edit in more if edit not in step.edits))
+        return replace(step, edits=edits)
 
     # ------------------------------------------------------------------------------------- literals
 
@@ -519,16 +529,9 @@ class Induction:
         return Round(_reading(failures), _reading(held), (step,), ())
 
 
-def _loses(before: Sequence[Sequence[object]], after: Sequence[Sequence[object]]) -> bool:
-    """Whether files that parsed do not any more, or more lines are lost than damage explains.
-
-    Where a block is read that was not, the lines of a damaged one may fail anew.
-    """
-    changes = [len(found) - len(known) for known, found in zip(before, after, strict=True)]
-    if any(found and not known for known, found in zip(before, after, strict=True)):
-        return True
-    lost = sum(change for change in changes if change > 0)
-    return lost > -_LOST_SHARE * sum(change for change in changes if change < 0)
+def _first(failures: Sequence[Failure]) -> float:
+    """The first line that fails: those before it are read for certain, others in places guessed."""
+    return failures[0].line if failures else math.inf
 
 
 def _is_name(element: Element) -> bool:

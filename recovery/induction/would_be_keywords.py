@@ -149,7 +149,11 @@ class WouldBeKeywords:
                 is_headed
                 and behind not in _BEHIND_NAMES
                 and not (place == 1 and behind == "=")
-                and (place == 1 or ahead == ":" or self.lexer.is_keyword(kinds[place - 1]))
+                and (
+                    (place == 1 and len(kinds) > 2 and self.lexer.is_keyword(kinds[2]))
+                    or ahead == ":"
+                    or self.lexer.is_keyword(kinds[place - 1])
+                )
             ):
                 yield _Use(place, word, surroundings, False)
             else:
