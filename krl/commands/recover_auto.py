@@ -56,6 +56,8 @@ def recover_auto(
         files = read_files(roots)
         growth, struck = _begun(start, out, strike, resume=resume)
     shown, held, origins = held_out(files, fraction, seed)
+    if not files:
+        raise InputError("nothing that was named is KRL source")
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
     every = NegativeSet((*negatives, *generate(count=_NEGATIVES, seed=_SEED)))
