@@ -31,7 +31,7 @@ _HOPEFUL = 20, 0.05
 """Rounds after which a start is given up unless its error is below the second figure."""
 _MET = 1e-11
 """Length of the error, in shares of the arm's size and radians, at which a pose is met."""
-_LEAST_DAMPING = 1e-10
+_LEAST_DAMPING = 1e-13
 _OFF = 0.002  # radians that an arm of fewer joints may be off
 _SAME = 1e-4  # degrees between axes that count as one way
 _TURN = 1e-9  # radians of rounding
