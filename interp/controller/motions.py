@@ -164,8 +164,9 @@ class MotionBuilder:
         for item in request.items:
             match item:
                 case Move():
-                    parts.append(self._part(item, request, ranges, places))
-                    ranges, places = [], []
+                    part = self._part(item, request, ranges, places)
+                    parts.append(replace(part, stop_places=tuple(stops)))
+                    ranges, places, stops = [], [], []
                 case SetTrigger():
                     places += self._places(built, [item])
                 case SplineStop(place, on_start, _):
