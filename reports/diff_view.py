@@ -8,7 +8,7 @@ from reports.embedding import printable
 from reports.number_format import clip, counted
 from reports.record_fields import Record, count, nested, records, text, texts
 
-__all__ = ["DiffView", "PointRow", "diff_view", "point_words", "routine_words"]
+__all__ = ["DiffView", "PointRow", "diff_view", "point_words", "routine_name", "routine_words"]
 
 _MOST = 2_000
 _LONGEST = 400
@@ -123,6 +123,13 @@ def _place(one: Record) -> str:
 # ---------------------------------------------------------------------------------------- routines
 
 
+def routine_name(one: Record) -> str:
+    """The name of a routine; of what stands in none, what that is."""
+    is_list = text(one, "file").lower().endswith(".dat")
+    rest = "lines that cannot be read" if is_list else "outside all routines"
+    return text(one, "name") or rest
+
+
 def routine_words(one: Record) -> str:
     """What became of a routine."""
     size = counted(count(one, "statements"), "statement")
@@ -144,9 +151,10 @@ def _routine(one: Record) -> RoutineRow:
          for line in texts(hunk, key)]
         for hunk in records(one, "hunks")
     ]  # fmt: skip
-    name = text(one, "name") or "outside all routines"
     size = sum(map(len, hunks))
-    return RoutineRow(_place(one), _shown(name), _shown(routine_words(one)), hunks, size)
+    return RoutineRow(
+        _place(one), _shown(routine_name(one)), _shown(routine_words(one)), hunks, size
+    )
 
 
 # ------------------------------------------------------------------------------- points and data

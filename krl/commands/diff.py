@@ -142,10 +142,9 @@ def _text(record: Record) -> Iterator[str]:
 
 
 def _routine(one: Record) -> Iterator[str]:
-    from reports.diff_view import routine_words
+    from reports.diff_view import routine_name, routine_words
 
-    name = one["name"] or "outside all routines"
-    yield f"{one['file']}:{one['line']}: {name} {routine_words(one)}"
+    yield f"{one['file']}:{one['line']}: {routine_name(one)} {routine_words(one)}"
     for hunk in one["hunks"]:
         yield f"  line {hunk['old_line']}, now {hunk['new_line']}"
         for side, mark in (("old", "-"), ("new", "+")):
