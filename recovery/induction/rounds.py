@@ -432,28 +432,31 @@ class Induction:
         kept: list[Taken] = []
         lost: list[Refused] = []
         for step in taken:
-            for version in dict.fromkeys((step, self._with_names_kept(step))):
+            version, reason = step, ""
+            for _ in range(2):
                 try:
                     grammar = apply(self.grammar, _joined([*kept, version]))
                 except GrammarError as error:
                     reason = str(error)
-                    continue
+                    break
                 finder = FailureFinder(Recognizer(grammar))
                 read = {p: finder.find(self.shown[p].text) for p in worse}
-                if all(_first(found) >= _first(failures[p]) for p, found in read.items()):
-                    kept.append(version)
+                earlier = [f[0] for p, f in read.items() if _first(f) < _first(failures[p])]
+                reason = "loses lines that can be read" if earlier else ""
+                if not earlier:
                     break
-                reason = "loses lines that can be read"
-            else:
+                version = self._with_names_kept(step, earlier)
+            if reason:
                 lost.append(Refused(step.title, step.edits, 0.0, reason))
+            else:
+                kept.append(version)
         return kept, lost
 
-    def _with_names_kept(self, step: Taken) -> Taken:
-        """The step with all words that it reserves left names as well."""
-        words = [edit.name for edit in step.edits if isinstance(edit, AddToken)]
-        if self._names is None or not words:
-            return step
-        more = tuple(AddAlternative(self._names, word) for word in words)
+    def _with_names_kept(self, step: Taken, failures: Sequence[Failure]) -> Taken:
+        """The step with the words that it reserves left names too where lines fail for them."""
+        used = {lexeme.upper() for failure in failures for lexeme in failure.lexemes}
+        words = [e.name for e in step.edits if isinstance(e, AddToken) and e.name in used]
+        more = tuple(AddAlternative(self._names, word) for word in words if self._names)
         edits = (*step.edits, *(edit for edit in more if edit not in step.edits))
         return replace(step, edits=edits)
 
