@@ -23,6 +23,8 @@ def check_files(*targets: Path | None) -> None:
     for target in targets:
         if target is None:
             continue
+        if target == Path("-"):
+            raise InputError("-: what is written goes to a file; name one")
         if target.is_dir():
             raise InputError(f"{target}: a folder, not a file")
         above = next((folder for folder in target.parents if folder.exists()), None)

@@ -18,6 +18,7 @@ __all__ = ["load_program", "project_paths", "project_root", "read_sources", "sou
 _PARTS = frozenset({"R1", "STEU"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})
 _MOST_FILES = 20_000
+_MOST_SHOWN = 5
 
 
 def load_program(
@@ -69,8 +70,10 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     from support.files.discovery import Found, IngestError, Skipped, discover, read
 
     archive, inner = _in_archive(file)
-    if archive is None and not file.is_file():
+    if archive is None and not file.is_file() and not file.is_dir():
         raise InputError(f"{file}: no such file")
+    if archive is None and (file.is_dir() or file.suffix.lower() == ".zip"):
+        raise InputError(f"{file}: holds {_programs_in(file)}")
     root = archive or project_root(file)
     try:
         found = [one for one in discover([root]) if isinstance(one, Found)]
@@ -97,6 +100,24 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
             continue
         sources.append(Source(decoded.text, _shown(one, root)))
     return sources, main, left
+
+
+def _programs_in(place: Path) -> str:
+    """What can be run in a folder or an archive, those that robot programmers write first."""
+    from support.files.discovery import Found, IngestError, discover
+
+    try:
+        paths = [one.path for one in discover([place]) if isinstance(one, Found)]
+    except IngestError as error:
+        raise InputError(str(error)) from error
+    programs = sorted(
+        (path for path in paths if path.lower().endswith(".src")),
+        key=lambda path: ("/program/" not in path.lower(), path),
+    )
+    if not programs:
+        return "no program"
+    more = f" and {len(programs) - _MOST_SHOWN} more" if len(programs) > _MOST_SHOWN else ""
+    return f"programs: name one of {', '.join(programs[:_MOST_SHOWN])}{more}"
 
 
 def _of_one_project(found: "Sequence[Found]", root: Path, main: str) -> "list[Found]":

@@ -362,6 +362,23 @@ def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, s
     assert 1 == err.count("\n")
 
 
+def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
+    """What could be run in a folder or an archive is named in one line."""
+    (tmp_path / "one.src").write_text("DEF one ( )\nEND\n", encoding="utf-8")
+    with ZipFile(tmp_path / "all.zip", "w") as archive:
+        archive.write(tmp_path / "one.src", "R1/Program/one.src")
+    for name, program in ((".", "one.src"), ("all.zip", "all.zip/R1/Program/one.src")):
+        status, out, err = run(None, str(tmp_path / name))
+        assert (2, "") == (status, out)
+        assert err.endswith(f"name one of {tmp_path / program}\n"), err
+
+
+def test_output_needs_a_file(run: Run) -> None:
+    """A dash is no place to write to, and nothing runs."""
+    status, out, err = run("HALT\n", "--trace", "-")
+    assert (2, "", "krl: -: what is written goes to a file; name one\n") == (status, out, err)
+
+
 def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     """Other files of the project that cannot be read are told, and the program runs."""
     (tmp_path / "other.src").write_text("DEF other ( )\nIF\nEND\n", encoding="utf-8")
