@@ -364,10 +364,11 @@ def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, s
 
 def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
     """What could be run in a folder or an archive is named in one line."""
-    (tmp_path / "one.src").write_text("DEF one ( )\nEND\n", encoding="utf-8")
+    (tmp_path / "cell").mkdir()
+    (tmp_path / "cell" / "one.src").write_text("DEF one ( )\nEND\n", encoding="utf-8")
     with ZipFile(tmp_path / "all.zip", "w") as archive:
-        archive.write(tmp_path / "one.src", "R1/Program/one.src")
-    for name, program in ((".", "one.src"), ("all.zip", "all.zip/R1/Program/one.src")):
+        archive.writestr("R1/Program/one.src", "DEF one ( )\nEND\n")
+    for name, program in (("cell", "cell/one.src"), ("all.zip", "all.zip/R1/Program/one.src")):
         status, out, err = run(None, str(tmp_path / name))
         assert (2, "") == (status, out)
         assert err.endswith(f"name one of {tmp_path / program}\n"), err
