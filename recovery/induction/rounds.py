@@ -149,7 +149,7 @@ class Induction:
         self._names: str | None = None
         self._tried: set[Edit] = set()
 
-    def rounds(self, most: int = 30) -> Iterator[Round]:
+    def rounds(self, most: int = 60) -> Iterator[Round]:
         """Round after round, until nothing more is worth taking; the last took nothing."""
         inner, origins = True, self.least_origins
         for _ in range(most):
