@@ -163,6 +163,8 @@ def _soonest(
     one, other = first.pieces[-1], second.pieces[0]
     weights = directions.weights(zone)
     paths = (one.curve.pose_path, other.curve.pose_path)
+    if directions.is_straight:
+        return Rounding(zone.before, zone.after, weights, _SMOOTH)
     are_lines = all(isinstance(path, StraightLine) for path in paths)
     choices: list[Transition] = [
         Rounding(zone.before, zone.after, weights, slope)
@@ -190,11 +192,13 @@ class _Directions:
     """Derivatives of both paths at the point between: of axes, and of the tool where both have it.
 
     ``lengths`` are those of both paths in one unit: mm of the tool, else seconds of axes.
+    ``is_straight``: the second goes on where the first leads.
     """
 
     axes: tuple[Array, Array]
     tool: tuple[Array, Array] | None
     lengths: tuple[float, float]
+    is_straight: bool
 
     @classmethod
     def of(cls, first: Track, second: Track, limits: AxisLimits) -> _Directions:
@@ -210,9 +214,10 @@ class _Directions:
             before, after = (float((np.abs(r) / limits.velocity).max()) for r in (leaving, joining))
             lengths = (max(before, _TINY), max(after, _TINY))
         onward = leaving * lengths[1] / lengths[0]
-        if np.abs(joining - onward).max() <= _STRAIGHT * np.abs(joining).max():
+        is_straight = bool(np.abs(joining - onward).max() <= _STRAIGHT * np.abs(joining).max())
+        if is_straight:
             joining = onward  # but for the splines of the axes, they go straight on
-        return cls((leaving, joining), tool, lengths)
+        return cls((leaving, joining), tool, lengths, is_straight)
 
     def weights(self, zone: Zone) -> tuple[float, float]:
         """The lengths of both sides of a zone."""
