@@ -1,8 +1,10 @@
 """The arm that stands in for one whose machine data is missing, as large as the taught points ask.
 
-Points of a large robot lie out of reach of a small one. The stand-in is the default arm, its links
-longer by one factor until it reaches the points of the project, and with axis limits that the
-taught axis positions keep. Nothing else is known of the arm; its dynamics are those of the default.
+Points of a large robot lie out of reach of a small one. The stand-in is the default arm as long as
+its outstretched length covers the points of the project, measured from its shoulder. Where it does
+not, its links are longer by one factor, so that they do with any orientation. Its axis limits are
+wide enough for the taught axis positions. Nothing else is known of the arm; its dynamics are those
+of the default.
 """
 
 from __future__ import annotations
@@ -39,12 +41,15 @@ def fitting_arm(
     Points are aggregates of numbers with X, Y, Z in mm; only those in data lists, which were
     taught, tell of the limits of axes too, as A1 to A6 in degrees.
     """
-    distances: list[float] = []
+    distances: list[float] = []  # from the shoulder, in mm
     lower = [axis.lower for axis in machine.axes]
     upper = [axis.upper for axis in machine.axes]
     lists = list(data_lists)
     for text in (*programs, *lists):
-        distances += (math.hypot(*map(float, one.groups())) for one in _POSE.finditer(text))
+        distances += (
+            math.dist(map(float, one.groups()), machine.tiroro.position)
+            for one in _POSE.finditer(text)
+        )
     for text in lists:
         for found in _AXIS.finditer(text):
             number, value = int(found[1]) - 1, float(found[2])
@@ -67,8 +72,10 @@ def _factor(machine: MachineData, distances: list[float]) -> float:
         return 1.0
     far = sorted(distances)[math.ceil(_SHARE * len(distances)) - 1]
     forearm = math.hypot(*(row[3] for row in machine.tx3p3.rows))
-    reach = _USABLE * (machine.length_a + machine.length_b + forearm)
-    return min(max(1.0, math.ceil(10 * far / reach) / 10), _LARGEST)
+    reach = machine.length_a + machine.length_b + forearm
+    if far <= reach:
+        return 1.0
+    return min(math.ceil(10 * far / (_USABLE * reach)) / 10, _LARGEST)
 
 
 def _scaled(machine: MachineData, factor: float) -> MachineData:

@@ -17,8 +17,14 @@ def test_far_points() -> None:
     machine = default_machine()
     found = fitting_arm(machine, [FAR], [])
     factor = found.length_b / machine.length_b
-    assert (3.9, 3.9 * machine.length_a, machine.axes) == (factor, found.length_a, found.axes)
+    assert (3.8, 3.8 * machine.length_a, machine.axes) == (factor, found.length_a, found.axes)
     assert 2600 < found.length_a + found.length_b + found.tx3p3.rows[0][3]
+
+
+def test_points_within_the_outstretched_length() -> None:
+    """An arm that reaches a point at all is not exchanged for another."""
+    edge = "".join(f"XP{number}={{X 500.0,Y -150.0,Z {number + 700}}}\n" for number in range(5))
+    assert default_machine() == fitting_arm(default_machine(), [edge], [edge])
 
 
 def test_taught_axes() -> None:
