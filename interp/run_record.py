@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import Any, NotRequired, TypedDict
+from typing import Any, Final, NotRequired, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from interp.controller.motion_queue import PlannedPoint
+from interp.controller.trace import TraceEvent
+from interp.port.requests import At
 from interp.program.load import CheckedProgram
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import hand_of, links_of
@@ -22,6 +25,9 @@ from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
 
 __all__ = ["RunRecord", "record_of"]
+
+#: How often a line may take one way until the record tells no more of it.
+_MOST_BRANCHES: Final = 1000
 
 Array = npt.NDArray[np.float64]
 
@@ -177,10 +183,11 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
     """Outcome, trace, sources, path, limits and programmed points of a run.
 
     Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, their accelerations deg/s² or
-    mm/s², the speed of the tool m/s.
+    mm/s², the speed of the tool m/s. Of a way that one line takes again and again, as a loop that
+    waits does, the first thousand times are told; the trace has them all.
     """
     outcome = run.outcome
-    events = [json.loads(event.line()) for event in run.events]
+    events = [json.loads(event.line()) for event in _events(run.events)]
     blended = {event["motion"] for event in events if event["kind"] == "blend_apex"}
     record: RunRecord = {
         "main": program.main.module.path,
@@ -216,6 +223,18 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
         record["path"] = _path(run.path)
         record["deviation"] = _deviation(run.path)
     return record
+
+
+def _events(events: Iterable[TraceEvent]) -> Iterator[TraceEvent]:
+    """The events without the later ones of what a line repeats for ever."""
+    taken: Counter[tuple[At | None, Any]] = Counter()
+    for event in events:
+        if event.kind == "branch":
+            way = (event.at, event.fields["way"])
+            taken[way] += 1
+            if taken[way] > _MOST_BRANCHES:
+                continue
+        yield event
 
 
 def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:

@@ -7,17 +7,18 @@ names are used. Stand-ins are files like others, so executors and checks know no
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePosixPath
 from typing import Final, Literal
 
-from grammar.check.framework import typed_module
+from grammar.check.framework import Checked, typed_module
 from grammar.semantics.link import File, Project, extended
 from grammar.semantics.packages import load_packages
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Found, Module, SystemScope
 from grammar.semantics.symbols import Kind
-from grammar.semantics.types import UNKNOWN, Enumeration, Structure, Type
+from grammar.semantics.types import UNKNOWN, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
@@ -25,7 +26,7 @@ from grammar.syntax.source import Source
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import STOP
-from interp.standins.uses import FOLDER, Uses
+from interp.standins.uses import FOLDER, DataUse, Uses
 
 __all__ = ["Completed", "StandIn", "complete", "summary"]
 
@@ -175,6 +176,7 @@ class _Making:
         self._wanted = wanted
         self._texts: dict[str, str] = {}
         self._files: dict[tuple[str, str], File] = {}
+        self._apart: set[tuple[str, str]] | None = None
         self._add_types_of_packages()
         self._add_library()
         self.project = self._linked()
@@ -191,14 +193,11 @@ class _Making:
             typed_module(self.project, module, sources[module.path]) for module in wanted.modules
         ]
         unknown = [name for name in wanted.types if name not in library.types]
-        uses = Uses(
-            self.project,
-            [name for name in wanted.data if name not in library.data],
-            [name for name in wanted.routines if name not in library.routines],
-            unknown,
-        )
-        for one in checked:
-            uses.read(one)
+        if self._apart is None:
+            alone = self._uses(checked, (), self._has_no_list)
+            self._apart = set(_ambiguous(alone))
+        apart = self._apart
+        uses = self._uses(checked, unknown, lambda module, name: (module.path, name) in apart)
         values = {
             datum.type: self._value(datum)
             for name, datum in library.data.items()
@@ -217,10 +216,45 @@ class _Making:
             for line in signatures.data(name, use, is_last=is_last)
         ]
         self._texts[_data_path()] = self._data_list(signatures, data)
+        self._add_own_lists(signatures, uses, is_last=is_last)
         if self._texts == before and not is_last:
             return True
         self.project = self._linked()
         return not is_last
+
+    def _uses(
+        self,
+        checked: Sequence[Checked],
+        types: Sequence[str],
+        is_apart: Callable[[Module, str], bool],
+    ) -> Uses:
+        """The uses of what neither a file nor the library has."""
+        library, wanted = load_library(), self._wanted
+        uses = Uses(
+            self.project,
+            [name for name in wanted.data if name not in library.data],
+            [name for name in wanted.routines if name not in library.routines],
+            types,
+            is_apart,
+        )
+        for one in checked:
+            uses.read(one)
+        return uses
+
+    def _has_no_list(self, module: Module, _name: str) -> bool:
+        """Whether the data list of a program is missing, which may have declared anything."""
+        return module.suffix != ".dat" and self._original.data_of(module) is None
+
+    def _add_own_lists(self, signatures: Signatures, uses: Uses, *, is_last: bool) -> None:
+        """Data lists in place of missing ones, with what would not agree in one list for all."""
+        lines: dict[str, list[str]] = {}
+        for (path, name), use in uses.apart.items():
+            lines.setdefault(f"{path.rpartition('.')[0]}.dat", []).extend(
+                signatures.data(name, use, is_last=is_last, access="")
+            )
+        for path, declared in lines.items():
+            name = PurePosixPath(path).stem
+            self._texts[path] = "\n".join([f"DEFDAT {name}", *declared, "ENDDAT", ""])
 
     # ------------------------------------------------------------------------- the library
 
@@ -305,6 +339,40 @@ class _Making:
                     found = self._type(symbol.key)
                     if isinstance(found, Enumeration):
                         yield found
+
+
+def _ambiguous(uses: Uses) -> Iterator[tuple[str, str]]:
+    """Variables by file and name whose files cannot mean one and the same by that name.
+
+    Such files use it as of different types, or ask it for different numbers while none assigns it.
+    """
+    by_name: dict[str, list[tuple[str, DataUse]]] = {}
+    for (path, name), use in uses.apart.items():
+        by_name.setdefault(name, []).append((path, use))
+    for name, places in by_name.items():
+        every = [uses.data[name], *(use for _, use in places)]
+        sorts = {sort for use in every for sort in _sort(use)}
+        asked_for = {use.asked_for for use in every if use.asked_for}
+        is_constant = not any(use.is_assigned for use in every)
+        if len(sorts) > 1 or (is_constant and len(asked_for) > 1):
+            yield from ((path, name) for path, _ in places)
+
+
+def _sort(use: DataUse) -> Iterator[str]:
+    """What sort of variable it is where that is certain; sorts differ only where types must."""
+    if use.is_text:
+        yield "text"
+        return
+    for type_ in use.types[:1]:
+        match type_:
+            case Scalar(name=name):
+                yield "number" if name in ("INT", "REAL") else name
+            case Structure():
+                yield "structure"
+            case Enumeration(name=name):
+                yield name.upper()
+    if use.members or use.motions:
+        yield "structure"
 
 
 def _path(name: str) -> str:

@@ -83,7 +83,7 @@ class Signatures:
 
     # ------------------------------------------------------------------------- data
 
-    def data(self, name: str, use: DataUse, *, is_last: bool) -> list[str]:
+    def data(self, name: str, use: DataUse, *, is_last: bool, access: str = "GLOBAL ") -> list[str]:
         """The lines that declare a variable, none where nothing tells its type.
 
         When ``is_last``, a variable of which nothing is known is an INT.
@@ -94,13 +94,13 @@ class Signatures:
         kind = kind or self._number(use)
         if kind.name == "BOOL" and use.is_waited_for and not use.is_assigned and not use.indices:
             self._input -= 1
-            return [f"GLOBAL SIGNAL {name} $IN[{self._input + 1}]"]
+            return [f"{access}SIGNAL {name} $IN[{self._input + 1}]"]
         if kind.is_text and use.indices <= 1:
-            return [f"DECL GLOBAL CHAR {name}[{_TEXT_LENGTH}]", f'{name}[]=" "']
+            return [f"DECL {access}CHAR {name}[{_TEXT_LENGTH}]", f'{name}[]=" "']
         if not use.indices:
-            return [f"DECL GLOBAL {kind.name} {name}={kind.value}"]
+            return [f"DECL {access}{kind.name} {name}={kind.value}"]
         sizes = self._sizes(use, is_text=kind.is_text)
-        lines = [f"DECL GLOBAL {kind.name} {name}[{','.join(map(str, sizes))}]"]
+        lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
         if use.is_assigned:  # by the program, before it reads them
             return lines
         counted = sizes[:-1] if kind.is_text else sizes

@@ -13,7 +13,7 @@ from typing import Any
 
 from grammar.check.framework import Checked
 from grammar.semantics.link import Project
-from grammar.semantics.scopes import Found
+from grammar.semantics.scopes import Found, Module
 from grammar.semantics.symbols import Kind, RoutineSymbol
 from grammar.semantics.types import (
     BOOL,
@@ -87,7 +87,11 @@ class RoutineUse:
 
 
 class Uses:
-    """Gathers the uses of names that are wanted: ``data``, ``routines`` and ``types`` by name."""
+    """Gathers the uses of names that are wanted: ``data``, ``routines`` and ``types`` by name.
+
+    ``apart`` are uses by the file and the name where ``is_apart`` says that a file has the variable
+    for itself.
+    """
 
     def __init__(
         self,
@@ -95,8 +99,11 @@ class Uses:
         data: Iterable[str],
         routines: Iterable[str],
         types: Iterable[str],
+        is_apart: Callable[[Module, str], bool] = lambda _module, _name: False,
     ) -> None:
         self._project = project
+        self.apart: dict[tuple[str, str], DataUse] = {}
+        self._is_apart = is_apart
         self.types: Mapping[str, DataUse] = {name: DataUse() for name in types}
         self.data: Mapping[str, DataUse] = {name: DataUse() for name in data}
         self.routines: Mapping[str, RoutineUse] = {name: RoutineUse() for name in routines}
@@ -253,7 +260,10 @@ class Uses:
         found = self._checked.resolution.found(name)
         if found is None or found.module is None or found.symbol.kind is Kind.EXTERNAL:
             return True
-        return found.module.folder == FOLDER
+        if found.module.folder == FOLDER:
+            return True
+        is_listed = found.module.suffix == ".dat" and name.key in self.data
+        return is_listed and self._is_apart(self._checked.module, name.key)
 
     def _is_variable(self, node: ast.Expression) -> bool:
         """Whether it can be changed; system variables are left alone."""
@@ -269,9 +279,12 @@ class Uses:
 
     def _use_of(self, name: ast.Name) -> DataUse | None:
         """The use of an undeclared variable, or of the undeclared type of a declared one."""
-        if self._is_undeclared(name):
-            return self.data.get(name.key)
         assert self._checked is not None, "a file is looked at"
+        if self._is_undeclared(name):
+            module = self._checked.module
+            if name.key in self.data and self._is_apart(module, name.key):
+                return self.apart.setdefault((module.path, name.key), DataUse())
+            return self.data.get(name.key)
         found = self._checked.resolution.found(name)
         written = None if found is None else found.symbol.type
         return None if written is None else self.types.get(written.key)

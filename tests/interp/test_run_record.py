@@ -1,5 +1,7 @@
 """The record of a run: the arm can be drawn from it."""
 
+from collections import Counter
+
 import numpy as np
 import numpy.typing as npt
 
@@ -38,6 +40,19 @@ def test_links_lead_from_the_foot_to_the_tool() -> None:
         flange = poses[arm["hand"]] @ np.array(arm["flange"]).reshape(4, 4)
         tip = flange @ np.array(last).reshape(4, 4)
         np.testing.assert_allclose(tip[:3, 3], tool, atol=1e-2)
+
+
+def test_a_way_taken_for_ever_is_told_a_thousand_times() -> None:
+    """Of a loop that counts to 3000 the record has 1000 turns; the way out of it is there."""
+    text = "DEF CELL()\nINT I\nI=0\nWHILE I<3000\nI=I+1\nENDWHILE\nEND\n"
+    program = load([Source(text, "cell.src")], "cell.src")
+    setup = RunSetup()
+    run = run_program(program, setup)
+    ways = Counter(
+        one["way"] for one in record_of(run, program, setup)["events"] if one["kind"] == "branch"
+    )
+    taken = sum(event.kind == "branch" for event in run.events)
+    assert (3001, [1, 1000]) == (taken, sorted(ways.values()))
 
 
 def _moved(axis: list[float], degrees: float) -> Array:

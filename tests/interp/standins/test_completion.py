@@ -232,3 +232,36 @@ def test_option_packages(executor: str) -> None:
     assert ("EKI_OPEN", "routine", "package") in _names(program)
     calls = [event.fields["name"] for event in run.events if event.kind == "call"]
     assert ["EKI_OPEN", "EKI_SEND", "EKI_GETINT", "EKI_CHECK"] == [one.upper() for one in calls[:4]]
+
+
+def _moves_and_ends(files: Mapping[str, str]) -> tuple[tuple[str, str], list[str]]:
+    run = _run(_program(files))
+    return _outcome(run), _planned(run)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (f"IF ID<>11 THEN\nHALT\nENDIF\n{HOME}", f"IF ID<>22 THEN\nHALT\nENDIF\n{HOME}"),
+        ('ID[]="A"\nIF ID[1]=="A" THEN\nENDIF\n' + HOME, f"ID=5\nID=ID+1\n{HOME}"),
+        (f"ID=TRUE\n{HOME}", "ID.X=1.5\nID={X 1.0,Y 2.0,Z 3.0,A 0,B 0,C 0}\n" + HOME),
+    ],
+)
+def test_modules_that_lack_their_data_lists_share_no_ambiguous_name(
+    first: str, second: str
+) -> None:
+    """Of two programs without data lists each has for itself what cannot be one variable."""
+    files = {
+        "a/main.src": f"DEF main ( )\n{first}other ( )\nEND\n",
+        "a/other.src": f"DEF other ( )\n{second}END\n",
+    }
+    assert (("end", ""), ["PTP", "PTP"]) == _moves_and_ends(files)
+
+
+def test_modules_that_lack_their_data_lists_share_what_agrees() -> None:
+    """A flag that one program sets and another asks for stays one variable."""
+    files = {
+        "main.src": f"DEF main ( )\nPARTS=7\nother ( )\nIF PARTS==9 THEN\n{HOME}ENDIF\nEND\n",
+        "other.src": "DEF other ( )\nIF PARTS==7 THEN\nPARTS=9\nENDIF\nEND\n",
+    }
+    assert (("end", ""), ["PTP"]) == _moves_and_ends(files)
