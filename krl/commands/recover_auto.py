@@ -76,7 +76,9 @@ def recover_auto(
             growth.add(done)
             _say(len(growth.rounds), growth)
             _write(growth, record, out, json_file, struck, began)
-        record["finished"] = True
+        record["finished"] = induction.is_finished
+        if not induction.is_finished:
+            typer.echo("stopped at the limit of rounds; --resume goes on", err=True)
     except KeyboardInterrupt:
         typer.echo(f"interrupted; {out} holds what was done, --resume goes on", err=True)
     page = _write(growth, record, out, json_file, struck, began)

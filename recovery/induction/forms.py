@@ -183,8 +183,11 @@ class FormWriter:
         single = {k[0] for k in kinds if len(k) == 1}
         if not needed and len(single) == len(kinds) == 1:
             (kind,) = single
-            if kind == self.rules.recognizer.lexer.kind_of.get("NAME"):
+            if kind == self.rules.name_kind:
                 return [self._name()]
+        indexed = self._indexed(kinds, needed)
+        if indexed:
+            return [indexed]
         usual = self.rules.usual
         reads = {
             rule: {k for k in kinds if rule in self.rules.matcher.rules_for(k)}
@@ -205,6 +208,20 @@ class FormWriter:
             left -= reads[best]
             found.append(best)
         return found
+
+    def _indexed(self, kinds: set[tuple[int, ...]], needed: set[str]) -> str | None:
+        """A name with what may follow it in brackets; ``None`` where operands are anything else."""
+        matcher, name = self.rules.matcher, self._name()
+        behind: set[str | None] = set()
+        for first, *rest in kinds:
+            if first != self.rules.name_kind and name not in matcher.rules_for((first,)):
+                return None
+            if rest:
+                rule = self.rules.following.get(rest[0])
+                behind.add(rule if rule in matcher.rules_for(tuple(rest)) else None)
+        if needed - {name} or len(behind) != 1 or None in behind:
+            return None
+        return f"{name} {behind.pop()}?"
 
     def _narrower(
         self, wide: str, reads: Mapping[str, set[tuple[int, ...] | str]], wanted: set[object]
@@ -362,7 +379,21 @@ def _is_group(text: str) -> bool:
 
 def samples_of(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
     """What elements of a rule read, as symbols: with and without each part that may be left out."""
-    return [_grouped(line) for line in _sequences(rules, sequence)]
+    return [_with_index(rules, _grouped(line)) for line in _sequences(rules, sequence)]
+
+
+def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
+    """The symbols with a name and what follows it in brackets as one operand, as it is read."""
+    out: list[Symbol] = []
+    names = {Operand((rules.name_kind,)), Operand((), rules.names or "")}
+    samples = rules.followed
+    for symbol in symbols:
+        rule = symbol.operand.rule if symbol.operand else symbol.text
+        if out and out[-1].operand in names and rule in samples:
+            out[-1] = Symbol("", samples[rule])
+        else:
+            out.append(symbol)
+    return tuple(out)
 
 
 def _grouped(symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
@@ -400,7 +431,9 @@ def _samples(rules: OperandRules, element: Element) -> list[tuple[Symbol, ...]]:
             return [s for a in alternatives for s in _sequences(rules, a.elements)]
         case Repeat(item=item, operator=operator):
             once = _samples(rules, item)
-            return once if operator == "+" else [(), *once]
+            # more often than a short list, so that it stays one of any length
+            more = [s * (_SHORT_LIST + 1) for s in once] if operator != "?" else []
+            return [*(() if operator == "+" else [()]), *once, *more]
         case Reference(name=name) if not name[0].isupper():
             alternatives = rules.grammar.by_name[name].alternatives
             if name in rules.reaches[name] and name in rules.ladder:

@@ -394,14 +394,14 @@ class Inference:
             if line.is_enormous or line.keywords:
                 continue
             read = self.rules.matcher.rules_for(line.form.kinds)
-            hosts = self._hosts(number)
-            for host in hosts:
+            # what ends with the line stands for what ends with it too: a second end is a blank line
+            for host in filter(self.profile.closing, self._hosts(number)):
                 for other in kinds_of:
                     if other in read and other != host:
                         found[host, other].append(number)
         for (host, other), members in found.items():
             edits = (AddAlternative(host, other),)
-            yield Inferred(f"{other} as {host}", edits, tuple(members), is_strict=True)
+            yield Inferred(f"{other} as {host}", edits, tuple(members))
 
     def statements(self) -> Iterator[Inferred]:
         """Forms of lines by their first word, or first sign where they begin with a name."""

@@ -8,6 +8,7 @@ program which must stay rejected, and that lose lines which could be read.
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -45,6 +46,8 @@ __all__ = ["Evidence", "Induction", "Reading", "Refused", "Round", "Taken"]
 
 # What is left of a gain for each symbol that is written and each step in width of its rule.
 _BREADTH_FACTOR = 0.997
+# Symbols for which a part counts more that may come any number of times.
+_UNBOUNDED = 3
 # What a line counts that is read further and still fails.
 _ADVANCED = 0.25
 # The least share of what an edit does that no edit before it in the round has done.
@@ -143,6 +146,7 @@ class Induction:
         self.held = held
         self.negatives = negatives
         self.least_origins = min(origins, len({o for f in shown for o in f.origins}))
+        self.is_finished = False
         self._read: tuple[str, FailureFinder, list[list[Failure]]] | None = None
         self._corpus: CorpusLines | None = None
         self._keywords: WouldBeKeywords | None = None
@@ -150,7 +154,7 @@ class Induction:
         self._tried: set[Edit] = set()
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
-        """Round after round, until nothing more is worth taking; the last took nothing."""
+        """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
         inner, origins = True, self.least_origins
         for _ in range(most):
             done = self._round(inner=inner, origins=origins)
@@ -162,6 +166,7 @@ class Induction:
             elif origins > 1:  # what recurs in one origin only comes last
                 inner, origins = True, 1
             else:
+                self.is_finished = True
                 return
 
     # ------------------------------------------------------------------------------------ a round
@@ -204,7 +209,7 @@ class Induction:
             else:
                 gain, mended = _line_gain(trial, found, known)
             if gain:
-                size = sum(len(getattr(e, "text", "").split()) for e in found.edits)
+                size = sum(map(_size, found.edits))
                 callers = inference.profile.callers
                 rules = [r for r in changed_rules(found.edits) if r in callers]
                 size += sum(map(inference.profile.width, rules))
@@ -212,6 +217,10 @@ class Induction:
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
         taken, refused = self._chosen(scored, known, rejected, recognizer, origins)
         taken, lost = self._kept(taken, failures)
+        _, after = self._reading(apply(self.grammar, _joined(taken)))
+        if taken and _standing(after) <= _standing(failures):  # two forms may undo each other
+            lost += [Refused(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken]
+            taken = []
         self.grammar = apply(self.grammar, _joined(taken))
         held = [finder.find(file.text) for file in self.held]
         return Round(_reading(failures), _reading(held), tuple(taken), (*lost, *refused))
@@ -537,8 +546,19 @@ def _first(failures: Sequence[Failure]) -> float:
     return failures[0].line if failures else math.inf
 
 
+def _standing(failures: Sequence[Sequence[Failure]]) -> tuple[int, int]:
+    """How far files are read, more is better: those that parse, then lines that fail, negated."""
+    return sum(not found for found in failures), -sum(map(len, failures))
+
+
 def _is_name(element: Element) -> bool:
     return isinstance(element, Reference) and element.name == "NAME"
+
+
+def _size(edit: Edit) -> int:
+    """How many symbols an edit writes; what may come any number of times counts thrice more."""
+    text = getattr(edit, "text", "")
+    return len(text.split()) + _UNBOUNDED * len(re.findall(r"[)\w][*+]", text))
 
 
 def _led_by(word: str, failures: Sequence[Failure]) -> int:

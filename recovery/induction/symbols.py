@@ -195,6 +195,34 @@ class OperandRules:
                     found[pair[0][0]] = name
         return found
 
+    @cached_property
+    def name_kind(self) -> int:
+        """The kind of token of names, -1 where there is none."""
+        return self.recognizer.lexer.kind_of.get("NAME", -1)
+
+    @cached_property
+    def following(self) -> Mapping[int, str]:
+        """Rules in brackets that only follow operands, as an index does, by the opening token."""
+        display = self.recognizer.lexer.display
+        return {
+            kind: rule
+            for kind, sign in enumerate(display)
+            if (rule := self.bracketed.get(sign)) and rule in self.recursive - {*self.ladder}
+        }
+
+    @cached_property
+    def followed(self) -> Mapping[str, Operand]:
+        """An example of a name with each rule of ``following``, by the rule and by its sign."""
+        lexer = self.recognizer.lexer
+        found: dict[str, Operand] = {}
+        for opening, rule in self.following.items():
+            sign = lexer.display[opening]
+            closing = lexer.display.index(BRACKETS[sign])
+            example = Operand((self.name_kind, opening, self.name_kind, closing))
+            if rule in self.matcher.rules_for(example.kinds[1:]):
+                found |= {rule: example, f"'{sign}'": example}
+        return found
+
     def is_part(self, rule: str) -> bool:
         """Whether a rule is a part of one other rule and of nothing else."""
         return rule not in self.ladder and sum(rule in c for c in self._called.values()) == 1

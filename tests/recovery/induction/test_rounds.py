@@ -102,3 +102,26 @@ def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
     assert (2, 4, 1) == (len(held), len(shown), len(origins))
     assert held_out(toy_files, 1 / 3, 4) == (shown, held, origins)
     assert {frozenset(origins)} == {file.origins for file in held}
+
+
+def test_a_limit_of_rounds_is_no_end(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
+    """Induction is finished once nothing more is worth taking, not where it was stopped."""
+    induction = Induction(toy, toy_files, (), NegativeSet(()))
+    ends = []
+    for most in (1, 60):
+        list(induction.rounds(most))
+        ends.append(induction.is_finished)
+    assert [False, True] == ends
+
+
+def test_a_step_that_mends_nothing_is_refused(growth: Growth) -> None:
+    """A round that takes steps for lines that fail leaves fewer of them or more files read."""
+    standing = [(d["shown"]["parsed"], -d["shown"]["failing"]) for d in growth.rounds]
+    idle = [
+        step["title"]
+        for done, before, after in zip(growth.rounds, standing, standing[1:], strict=False)
+        if after <= before
+        for step in done["taken"]
+        if step["lines"]
+    ]
+    assert [] == idle

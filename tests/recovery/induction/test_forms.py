@@ -1,0 +1,89 @@
+"""Forms of lines: lists, and names with an index."""
+
+import pytest
+
+from grammar.notation.g4 import read
+from grammar.notation.model import Grammar
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.forms import FormWriter, samples_of
+from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+
+_GRAMMAR = """grammar Toy;
+
+program : line* EOF ;
+
+line : (list | marks | pair | assignment) NEWLINE ;
+
+list : LIST NAME (',' NAME)* ;
+
+marks : MARKS NAME (LEFT | RIGHT)* ;
+
+pair : PAIR NAME index? ;
+
+assignment : variable '=' expression ;
+
+expression : primary ('+' primary)* ;
+
+primary : NUMBER | variable | '(' expression ')' ;
+
+variable : NAME index? ('.' NAME index?)* ;
+
+index : '[' expression ']' ;
+
+LIST : 'LIST' ;
+MARKS : 'MARKS' ;
+LEFT : 'LEFT' ;
+RIGHT : 'RIGHT' ;
+PAIR : 'PAIR' ;
+COMMA : ',' ;
+ASSIGN : '=' ;
+PLUS : '+' ;
+DOT : '.' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+LBRACKET : '[' ;
+RBRACKET : ']' ;
+NAME : [A-Z]+ ;
+NUMBER : [0-9]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+"""
+
+
+@pytest.fixture(scope="module")
+def grammar() -> Grammar:
+    """Lines with lists, marks that recur, and operands."""
+    return read(_GRAMMAR)
+
+
+@pytest.fixture(scope="module")
+def writer(grammar: Grammar) -> FormWriter:
+    """Writes forms for it, in a corpus whose operands are numbers too."""
+    recognizer = Recognizer(grammar)
+    number = tuple(kind for kind in recognizer.kinds("1") if kind)
+    return FormWriter(SymbolReader(OperandRules(recognizer)), [number])
+
+
+def _symbols(writer: FormWriter, text: str) -> tuple[Symbol, ...]:
+    kinds = writer.rules.recognizer.kinds(text)
+    return writer.reader.symbols([(kind, None) for kind in kinds if kind])
+
+
+@pytest.mark.parametrize("rule", ["list", "marks", "pair"])
+def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) -> None:
+    """The form of what a rule reads is the rule: what recurs goes on to, an index stays one."""
+    elements = grammar.by_name[rule].alternatives[0].elements
+    form = writer.form(samples_of(writer.rules, elements))
+    assert " ".join(grammar.by_name[rule].text.split()) == f"{rule} : {form} ;"
+
+
+@pytest.mark.parametrize(
+    ("lines", "form"),
+    [
+        (["PAIR A", "PAIR B[1]"], "PAIR NAME index?"),
+        (["PAIR A", "PAIR B.C[1]"], "PAIR variable"),
+    ],
+)
+def test_a_name_with_an_index(writer: FormWriter, lines: list[str], form: str) -> None:
+    """What is a name, with an index or without, is not written as a whole variable."""
+    assert form == writer.form([_symbols(writer, line) for line in lines])
