@@ -328,6 +328,8 @@ def _joined(
     for factor, text, where in zip(factors, texts, present, strict=True):
         optional = factor.often in ("?", "*")
         bare = text[:-1] if factor.often == "?" else text
+        if _is_group(bare) and "|" not in bare:  # a row of symbols goes into a longer one as it is
+            bare = bare[1:-1]
         if factor.often == "*" and groups and groups[-1][2] and groups[-1][1] == where:
             groups[-1][0].append(f"{text[:-1]}+")
         elif optional and groups and groups[-1][2] and groups[-1][1] == where:
@@ -379,7 +381,7 @@ def _is_group(text: str) -> bool:
 
 def samples_of(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
     """What elements of a rule read, as symbols: with and without each part that may be left out."""
-    return [_with_index(rules, _grouped(line)) for line in _sequences(rules, sequence)]
+    return [_grouped(rules, line) for line in _sequences(rules, sequence)]
 
 
 def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
@@ -396,7 +398,7 @@ def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol,
     return tuple(out)
 
 
-def _grouped(symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
+def _grouped(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
     """The symbols with what is between two brackets as one of them."""
     out: list[Symbol] = []
     at = 0
@@ -405,12 +407,12 @@ def _grouped(symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
         closing = f"'{BRACKETS.get(text.strip(chr(39)), '')}'"
         close = next((i for i in range(at, len(symbols)) if symbols[i].text == closing), None)
         if text and close is not None:
-            out.append(Symbol(text, None, _grouped(symbols[at + 1 : close])))
+            out.append(Symbol(text, None, _grouped(rules, symbols[at + 1 : close])))
             at = close
         else:
             out.append(symbols[at])
         at += 1
-    return tuple(out)
+    return _with_index(rules, out)
 
 
 def _sequences(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:

@@ -12,13 +12,15 @@ _GRAMMAR = """grammar Toy;
 
 program : line* EOF ;
 
-line : (list | marks | pair | assignment) NEWLINE ;
+line : (list | marks | pair | inside | assignment) NEWLINE ;
 
 list : LIST NAME (',' NAME)* ;
 
 marks : MARKS NAME (LEFT | RIGHT)* ;
 
 pair : PAIR NAME index? ;
+
+inside : INSIDE '(' NAME index? ':' NAME ')' ;
 
 assignment : variable '=' expression ;
 
@@ -35,8 +37,10 @@ MARKS : 'MARKS' ;
 LEFT : 'LEFT' ;
 RIGHT : 'RIGHT' ;
 PAIR : 'PAIR' ;
+INSIDE : 'INSIDE' ;
 COMMA : ',' ;
 ASSIGN : '=' ;
+COLON : ':' ;
 PLUS : '+' ;
 DOT : '.' ;
 LPAREN : '(' ;
@@ -69,7 +73,7 @@ def _symbols(writer: FormWriter, text: str) -> tuple[Symbol, ...]:
     return writer.reader.symbols([(kind, None) for kind in kinds if kind])
 
 
-@pytest.mark.parametrize("rule", ["list", "marks", "pair"])
+@pytest.mark.parametrize("rule", ["list", "marks", "pair", "inside"])
 def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) -> None:
     """The form of what a rule reads is the rule: what recurs goes on to, an index stays one."""
     elements = grammar.by_name[rule].alternatives[0].elements
