@@ -7,7 +7,7 @@ is believed: `recovery.induction.rounds` tries them all and takes those that pro
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -281,12 +281,7 @@ class Inference:
                 if opening != sign:
                     continue
                 old = samples_of(self.rules, alternative.elements[start + 1 : end])
-                # recurring contents alone too: one odd line must not spoil the form
-                for least in (1, 2, 4):
-                    kept = [c for c, numbers in contents.items() if len(numbers) >= least]
-                    text = self.writer.form([*old, *kept]) if kept else None
-                    if not text:
-                        continue
+                for text in self._forms(contents, old):
                     at = (number, start + 2)
                     count = end - start - 1
                     edit = Replace(rule, at, text, count) if count else Insert(rule, at, text)
@@ -547,11 +542,10 @@ class Inference:
             yield from grown
             return
         title = head.replace("_ ", "name ").strip()
-        for least in (1, 2, 4):
-            text = self.writer.form([s for s, numbers in shapes.items() if len(numbers) >= least])
-            for host in hosts if text else ():
+        for text in self._forms(shapes):
+            for host in hosts:
                 ending = f" {self.profile.line_end}" if self.profile.closing(host) else ""
-                edits = (*self.reserving(text or ""), AddAlternative(host, f"{text}{ending}"))
+                edits = (*self.reserving(text), AddAlternative(host, f"{text}{ending}"))
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
 
     def _grown(
@@ -567,13 +561,29 @@ class Inference:
             if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
                 continue
             old = samples_of(self.rules, first)
-            for least in (1, 2, 4):
-                kept = [s for s, numbers in shapes.items() if len(numbers) >= least]
-                text = self.writer.form([*old, *kept]) if kept else None
-                if text:
-                    edit = Replace(rule, (number, 1), text, len(first))
-                    edits = (*self.reserving(text), edit)
-                    yield Inferred(f"{head} … in {rule}", edits, tuple(members))
+            for text in self._forms(shapes, old):
+                edit = Replace(rule, (number, 1), text, len(first))
+                edits = (*self.reserving(text), edit)
+                yield Inferred(f"{head} … in {rule}", edits, tuple(members))
+
+    def _forms(
+        self, shapes: dict[tuple[Symbol, ...], list[int]], old: Sequence[tuple[Symbol, ...]] = ()
+    ) -> Iterator[str]:
+        """Forms of ``old`` shapes and these: all, those that recur, those whose words recur.
+
+        One odd line must not spoil the form.
+        """
+        lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
+        choices = [
+            [shape for shape, numbers in shapes.items() if len(numbers) >= least]
+            for least in (1, 2, 4)
+        ]
+        choices += [
+            [shape for shape in shapes if all(lines[symbol.text] >= least for symbol in shape)]
+            for least in (2, 4)
+        ]
+        texts = [self.writer.form([*old, *chosen]) for chosen in choices if chosen]
+        yield from dict.fromkeys(text for text in texts if text)
 
     # ------------------------------------------------------------------------------------- helpers
 
