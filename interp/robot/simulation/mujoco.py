@@ -34,6 +34,8 @@ _LOST = 2.0
 """Degrees or mm off the set-point at which the arm no longer follows; nothing is known to reach it
 but a model that is too stiff for its steps."""
 
+_STILL = 1e-9  # rad or m, and a second: below this a joint rests, its error has gone
+
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _NO_CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
 _NO_FORCES = int(
@@ -98,7 +100,10 @@ class MujocoRobot:
         count = len(samples.times)
         if self._stopped is not None or not count:
             return Measured(np.tile(self.axes, (count, 1)), np.zeros((count, self._count)))
-        torques, control = self._control(samples.axes[:, self._columns] * self._units)
+        targets = samples.axes[:, self._columns] * self._units
+        if self._rests(targets):
+            return self._resting(count)
+        torques, control = self._control(targets)
         start = np.empty((1, mujoco.mj_stateSize(self._model, _STATE)))
         mujoco.mj_getState(self._model, self._data, start[0], _STATE)
         states, _ = rollout.rollout(
@@ -111,6 +116,24 @@ class MujocoRobot:
         every = np.zeros((count, self._count))
         every[:, self._columns] = torques
         return Measured(places, every)
+
+    def _rests(self, targets: Array) -> bool:
+        """Whether it stands, and is told to stay: then each step would be like the one before."""
+        return (
+            not self._speed.any()
+            and bool((targets == self._set_point).all())
+            and bool((np.abs(self._data.qvel) < _STILL).all())
+            and bool((np.abs(self._data.qpos - self._set_point) < _STILL).all())
+        )
+
+    def _resting(self, count: int) -> Measured:
+        """As many steps at rest: the place stays, and torques hold what is carried."""
+        data = self._free_data
+        data.qpos[:], data.qvel[:], data.qacc[:] = self._set_point, 0.0, 0.0
+        mujoco.mj_inverse(self._free, data)
+        torques = np.zeros(self._count)
+        torques[self._columns] = data.qfrc_inverse
+        return Measured(np.tile(self.axes, (count, 1)), np.tile(torques, (count, 1)))
 
     def _control(self, targets: Array) -> tuple[Array, Array]:
         """Torques and what actuators are told, for steps that end at ``targets`` (n, joints)."""

@@ -184,3 +184,20 @@ def test_any_path_up_to_a_metre_a_second() -> None:
     off = np.linalg.norm(record.tips - record.tips_measured, axis=1)[1:]
     assert steps.max() > 1.2
     assert 0.01 < off[steps <= 1.0].max() < 0.05
+
+
+def test_rest_is_not_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An arm that has settled stays in place under the torques that hold it, and moves on."""
+    robot = MujocoRobot(Cell(default_machine()))
+    robot.stand(HOME)
+    there = np.array(HOME) + smooth(400)[:, None] * np.array([5.0, 4.0, 3.0, 2.0, 1.0, 6.0])
+    still = np.tile(there[-1], (500, 1))
+    robot.follow(samples_of(there))
+    settled = robot.follow(samples_of(still))
+    with monkeypatch.context() as patched:
+        patched.setattr("interp.robot.simulation.mujoco.rollout", None)
+        rest = robot.follow(samples_of(still))
+    back = robot.follow(samples_of(there[::-1]))
+    np.testing.assert_allclose(rest.axes, still, atol=1e-6)
+    np.testing.assert_allclose(rest.torques, settled.torques[-100:][[-1] * 500], atol=1e-6)
+    assert np.abs(back.axes - there[::-1]).max() < 0.01
