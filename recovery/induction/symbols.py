@@ -279,7 +279,7 @@ class SymbolReader:
         names += [n for n in rules.bracketed.values() if n not in rules.recursive]
         self._starts = [recognizer.at_rule(name) for name in names]
         # operands without operators: the lowest levels, and what is in brackets of its own
-        lowest = [n for n in rules.ladder if not any(rules.alone(n))]
+        lowest = [n for n in rules.ladder if not {*rules.alone(n)} - {rules.names}]
         self._atoms = [recognizer.at_rule(n) for n in (*lowest, *names[1:])]
         self._longest: dict[tuple[bool, tuple[int, ...]], int] = {}
         vocabulary = Vocabulary(recognizer)
