@@ -9,8 +9,9 @@ are, and its jerk is bounded.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -63,19 +64,25 @@ class Rounding:
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
         v = self._inner(u)
-        return 1.0 - self.before * self._side(1.0 - v)[0], self.after * self._side(v)[0]
+        return 1.0 - self.before * _side(1.0 - v, self.slope)[0], self.after * _side(v, self.slope)[
+            0
+        ]
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.rates`."""
+        return _rates(self, u.tobytes())
+
+    def rates_at(self, u: Array) -> tuple[Array, Array]:
+        """`rates` without a memory of them."""
         v = self._inner(u)
-        _, *left = self._side(1.0 - v)
-        _, *right = self._side(v)
+        _, *left = _side(1.0 - v, self.slope)
+        _, *right = _side(v, self.slope)
         signs = (1.0, -1.0, 1.0)
-        one = np.stack([self.before * s * side for s, side in zip(signs, left, strict=True)])
-        other = np.stack([self.after * side for side in right])
+        one = [self.before * s * side for s, side in zip(signs, left, strict=True)]
+        other = [self.after * side for side in right]
         a, b = self._shares
         w1, w2, w3 = (a * s * x + b * y for s, x, y in zip(signs, left, right, strict=True))
-        inner = np.stack((1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5))
+        inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
         return _composed(one, inner), _composed(other, inner)
 
     @property
@@ -83,33 +90,9 @@ class Rounding:
         total = sum(self.weights)
         return self.weights[0] / total, self.weights[1] / total
 
-    def _side(self, v: Array) -> tuple[Array, Array, Array, Array]:
-        """The polynomial h and its derivatives."""
-        c, d = 4.0 - self.slope, self.slope - 3.0
-        return (
-            v**3 * (c + d * v),
-            v**2 * (3.0 * c + 4.0 * d * v),
-            v * (6.0 * c + 12.0 * d * v),
-            6.0 * c + 24.0 * d * v,
-        )
-
     def _inner(self, u: Array) -> Array:
-        """The parameter v for u, by Newton's method within bounds that close in."""
-        a, b = self._shares
-        v, low, high = u.copy(), np.zeros_like(u), np.ones_like(u)
-        for _ in range(_ROUNDS):
-            left, right = self._side(1.0 - v), self._side(v)
-            beyond = a * (1.0 - left[0]) + b * right[0] - u
-            if np.abs(beyond).max(initial=0.0) < _EXACT:
-                break
-            low, high = np.where(beyond <= 0.0, v, low), np.where(beyond >= 0.0, v, high)
-            following = v - beyond / (a * left[1] + b * right[1])
-            outside = (following <= low) | (following >= high)
-            following = np.where(outside, (low + high) / 2.0, following)
-            if np.array_equal(following, v):
-                break
-            v = following
-        return v
+        """The parameter v for u."""
+        return _inner(*self._shares, self.slope, u.tobytes())
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,6 +181,10 @@ class Overlap:
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.rates`."""
+        return _rates(self, u.tobytes())
+
+    def rates_at(self, u: Array) -> tuple[Array, Array]:
+        """`rates` without a memory of them."""
         times = u * self.duration
         one, other = self._both(u)
         one = one[1:] * (times <= self.ending.duration)
@@ -222,6 +209,57 @@ def chained(outer: tuple[Array, Array, Array], inner: Array) -> tuple[Array, Arr
     )
 
 
-def _composed(outer: Array, inner: Array) -> Array:
+def _composed(outer: Sequence[Array], inner: Sequence[Array]) -> Array:
     (f1, f2, f3), (x1, x2, x3) = outer, inner
-    return np.stack((f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3))
+    found = np.empty((3, len(x1)))
+    found[0] = f1 * x1
+    found[1] = f2 * x1**2 + f1 * x2
+    found[2] = f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3
+    return found
+
+
+def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
+    """The polynomial of one side of a rounding and its derivatives."""
+    c, d = 4.0 - slope, slope - 3.0
+    return (
+        v**3 * (c + d * v),
+        v**2 * (3.0 * c + 4.0 * d * v),
+        v * (6.0 * c + 12.0 * d * v),
+        6.0 * c + 24.0 * d * v,
+    )
+
+
+@lru_cache(maxsize=16)  # what a blend is judged by are samples of the same few transitions
+def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Array]:
+    """The rates at the float64 of an array ``(n,)``; nobody may write to them."""
+    one, other = transition.rates_at(np.frombuffer(parameters))
+    one.setflags(write=False)
+    other.setflags(write=False)
+    return one, other
+
+
+@lru_cache(maxsize=16)  # values and derivatives are asked for at the same parameters
+def _inner(a: float, b: float, slope: float, parameters: bytes) -> Array:
+    """The parameter v of a rounding for u, by Newton's method within bounds that close in.
+
+    ``a`` and ``b`` are the shares of both sides; ``parameters`` the float64 of an array ``(n,)``.
+    """
+    u: Array = np.frombuffer(parameters)
+    c, d = 4.0 - slope, slope - 3.0
+    c3, d4 = 3.0 * c, 4.0 * d
+    v, low, high = u.copy(), np.zeros_like(u), np.ones_like(u)
+    for _ in range(_ROUNDS):
+        w = 1.0 - v
+        beyond = a * (1.0 - w**3 * (c + d * w)) + b * (v**3 * (c + d * v)) - u
+        if np.abs(beyond).max(initial=0.0) < _EXACT:
+            break
+        low, high = np.where(beyond <= 0.0, v, low), np.where(beyond >= 0.0, v, high)
+        slopes = a * (w**2 * (c3 + d4 * w)) + b * (v**2 * (c3 + d4 * v))
+        following = v - beyond / slopes
+        outside = (following <= low) | (following >= high)
+        following = np.where(outside, (low + high) / 2.0, following)
+        if np.array_equal(following, v):
+            break
+        v = following
+    v.setflags(write=False)
+    return v

@@ -42,6 +42,7 @@ _STRAIGHT = 1e-3
 """Relative difference of directions that counts as none."""
 _EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
+_STEP = 1.0 / 64.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -373,7 +374,7 @@ def _most_of_tool(tangents: Array, one: Piece, other: Piece, machine: MachineDat
 
     And has no more acceleration than the machine's.
     """
-    bends = np.gradient(tangents, _GRID, axis=0)
+    bends = np.gradient(tangents, _STEP, axis=0)
     sharpest = float(np.linalg.norm(bends, axis=1).max())
     fastest = float(np.linalg.norm(tangents, axis=1).max())
     speed = max(path.velocity for piece in (one, other) for path in piece.paths[:1])

@@ -223,14 +223,7 @@ def steady_speed(rates: Rates, limits: AxisLimits, share: float) -> float:
 
     No more than a share of that at which its bends alone take all of an acceleration or jerk.
     """
-    first, second, third = (np.abs(each) for each in rates)
-    return float(
-        min(
-            (limits.velocity / _positive(first)).min() * _ROUNDING,
-            share * math.sqrt((limits.acceleration / _positive(second)).min()),
-            share * math.cbrt((limits.jerk / _positive(third)).min()),
-        )
-    )
+    return _Sampled(rates, limits).steady_speed(share)
 
 
 def even_ceiling(
@@ -243,11 +236,11 @@ def even_ceiling(
     it may be otherwise.
     """
     programmed = min(bounds.velocity for bounds in beside)
-    even = min(steady_speed(rates, limits, _MARGIN), most)
-    eased = min(steady_speed(rates, limits, _MARGIN * _EASED), most)
-    velocity = min(eased, programmed)
-    acceleration, jerk = _left(rates, limits, velocity, beside)
-    hardest, sharpest = _left(rates, limits, min(even, programmed), beside)
+    sampled = _Sampled(rates, limits)
+    even = min(sampled.steady_speed(_MARGIN), most)
+    eased = min(sampled.steady_speed(_MARGIN * _EASED), most)
+    acceleration, jerk = sampled.left(min(eased, programmed), beside)
+    hardest, sharpest = sampled.left(min(even, programmed), beside)
     stretch = Stretch(
         start=0.0,
         end=1.0,
@@ -263,18 +256,32 @@ def even_ceiling(
     return Ceiling((stretch,))
 
 
-def _left(
-    rates: Rates, limits: AxisLimits, speed: float, beside: Sequence[Bounds]
-) -> tuple[float, float]:
-    """Acceleration and jerk along a curve that are left at a speed, and no more than beside it."""
-    first, second, third = (np.abs(each) for each in rates)
-    straight = _positive(first)
-    acceleration = float(((limits.acceleration - second * speed**2) / straight).min())
-    turned = limits.jerk - third * speed**3
-    room = float((turned / 2.0 / _positive(3.0 * second * speed)).min())
-    acceleration = min(acceleration, room, *(bounds.acceleration for bounds in beside))
-    jerk = float(((turned - 3.0 * second * speed * acceleration) / straight).min())
-    return acceleration * _ROUNDING, min(jerk, *(bounds.jerk for bounds in beside)) * _ROUNDING
+class _Sampled:
+    """Samples of a curve, and what they leave of limits."""
+
+    def __init__(self, rates: Rates, limits: AxisLimits) -> None:
+        first, second, third = (np.abs(each) for each in rates)
+        self._limits = limits
+        self._second, self._third = second, third
+        self._straight = _positive(first)
+        self._fastest = float((limits.velocity / self._straight).min())
+        self._sharpest = math.sqrt((limits.acceleration / _positive(second)).min())
+        self._quickest = math.cbrt((limits.jerk / _positive(third)).min())
+
+    def steady_speed(self, share: float) -> float:
+        """See `steady_speed`."""
+        return min(self._fastest * _ROUNDING, share * self._sharpest, share * self._quickest)
+
+    def left(self, speed: float, beside: Sequence[Bounds]) -> tuple[float, float]:
+        """Acceleration and jerk that are left at a speed, and no more than beside the curve."""
+        limits, straight = self._limits, self._straight
+        acceleration = float(((limits.acceleration - self._second * speed**2) / straight).min())
+        turned = limits.jerk - self._third * speed**3
+        bent = 3.0 * self._second * speed
+        room = float((turned / 2.0 / _positive(bent)).min())
+        acceleration = min(acceleration, room, *(bounds.acceleration for bounds in beside))
+        jerk = float(((turned - bent * acceleration) / straight).min())
+        return acceleration * _ROUNDING, min(jerk, *(bounds.jerk for bounds in beside)) * _ROUNDING
 
 
 def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import ruckig
@@ -218,6 +218,7 @@ def ramp(
     return Ramp(rise + hold + fall, sign * travelled, pieces)
 
 
+@lru_cache(maxsize=256)  # plans that differ in a blend have most of their spans in common
 def travel(
     length: float,
     speed: float,

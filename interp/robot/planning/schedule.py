@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -136,7 +137,7 @@ def schedule(
     cannot be done: the acceleration cannot be taken back in time, or, with ``is_strict``, the end
     of a span would be passed faster than what follows allows.
     """
-    best: list[SpeedProfile] | None = None
+    best: _Plan | None = None
     known: list[list[float]] = []
     for is_loose in (True, False):
         spans = _spans(steps, state, override, is_loose=is_loose)
@@ -144,39 +145,58 @@ def schedule(
             continue
         known.append(lengths)
         start = _start(spans, state)
-        found = _planned(spans, start, is_strict)
-        best = _sooner(best, found, steps, spans)
-        if _ease(spans, found):
-            best = _sooner(best, _planned(spans, start, is_strict), steps, spans)
-    return best
+        speeds = _speeds(spans, start, is_strict)
+        best = _sooner(best, spans, start, speeds)
+        if _ease(spans, speeds):
+            best = _sooner(best, spans, start, _speeds(spans, start, is_strict))
+    return None if best is None else _own_units(steps, best.spans, best.profiles)
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """Spans, a profile for each of their stretches, and the seconds that all of them take."""
+
+    spans: Sequence[_Span]
+    profiles: list[SpeedProfile]
+    duration: float
 
 
 def _sooner(
-    best: list[SpeedProfile] | None,
-    found: list[SpeedProfile] | None,
-    steps: Sequence[GearedStretch],
+    best: _Plan | None,
     spans: Sequence[_Span],
-) -> list[SpeedProfile] | None:
-    """The quicker of a plan in the units of the steps and one in those of the spans."""
-    if found is None or (best is not None and _duration(best) <= _duration(found)):
+    start: tuple[float, float],
+    speeds: Sequence[float] | None,
+) -> _Plan | None:
+    """The quicker of a plan and one that ends its spans with some speeds."""
+    if speeds is None:
         return best
-    return _own_units(steps, spans, found)
-
-
-def _planned(
-    spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
-) -> list[SpeedProfile] | None:
-    """A profile for each stretch of all spans."""
-    allowed = _allowed(spans)
     speed, acceleration = start
     profiles: list[SpeedProfile] = []
-    for place, span in enumerate(spans):
+    duration = 0.0
+    for place, (span, final) in enumerate(zip(spans, speeds, strict=True)):
+        for profile in _parts(span, _travelled(spans, place, speed, acceleration, final)):
+            profiles.append(profile)
+            duration += profile.duration
+        if best is not None and best.duration <= duration:
+            return best
+        speed, acceleration = final, _behind(spans, place, final)
+    return _Plan(spans, profiles, duration)
+
+
+def _speeds(
+    spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
+) -> list[float] | None:
+    """The speed at the end of each span."""
+    allowed = _allowed(spans)
+    speed, acceleration = start
+    speeds: list[float] = []
+    for place in range(len(spans)):
         found = _reached(spans, place, speed, acceleration, allowed[place])
         if found is None or (is_strict and found > allowed[place] * (1.0 + 1e-6) + 1e-9):
             return None
-        profiles += _parts(span, _travelled(spans, place, speed, acceleration, found))
+        speeds.append(found)
         speed, acceleration = found, _behind(spans, place, found)
-    return profiles
+    return speeds
 
 
 def braking(
@@ -204,6 +224,7 @@ def braking(
     return _own_units(steps, spans, profiles)
 
 
+@lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
 def alone(ceiling: Ceiling) -> Cubics | None:
     """The parameter of a curve over time from rest to rest; ``None`` where it cannot be."""
     steps = [GearedStretch(stretch, 1.0) for stretch in ceiling.stretches]
@@ -252,20 +273,15 @@ def _spans(
     return spans
 
 
-def _ease(spans: Sequence[_Span], profiles: Sequence[SpeedProfile] | None) -> bool:
+def _ease(spans: Sequence[_Span], speeds: Sequence[float] | None) -> bool:
     """Let speeds change in blends that what is beside them holds up; whether there are any."""
-    is_eased, place = False, 0
-    for span in spans:
+    is_eased = False
+    for place, span in enumerate(spans):
         if span.is_even:
-            held = profiles is None or profiles[place].final < _HELD * span.even
+            held = speeds is None or speeds[place] < _HELD * span.even
             span.is_even = not held
             is_eased = is_eased or held
-        place += len(span.ends)
     return is_eased
-
-
-def _duration(profiles: Sequence[SpeedProfile]) -> float:
-    return sum(profile.duration for profile in profiles)
 
 
 def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
