@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, Final
 
@@ -69,8 +70,15 @@ def _chord(right: Any) -> Any:
     return at
 
 
-def _hugging(_right: Any) -> Any:
-    return lambda self, u: (1.0 - self.before * (1.0 - u) ** 3, self.after * u**3)
+def _hugging(right: Any) -> Any:
+    return lambda before, after, weights, _slope: right(before, after, weights, 2.9)
+
+
+def _unlimited(right: Any) -> Any:
+    def even_ceiling(rates: Any, limits: Any, beside: Any, _most: float, size: float) -> Any:
+        return right(tuple(rate / 100.0 for rate in rates), limits, beside, math.inf, size)
+
+    return even_ceiling
 
 
 def _axis_share(alter: Any) -> Plant:
@@ -104,11 +112,8 @@ _BLENDS: Final = (
     ("a zone takes a quarter of a path at most", constant(blending, "_HALF", 0.25)),
     ("the apex is at the end of the blend", constant(path_events, "_APEX", 1.0)),
     ("a blend is a straight line", on(Blend, "at", _chord)),
-    ("a blend keeps nearer to the corner", on(Blend, "_parameters", _hugging)),
-    (
-        "a blend may be as fast as it likes",
-        constant(blending, "_path_limits", lambda *_given: ()),
-    ),
+    ("a blend keeps nearer to the corner", on(blending, "Rounding", _hugging)),
+    ("a blend may be as fast as it likes", on(blending, "even_ceiling", _unlimited)),
     (
         "$APO.CPTP of the second motion counts nothing",
         _axis_share(lambda criterion, values, _own: (criterion, values, values)),

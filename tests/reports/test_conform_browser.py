@@ -198,14 +198,17 @@ def test_the_page_of_a_night_draws_its_curves(
 def test_the_page_of_a_bad_night_says_why(
     browser: webdriver.Chrome, opened: Opened, tmp_path: Path
 ) -> None:
-    """What failed stands on top: steps, cases, divergences."""
+    """What failed stands on top, with the command that repeats it."""
     record = {
         "date": "2031-05-07",
         "steps": {"recover": {"status": "cut off after 9 minutes", "seconds": 540.0}},
-        "conform": {"verdicts": {"pass": 5, "fail": 2}},
-        "fuzz": {"programs": 7, "divergences": 1},
+        "failures": [
+            {"what": "step recover: cut off after 9 minutes", "page": "", "command": ""},
+            {"what": "case a/b failed", "page": "conform/index.html#case=a/b", "command": "krl c"},
+        ],
     }
     opened(write_nightly_page(record, tmp_path), "")
-    told = "step recover: cut off after 9 minutes; 2 runs of cases failed; 1 divergence of the"
-    assert browser.find_element(By.CSS_SELECTOR, ".top .bad").text.startswith(told)
+    assert "2 failures" == browser.find_element(By.CSS_SELECTOR, ".grammar .bad").text
+    found = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "li.bad")]
+    assert ["step recover: cut off after 9 minutes", "case a/b failed\nkrl c"] == found
     assert _is_sound(browser)
