@@ -143,7 +143,8 @@ class Signatures:
         return self._number(use) if numbers else None
 
     def _number(self, use: DataUse) -> _Kind:
-        value = "0" if use.is_assigned else use.asked_for or "1"
+        begins_at_0 = use.is_assigned and not use.is_index
+        value = "0" if begins_at_0 else use.asked_for or "1"
         return _Kind("REAL", f"{value}.0") if REAL in use.types else _Kind("INT", value)
 
     def _known(self, type_: Type, use: DataUse) -> _Kind | None:

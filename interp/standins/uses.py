@@ -51,8 +51,8 @@ class DataUse:
     ``types`` are those that it was met with, in the order of the text; ``indices`` is the most
     indices at once, 0 where there is none, and ``largest`` the largest number in each place.
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
-    kinds of motions that go to it. ``asked_for`` is the first number that a
-    SWITCH or a comparison asks for.
+    kinds of motions that go to it. ``is_index``: an array has
+    it as an index. ``asked_for`` is the first number that a SWITCH or a comparison asks for.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -65,6 +65,7 @@ class DataUse:
     is_assigned: bool = False
     is_waited_for: bool = False
     is_left_by_false: bool = False
+    is_index: bool = False
     asked_for: str = ""
 
     def member(self, name: ast.Name) -> DataUse:
@@ -182,6 +183,9 @@ class Uses:
         for index in node.indices:
             if index is not None:
                 self._expect(index, INT)
+                use = self._use(index)
+                if use is not None:
+                    use.is_index = True
 
     def _switch(self, node: ast.Switch) -> None:
         for branch in node.branches:

@@ -214,6 +214,12 @@ def test_negative_numbers_are_asked_for() -> None:
     assert "DECL GLOBAL INT APP_NUMBER=-17" in _data_list(program)
 
 
+def test_index_that_is_counted() -> None:
+    """What counts the elements of an array begins with the first one."""
+    run = _run(_main("BUFFER[HEAD]=5\nHEAD=HEAD+1\n$OUT[HEAD]=TRUE\n"))
+    assert ("end", "") == _outcome(run)
+
+
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_option_packages(executor: str) -> None:
     """Routines of a package have its signature: types, optional parameters, results that go on."""
