@@ -24,7 +24,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
-from interp.standins.unreadable_lines import readable
+from interp.standins.unreadable_lines import STOP, readable
 from interp.values.faults import LinkError
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
@@ -62,6 +62,12 @@ class Unit:
     def found(self, name: ast.Name) -> Found | None:
         """What a name in this file means, if that is known."""
         return self.checked.resolution.found(name)
+
+    def undeclared(self, name: ast.Name) -> str:
+        """What to say of a line with a name that nothing declares, when a run comes to it."""
+        if name.key == STOP:
+            return "this line cannot be read"
+        return f"{name.text} is declared nowhere"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,7 +2,8 @@
 
 A controller selects no such program. Offline most of it can be run all the same: a statement that
 cannot be read becomes a call of `STOP`, a routine that no file has, so that the program ends there
-with file and line. A declaration that cannot be read is left out: stand-ins take its place.
+with file and line (`interp.program.load.Unit.undeclared` has the words). A declaration that cannot
+be read is left out: stand-ins take its place.
 """
 
 from __future__ import annotations
@@ -19,15 +20,13 @@ from grammar.syntax.source import Source
 
 __all__ = ["STOP", "Readable", "readable"]
 
-#: What is called in place of a statement that cannot be read.
-STOP: Final = "SYNTAX_ERROR"
+#: What is called in place of a statement that cannot be read: a name that nobody gives.
+STOP: Final = "UNREADABLE__LINE"
 _DECLARES: Final = frozenset(
     "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "
     "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
 )
 _WORD: Final = re.compile(r"\s*(\w*)")
-
-
 #: So many are tried one by one where not all can stand together.
 _MOST: Final = 20
 

@@ -46,7 +46,7 @@ class Calls(Expressions):
         """Call a routine; a procedure gives ``None``."""
         found = self.frame.unit.found(node.name)
         if found is None:
-            raise LinkError(f"{node.name.text} is declared nowhere")
+            raise LinkError(self.frame.unit.undeclared(node.name))
         if found.module is None:
             given: Value | None = yield from self._predefined(node, is_value=is_value)
             return given

@@ -81,7 +81,7 @@ class Designators(ABC):
         if found is None:
             if name.key.startswith("$"):  # another release may have it
                 return SystemPlace((name.key,), UNKNOWN)
-            raise LinkError(f"{name.text} is declared nowhere")
+            raise LinkError(self.frame.unit.undeclared(name))
         return self.declared(found)
 
     def declared(self, found: Found, signals: int = 0) -> Place:

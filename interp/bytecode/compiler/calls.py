@@ -98,7 +98,7 @@ class Calls:
         """Call a routine; gives its result, ``None`` where it has none."""
         found = self._context.unit.found(node.name)
         if found is None:
-            raise self._emitter.unlinked(f"{node.name.text} is declared nowhere")
+            raise self._emitter.unlinked(self._context.unit.undeclared(node.name))
         if found.module is None:
             return self._predefined.predefined(node, is_value=is_value)
         routine = self._context.program.routines.get(found.symbol)

@@ -86,7 +86,7 @@ class Designators:
             return self.declared(found)
         if name.key.startswith("$"):  # another release may have it
             return SystemVariable((name.key,), UNKNOWN)
-        raise self._emitter.unlinked(f"{name.text} is declared nowhere")
+        raise self._emitter.unlinked(self._context.unit.undeclared(name))
 
     def declared(self, found: Found, signals: int = 0) -> Location:
         """The place of what a name means: of a frame, of a data list, or of the world."""

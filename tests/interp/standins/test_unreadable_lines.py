@@ -24,12 +24,16 @@ END
 
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_stops_where_it_cannot_be_read(executor: str) -> None:
-    """What comes before the broken statement is executed whole; one not reached does not count."""
+    """What comes before the broken statement is executed whole; one not reached does not count.
+
+    All executors tell the same of it.
+    """
     program = load([Source(TEXT, "main.src")], "main.src", strict=False, stands_in=True)
     run = run_program(program, RunSetup(executor=executor, is_tolerant=True))
     ends = [event for event in run.events if event.kind == "motion_end"]
     assert run.outcome.at is not None
     assert (2, "fault", 9) == (len(ends), run.outcome.ending, run.outcome.at.line)
+    assert "this line cannot be read" == str(run.outcome.error)
 
 
 def test_every_broken_line_is_told() -> None:
