@@ -366,8 +366,8 @@ class PosePathCurve:
 def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> Rates:
     """Derivatives of a blend by u, from those of both its parts."""
     parameters, rates = blend.transition.at(u), blend.transition.rates(u)
-    leaving = chained(blend.first.rates(parameters[0]), rates[0])
-    joining = chained(blend.second.rates(parameters[1]), rates[1])
+    leaving = chained(blend.first.rates(parameters[0]), rates[0][:, :, None])
+    joining = chained(blend.second.rates(parameters[1]), rates[1][:, :, None])
     first, second, third = (one + other for one, other in zip(leaving, joining, strict=True))
     return first, second, third
 

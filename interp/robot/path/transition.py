@@ -64,9 +64,8 @@ class Rounding:
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
         v = self._inner(u)
-        return 1.0 - self.before * _side(1.0 - v, self.slope)[0], self.after * _side(v, self.slope)[
-            0
-        ]
+        one, other = _side(1.0 - v, self.slope)[0], _side(v, self.slope)[0]
+        return 1.0 - self.before * one, self.after * other
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.rates`."""
@@ -83,7 +82,7 @@ class Rounding:
         a, b = self._shares
         w1, w2, w3 = (a * s * x + b * y for s, x, y in zip(signs, left, right, strict=True))
         inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
-        return _composed(one, inner), _composed(other, inner)
+        return np.stack(chained(one, inner)), np.stack(chained(other, inner))
 
     @property
     def _shares(self) -> tuple[float, float]:
@@ -199,23 +198,20 @@ class Overlap:
         return self.ending.at(ending) * powers, self.starting.at(starting) * powers
 
 
-def chained(outer: tuple[Array, Array, Array], inner: Array) -> tuple[Array, Array, Array]:
-    """First to third derivatives ``(n, columns)`` of a curve over a parameter that has its own."""
-    (f1, f2, f3), (x1, x2, x3) = outer, inner[:, :, None]
+def chained(
+    outer: Sequence[Array] | Array, inner: Sequence[Array] | Array
+) -> tuple[Array, Array, Array]:
+    """First to third derivatives of a function of a parameter that is a function itself.
+
+    ``outer`` are those of the function, ``inner`` those of its parameter: three arrays each, of
+    shapes that NumPy broadcasts.
+    """
+    (f1, f2, f3), (x1, x2, x3) = outer, inner
     return (
         f1 * x1,
         f2 * x1**2 + f1 * x2,
         f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3,
     )
-
-
-def _composed(outer: Sequence[Array], inner: Sequence[Array]) -> Array:
-    (f1, f2, f3), (x1, x2, x3) = outer, inner
-    found = np.empty((3, len(x1)))
-    found[0] = f1 * x1
-    found[1] = f2 * x1**2 + f1 * x2
-    found[2] = f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3
-    return found
 
 
 def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:

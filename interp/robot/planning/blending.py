@@ -269,9 +269,8 @@ def _duration(
 def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, float]]:
     """Gear and bend at both ends of a blend."""
     leaving, joining = transition.rates(np.array([0.0, 1.0]))
-    into = (1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3)
-    out = (joining[0, 1], joining[1, 1])
-    (gear_in, bend_in), (gear_out, bend_out) = into, out
+    gear_in, bend_in = 1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3
+    gear_out, bend_out = joining[0, 1], joining[1, 1]
     if abs(leaving[1, 0]) < _EVEN * leaving[0, 0]:
         bend_in = 0.0
     if abs(bend_out) < _EVEN * gear_out:
@@ -284,10 +283,7 @@ def _beside(
 ) -> tuple[Bounds, Bounds]:
     """The bounds on both sides in units of the blend."""
     before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
-    return tuple(  # type: ignore[return-value]
-        Bounds(own.velocity * gear, own.acceleration * gear, own.jerk * gear)
-        for own, gear in ((before, into[0]), (after, 1.0 / out[0]))
-    )
+    return before.scaled(into[0]), after.scaled(1.0 / out[0])
 
 
 def _has_common_frames(first: Track, second: Track) -> bool:

@@ -28,7 +28,6 @@ __all__ = [
     "axis_limits",
     "ceiling_of",
     "even_ceiling",
-    "steady_speed",
 ]
 
 _MARGIN = 0.97
@@ -176,16 +175,17 @@ def ceiling_of(
     """
     grid = curve.grid
     first, second, third = (np.abs(rates) for rates in curve.rates(grid))
+    straight = _positive(first)
     wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
     slowest = np.minimum(
-        _least(programmed.velocity / _positive(first)),
+        _least(programmed.velocity / straight),
         min((path.velocity / path.length for path in paths), default=math.inf),
     )
-    velocity = _least(machine.velocity / _positive(first))
-    per_axis = _least(programmed.acceleration / _positive(first))
-    smooth = _least(programmed.jerk / _positive(first))
-    hardest = _least(machine.acceleration / _positive(first))
-    sharpest = _least(machine.jerk / _positive(first))
+    velocity = _least(machine.velocity / straight)
+    per_axis = _least(programmed.acceleration / straight)
+    smooth = _least(programmed.jerk / straight)
+    hardest = _least(machine.acceleration / straight)
+    sharpest = _least(machine.jerk / straight)
     acceleration = np.minimum(per_axis, wanted)
     if not curve.is_straight:
         acceleration = np.minimum(_SHARE * _MARGIN * per_axis, wanted)
@@ -196,16 +196,11 @@ def ceiling_of(
         room = _least(_BENT * programmed.jerk / _positive(3.0 * second * used))
         acceleration = np.minimum(acceleration, room)
         bent = second * used**2
-        hardest = _least((machine.acceleration - bent) / _positive(first)) * _MARGIN
+        hardest = _least((machine.acceleration - bent) / straight) * _MARGIN
         hardest = np.maximum(np.minimum(hardest, room), acceleration)
-        for limits in (programmed, machine):
-            turned = third * used**3 + 3.0 * second * used * acceleration[:, None]
-            left = _least((limits.jerk - turned) / _positive(first)) * _MARGIN
-            smooth, sharpest = (
-                (np.minimum(smooth, left), sharpest)
-                if limits is programmed
-                else (smooth, np.minimum(sharpest, left))
-            )
+        turned = third * used**3 + 3.0 * second * used * acceleration[:, None]
+        smooth = np.minimum(smooth, _least((programmed.jerk - turned) / straight) * _MARGIN)
+        sharpest = np.minimum(sharpest, _least((machine.jerk - turned) / straight) * _MARGIN)
     used = np.minimum(velocity, slowest)
     smooth = np.minimum(smooth, sharpest)
     for path in paths:
@@ -216,14 +211,6 @@ def ceiling_of(
     columns *= _ROUNDING
     cuts = _cuts(used, 0, len(grid) - 1)
     return Ceiling(tuple(_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts)))
-
-
-def steady_speed(rates: Rates, limits: AxisLimits, share: float) -> float:
-    """The greatest speed at which a curve can be travelled evenly, from samples of it.
-
-    No more than a share of that at which its bends alone take all of an acceleration or jerk.
-    """
-    return _Sampled(rates, limits).steady_speed(share)
 
 
 def even_ceiling(
@@ -269,7 +256,10 @@ class _Sampled:
         self._quickest = math.cbrt((limits.jerk / _positive(third)).min())
 
     def steady_speed(self, share: float) -> float:
-        """See `steady_speed`."""
+        """The greatest speed at which the curve can be travelled evenly.
+
+        No more than a share of that at which its bends alone take all of an acceleration or jerk.
+        """
         return min(self._fastest * _ROUNDING, share * self._sharpest, share * self._quickest)
 
     def left(self, speed: float, beside: Sequence[Bounds]) -> tuple[float, float]:
