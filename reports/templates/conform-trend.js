@@ -1,18 +1,5 @@
 // The nightly runs: how many results passed and failed in each.
 
-const byId = (id) => document.getElementById(id);
-
-/** Draws now and whenever the width of the holder changes. */
-function whenResized(holder, draw) {
-  let drawn = holder.clientWidth;
-  draw();
-  new ResizeObserver(() => {
-    if (holder.clientWidth === drawn) return;
-    drawn = holder.clientWidth;
-    draw();
-  }).observe(holder);
-}
-
 function trend() {
   const holder = byId("trend");
   const runs = page.runs;

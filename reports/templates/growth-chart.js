@@ -3,7 +3,6 @@
 const steps = page.steps;
 const last = steps.length - 1;
 const charts = [];
-const byId = (id) => document.getElementById(id);
 
 function pointAll(n) {
   for (const point of charts) point(n);
@@ -102,17 +101,6 @@ function rateChart() {
     holder.replaceChildren(root, tip);
   }
   whenResized(holder, draw);
-}
-
-/** Draws now and whenever the width of the holder changes. */
-function whenResized(holder, draw) {
-  let drawn = holder.clientWidth;
-  draw();
-  new ResizeObserver(() => {
-    if (holder.clientWidth === drawn) return;
-    drawn = holder.clientWidth;
-    draw();
-  }).observe(holder);
 }
 
 // ------------------------------------------------------------------------------- the metrics

@@ -11,6 +11,8 @@ function percent(part, whole) {
 }
 const signed = (value) => `${value < 0 ? "−" : "+"}${number(Math.abs(value))}`;
 
+const byId = (id) => document.getElementById(id);
+
 /** An element with a class and children; texts become text nodes, null is left out. */
 function el(tag, className, ...children) {
   const element = document.createElement(tag);
@@ -120,4 +122,15 @@ function onRow(body, toggle) {
 
 function setHash(text) {
   try { history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search); } catch { /* some browsers refuse it for local files */ }
+}
+
+/** Draws now and whenever the width of the holder changes. */
+function whenResized(holder, draw) {
+  let drawn = holder.clientWidth;
+  draw();
+  new ResizeObserver(() => {
+    if (holder.clientWidth === drawn) return;
+    drawn = holder.clientWidth;
+    draw();
+  }).observe(holder);
 }

@@ -1,6 +1,5 @@
 // The moment that all parts of the page show, and what of the run stands at it.
 
-const byId = (id) => document.getElementById(id);
 const { path, limits } = page;
 /** What was seen besides the trace, as events: contacts, and torques that an axis cannot bear. */
 const observed = page.observations.map(({ t, end: until, kind, at, parts, value, limit }) => ({
@@ -46,17 +45,6 @@ function atNextFrame(act) {
     isWaiting = true;
     requestAnimationFrame(() => { isWaiting = false; act(); });
   };
-}
-
-/** Calls `draw` now and whenever the width of the holder changes. */
-function whenResized(holder, draw) {
-  let drawn = holder.clientWidth;
-  draw();
-  new ResizeObserver(() => {
-    if (holder.clientWidth === drawn) return;
-    drawn = holder.clientWidth;
-    draw();
-  }).observe(holder);
 }
 
 /** Calls `draw` whenever light turns to dark or back. */
