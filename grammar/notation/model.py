@@ -8,7 +8,7 @@ changes the text of one rule only. Spans are offsets into the rule's own text fo
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal as OneOf
@@ -28,6 +28,7 @@ __all__ = [
     "Rule",
     "Span",
     "normalised",
+    "reached",
     "walk",
 ]
 
@@ -209,6 +210,17 @@ def walk(node: Element | Alternative) -> Iterator[Element]:
             yield from walk(item)
         case _:
             yield node
+
+
+def reached(calls: Mapping[str, Collection[str]], name: str) -> set[str]:
+    """All names that ``name`` leads to by one call or more."""
+    seen: set[str] = set()
+    todo = [name]
+    while todo:
+        fresh = set(calls.get(todo.pop(), ())) - seen
+        seen |= fresh
+        todo += fresh
+    return seen
 
 
 def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from recovery.induction.symbols import Token
+from recovery.proposals.block_inference import is_balanced
 
 __all__ = ["BlockLines", "SourceFile", "find_blocks"]
 
@@ -97,19 +98,9 @@ def _is_pair(
     needed = max(_LEAST_FILES, min(_BALANCED_SHARE * len(places), len(places) - 1))
     if len(equal) < needed:
         return False
-    good = [n for n in equal if _is_balanced(opener, closer, files[n].lines)]
+    good = [n for n in equal if is_balanced(opener, closer, files[n].lines)]
     origins = frozenset[str]().union(*(files[n].origins for n in good))
     return len(good) >= needed and len(origins) >= _LEAST_ORIGINS
-
-
-def _is_balanced(opener: str, closer: str, lines: Sequence[_Line]) -> bool:
-    """Whether each opener has its closer behind it, with something between in some block."""
-    depth = 0
-    for lead, _ in lines:
-        depth += (lead == opener) - (lead == closer)
-        if depth < 0:
-            return False
-    return not depth
 
 
 def _inside(opener: str, closer: str, lines: Sequence[_Line]) -> int:

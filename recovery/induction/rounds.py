@@ -172,7 +172,22 @@ class Induction:
     # ------------------------------------------------------------------------------------ a round
 
     def _round(self, *, inner: bool, origins: int) -> Round:
-        finder, failures = self._reading(self.grammar)
+        finder, failures = self._failures_under(self.grammar)
+        shown = _reading(failures)
+        held = _reading([finder.find(file.text) for file in self.held])
+        taken, refused = self._steps(finder, failures, inner=inner, origins=origins)
+        self.grammar = apply(self.grammar, _joined(taken))
+        return Round(shown, held, tuple(taken), tuple(refused))
+
+    def _steps(
+        self,
+        finder: FailureFinder,
+        failures: Sequence[Sequence[Failure]],
+        *,
+        inner: bool,
+        origins: int,
+    ) -> tuple[list[Taken], list[Refused]]:
+        """What is taken and what refused, of what is inferred from the lines that fail."""
         recognizer = finder.recognizer
         if self._corpus is None:
             self._corpus = CorpusLines(self.shown, recognizer.lexer)
@@ -183,14 +198,14 @@ class Induction:
         if inner:
             whole = self._with_literals(failures, recognizer)
             if whole is not None:
-                return whole
+                return [whole], []
         table = self._table(failures, keywords)
         lines = list(table)
         known = list(table.values())
         contexts = [finder.context(line.state) for line in known if line.state is not None]
-        blocks = [] if inner else self._blocks(corpus, keywords, recognizer)
         self._names = OperandRules(recognizer).names
-        prefixes = self._prefixes(corpus, keywords, recognizer)
+        prefixes = _prefixes(corpus, keywords, recognizer)
+        blocks = [] if inner else self._blocks(corpus, keywords, recognizer, prefixes)
         inference = Inference(recognizer, lines, contexts, blocks, prefixes)
         trial = EditTrial(recognizer, lines)
         rejected = self.negatives.rejected_by(recognizer)
@@ -200,7 +215,7 @@ class Induction:
             if self._names is None and any(
                 isinstance(e, AddAlternative) and e.rule == "name" for e in found.edits
             ):
-                return self._with_names(failures)
+                return [self._with_names()], []
             if found.edits in self.struck:
                 continue
             if found.is_block:
@@ -217,15 +232,13 @@ class Induction:
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
         taken, refused = self._chosen(scored, known, rejected, recognizer, origins)
         taken, lost = self._kept(taken, failures)
-        _, after = self._reading(apply(self.grammar, _joined(taken)))
+        _, after = self._failures_under(apply(self.grammar, _joined(taken)))
         if taken and _standing(after) <= _standing(failures):  # two forms may undo each other
             lost += [Refused(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken]
             taken = []
-        self.grammar = apply(self.grammar, _joined(taken))
-        held = [finder.find(file.text) for file in self.held]
-        return Round(_reading(failures), _reading(held), tuple(taken), (*lost, *refused))
+        return taken, [*lost, *refused]
 
-    def _reading(self, grammar: Grammar) -> tuple[FailureFinder, list[list[Failure]]]:
+    def _failures_under(self, grammar: Grammar) -> tuple[FailureFinder, list[list[Failure]]]:
         """The failures of all files shown; those of the grammar that was read last are kept."""
         if self._read is None or self._read[0] != grammar.sha256:
             finder = FailureFinder(Recognizer(grammar))
@@ -273,13 +286,16 @@ class Induction:
         return found
 
     def _blocks(
-        self, corpus: CorpusLines, keywords: WouldBeKeywords, recognizer: Recognizer
+        self,
+        corpus: CorpusLines,
+        keywords: WouldBeKeywords,
+        recognizer: Recognizer,
+        prefixes: frozenset[str],
     ) -> list[BlockLines]:
         lexer = recognizer.lexer
         name = lexer.kind_of.get("NAME")
         tokens = []
         leads = []
-        prefixes = self._prefixes(corpus, keywords, recognizer)
         for line in corpus.lines:
             meant = dict(keywords.in_line(line))
             lead = line[1] if len(line) > 1 and line[0] in prefixes else line[0]
@@ -297,29 +313,6 @@ class Induction:
         vocabulary = Vocabulary(recognizer)
         free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
         return find_blocks(files, free)
-
-    def _prefixes(
-        self, corpus: CorpusLines, keywords: WouldBeKeywords, recognizer: Recognizer
-    ) -> frozenset[str]:
-        """Words that may be missing at the head of a line: most lines go on as others begin."""
-        lexer = recognizer.lexer
-        name = lexer.kind_of.get("NAME")
-
-        def begun(words: Sequence[str]) -> tuple[object, ...]:
-            kinds = (lexer.kinds[word] for word in words[:_PREFIX_TOKENS])
-            return tuple(
-                w if k == name and w in keywords.words else k
-                for w, k in zip(words, kinds, strict=False)
-            )
-
-        beginnings = {begun(line) for line in corpus.lines}
-        whole: Counter[str] = Counter()
-        rest: Counter[str] = Counter()
-        for line in corpus.lines:
-            if line[0] in keywords.words or lexer.is_keyword(lexer.kinds[line[0]]):
-                whole[line[0]] += 1
-                rest[line[0]] += len(line) > 2 and begun(line[1:]) in beginnings
-        return frozenset(w for w, count in whole.items() if rest[w] > _PREFIX_SHARE * count)
 
     def _block_gain(
         self,
@@ -415,12 +408,12 @@ class Induction:
     ) -> str:
         """Why edits are not to be taken; empty where nothing speaks against them."""
         try:
-            wrong = problem(apply(grammar, edits))
+            after = apply(grammar, edits)
         except GrammarError as error:
             return str(error)
-        if apply(grammar, edits).rules == grammar.rules:
+        if after.rules == grammar.rules:
             return "changes nothing"
-        if wrong:
+        if wrong := problem(after):
             return f"the grammar would be ill formed: line {wrong}"
         wider = edited(recognizer, alone)
         if wider is None:
@@ -434,7 +427,7 @@ class Induction:
         self, taken: Sequence[Taken], failures: Sequence[Sequence[Failure]]
     ) -> tuple[list[Taken], list[Refused]]:
         """The steps without those under which a file fails earlier than it did."""
-        _, after = self._reading(apply(self.grammar, _joined(taken)))
+        _, after = self._failures_under(apply(self.grammar, _joined(taken)))
         worse = [p for p, found in enumerate(after) if _first(found) < _first(failures[p])]
         if not worse:
             return list(taken), []
@@ -473,8 +466,8 @@ class Induction:
 
     def _with_literals(
         self, failures: Sequence[Sequence[Failure]], recognizer: Recognizer
-    ) -> Round | None:
-        """A round that gives literals a form that the lexer cuts apart; ``None`` without any."""
+    ) -> Taken | None:
+        """A step that gives literals a form that the lexer cuts apart; ``None`` without any."""
         lines: list[tuple[str, frozenset[str]]] = []
         places: set[int] = set()
         for place, of_file in enumerate(failures):
@@ -496,11 +489,8 @@ class Induction:
         kept, _ = self._kept([step], failures)
         if not kept:
             return None
-        self.grammar = apply(self.grammar, step.edits)
         self._corpus = self._keywords = None
-        finder = FailureFinder(Recognizer(self.grammar))
-        held = [finder.find(file.text) for file in self.held]
-        return Round(_reading(failures), _reading(held), (step,), ())
+        return step
 
     # ---------------------------------------------------------------------------------------- names
 
@@ -515,8 +505,8 @@ class Induction:
             *(e for e in edits if not isinstance(e, AddToken)),
         )
 
-    def _with_names(self, failures: Sequence[Sequence[Failure]]) -> Round:
-        """A round that gives names a rule of their own, for words that are also names."""
+    def _with_names(self) -> Taken:
+        """A step that gives names a rule of their own, for words that are also names."""
         edits: list[Edit] = []
         last = ""
         for rule in self.grammar.rules:
@@ -530,15 +520,35 @@ class Induction:
                     elif isinstance(element, Repeat) and _is_name(element.item):
                         text = f"name{element.operator}"
                         edits.append(Replace(rule.name, (*address, place), text))
-        step = Taken(
+        return Taken(
             "names are a rule of their own",
             (AddRule(last, "name\n    : NAME\n    ;"), *edits),
             Evidence(0, 0, 0, ()),
         )
-        self.grammar = apply(self.grammar, step.edits)
-        finder = FailureFinder(Recognizer(self.grammar))
-        held = [finder.find(file.text) for file in self.held]
-        return Round(_reading(failures), _reading(held), (step,), ())
+
+
+def _prefixes(
+    corpus: CorpusLines, keywords: WouldBeKeywords, recognizer: Recognizer
+) -> frozenset[str]:
+    """Words that may be missing at the head of a line: most lines go on as others begin."""
+    lexer = recognizer.lexer
+    name = lexer.kind_of.get("NAME")
+
+    def begun(words: Sequence[str]) -> tuple[object, ...]:
+        kinds = (lexer.kinds[word] for word in words[:_PREFIX_TOKENS])
+        return tuple(
+            w if k == name and w in keywords.words else k
+            for w, k in zip(words, kinds, strict=False)
+        )
+
+    beginnings = {begun(line) for line in corpus.lines}
+    whole: Counter[str] = Counter()
+    rest: Counter[str] = Counter()
+    for line in corpus.lines:
+        if line[0] in keywords.words or lexer.is_keyword(lexer.kinds[line[0]]):
+            whole[line[0]] += 1
+            rest[line[0]] += len(line) > 2 and begun(line[1:]) in beginnings
+    return frozenset(w for w, count in whole.items() if rest[w] > _PREFIX_SHARE * count)
 
 
 def _first(failures: Sequence[Failure]) -> float:

@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from grammar.notation.addresses import sequences
-from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, walk
+from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, reached, walk
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.keywords import Vocabulary
 from recovery.proposals.rule_matcher import RuleMatcher
@@ -74,16 +74,7 @@ class OperandRules:
             }
             for rule in parser
         }
-        self.reaches = {name: self._closure(name) for name in self._called}
-
-    def _closure(self, name: str) -> frozenset[str]:
-        found: set[str] = set()
-        todo = [name]
-        while todo:
-            fresh = self._called.get(todo.pop(), set()) - found
-            found |= fresh
-            todo += fresh
-        return frozenset(found)
+        self.reaches = {name: frozenset(reached(self._called, name)) for name in self._called}
 
     @cached_property
     def names(self) -> str | None:

@@ -13,7 +13,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from math import log2
 
-from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    reached,
+)
 from recovery.ledger.lookahead import decisions, share_decided
 
 __all__ = ["MEANINGS", "metrics"]
@@ -125,9 +134,9 @@ def _effort(operators: Counter[str], operands: Counter[str]) -> float:
 
 def _structure(calls: Mapping[str, set[str]]) -> Mapping[str, float]:
     """What the calls between the rules say."""
-    reached = {name: _reached(calls, name) for name in calls}
+    found = {name: reached(calls, name) for name in calls}
     level = {  # a level is named by the first of its rules
-        name: next(m for m in calls if m == name or (m in reached[name] and name in reached[m]))
+        name: next(m for m in calls if m == name or (m in found[name] and name in found[m]))
         for name in calls
     }
     sizes = Counter(level.values())
@@ -140,7 +149,7 @@ def _structure(calls: Mapping[str, set[str]]) -> Mapping[str, float]:
         return 1 + max(map(height, below[of]), default=0)
 
     rules = len(calls)
-    pairs = sum(len(others - {name}) for name, others in reached.items())
+    pairs = sum(len(others - {name}) for name, others in found.items())
     return {
         "TIMP": 100 * (pairs - rules + 1) / (rules - 1) ** 2 if rules > 1 else 0.0,
         "CLEV": 100 * len(sizes) / rules,
@@ -148,13 +157,3 @@ def _structure(calls: Mapping[str, set[str]]) -> Mapping[str, float]:
         "DEP": max(sizes.values()),
         "HEI": max(map(height, sizes)),
     }
-
-
-def _reached(calls: Mapping[str, set[str]], name: str) -> set[str]:
-    seen: set[str] = set()
-    todo = [name]
-    while todo:
-        for called in calls[todo.pop()] - seen:
-            seen.add(called)
-            todo.append(called)
-    return seen

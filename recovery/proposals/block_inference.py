@@ -22,7 +22,7 @@ from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES, MOST_MIDDLES
 
-__all__ = ["Block", "BlockFinder"]
+__all__ = ["Block", "BlockFinder", "is_balanced"]
 
 
 _Line = tuple[str, tuple[Word, ...]]  # its leading word, its tokens without the line end
@@ -107,7 +107,7 @@ class BlockFinder:
             for w in leads
             if w in known or (not self.vocabulary.is_written(w) and self._is_word(w, files))
         ]
-        good = [w for w in free if _is_end(w) and all(_balanced(opener, w, f) for f in files)]
+        good = [w for w in free if _is_end(w) and all(is_balanced(opener, w, f) for f in files)]
         return min(good, key=lambda w: (w not in known, w != f"END{opener}", w), default=None)
 
     def _is_word(self, word: str, files: Sequence[Sequence[_Line]]) -> bool:
@@ -197,7 +197,7 @@ def _depths(opener: str, closer: str, lines: Sequence[_Line]) -> list[int]:
     return out
 
 
-def _balanced(opener: str, closer: str, lines: Sequence[_Line]) -> bool:
+def is_balanced(opener: str, closer: str, lines: Sequence[tuple[str, object]]) -> bool:
     """Whether each opener has its closer behind it."""
     depth = 0
     for lead, _ in lines:

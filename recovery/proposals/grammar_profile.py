@@ -23,6 +23,7 @@ from grammar.notation.model import (
     Reference,
     Repeat,
     Rule,
+    reached,
     walk,
 )
 from grammar.parser.recognizer import Recognizer
@@ -196,16 +197,10 @@ class GrammarProfile:
 
     @cached_property
     def _ancestors(self) -> dict[str, int]:
-        out = {}
-        for name in self.callers:
-            seen: set[str] = set()
-            todo = [name]
-            while todo:
-                for caller in self.callers[todo.pop()] - seen:
-                    seen.add(caller)
-                    todo.append(caller)
-            out[name] = round(WIDTH_PER_DOUBLING * math.log2(1 + len(seen)))
-        return out
+        return {
+            name: round(WIDTH_PER_DOUBLING * math.log2(1 + len(reached(self.callers, name))))
+            for name in self.callers
+        }
 
     @cached_property
     def callers(self) -> dict[str, set[str]]:
