@@ -30,6 +30,7 @@ help:
 	@echo 'make clean        remove .venv, caches and reports/out'
 
 setup: $(DEV)
+	@echo '$(VENV) is ready: make recover, make test, $(BIN)/krl --help'
 
 recover: $(BASE)
 	@$(BIN)/krl recover $(ARGS)
@@ -81,7 +82,7 @@ clean:
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
-	@echo 'building $(VENV) ...'
+	@echo 'building $(VENV): Python packages and, with a C compiler, the machine in C; one or two minutes, once'
 	@command -v $(PYTHON) >/dev/null || { echo 'make: $(PYTHON) not found; install Python 3.11 or later, or say make PYTHON=...' >&2; exit 2; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'make: $(PYTHON) is older than Python 3.11; say make PYTHON=...' >&2; exit 2; }
 	@test -x $(BIN)/pip || $(PYTHON) -m venv $(VENV) || { echo 'make: $(PYTHON) cannot build a virtual environment; on Debian, install python3-venv' >&2; exit 2; }
@@ -89,6 +90,7 @@ $(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
 	@touch $@
 
 $(DEV): $(BASE)
+	@echo 'adding what work on the project needs: tests, linters, the arm (some 600 MB); one to three minutes, once'
 	@$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@# Hypothesis works out its table of characters once here, not in each process of the tests (200 MB).
 	@$(BIN)/python -c 'from hypothesis import find, strategies; find(strategies.characters(), bool)'

@@ -1,5 +1,6 @@
 """The `krl` command: which commands there are. Each is in `krl.commands`."""
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -29,6 +30,7 @@ _COMMANDS: Final = {
     "disasm": "krl.commands.bytecode:disassemble_image",
     "robot": "krl.commands.robot:app",
     "run": "krl.commands.run:run",
+    "demo": "krl.commands.demo:demo",
     "lsp": "krl.commands.lsp:lsp",
     "nightly": "krl.commands.nightly:nightly",
 }
@@ -37,7 +39,6 @@ _COMMANDS: Final = {
 def app(*words: str) -> typer.Typer:
     """The command line. Where its first word is a command, no other is loaded: that takes time."""
     made = typer.Typer(
-        add_completion=False,
         context_settings={"help_option_names": ["-h", "--help"]},
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
@@ -71,6 +72,9 @@ def _krl(
     """Recover the grammar of the KUKA Robot Language from real controller source.
 
     Exit status: 0 fine, 1 findings, 2 wrong usage or unreadable input.
+
+    To begin: `krl demo` runs a program and opens its page; `krl check FOLDER` and
+    `krl recover FOLDER` take a backup of your own.
     """
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
@@ -79,4 +83,6 @@ def _krl(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
+    if "_KRL_COMPLETE" in os.environ:  # the shell asks what could be typed
+        app()(prog_name="krl")
     return errors.run(app(*given), given)

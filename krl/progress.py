@@ -27,6 +27,11 @@ class Bar:
         """Advance by `count`."""
         self._progress.advance(self._task, count)
 
+    def note(self, line: str) -> None:
+        """Say something above the bar, where there is a terminal."""
+        if not self._progress.disable:
+            self._progress.console.print(line, markup=False, highlight=False, soft_wrap=True)
+
     def expect(self, total: int) -> None:
         """Say how many there will be in all, once that is known."""
         self._progress.update(self._task, total=total)

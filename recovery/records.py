@@ -204,7 +204,10 @@ class StartRecord(_Counts):
 
 
 class SurveyRecord(_Counts):
-    """A survey; ``version``, ``generated`` and ``start`` are added by `krl recover`."""
+    """A survey; ``version``, ``generated`` and ``start`` are added by `krl recover`.
+
+    ``pending`` says what is still being computed; only the page that comes first has it.
+    """
 
     skipped: list[SkippedRecord]
     origins: list[OriginRecord]
@@ -214,6 +217,7 @@ class SurveyRecord(_Counts):
     version: NotRequired[str]
     generated: NotRequired[str]
     start: NotRequired[StartRecord]
+    pending: NotRequired[str]
 
 
 class StepRecord(ConstructRecord):

@@ -25,7 +25,7 @@ from recovery.records import (
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import Survey, SurveyedFile
 
-__all__ = ["record_of"]
+__all__ = ["record_of", "record_without_causes"]
 
 _EXAMPLES = 5
 _CONTEXT_LINES = 3
@@ -47,6 +47,20 @@ def record_of(
     recognizer = Recognizer(found.grammar)
     reviewer = Reviewer(found, clusters)
     reducer = Reducer(recognizer)
+    return {
+        **record_without_causes(found, grammar_name),
+        "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
+        "swallowed": [
+            {"word": one.word, "files": one.files, "origins": one.origins}
+            for one in reviewer.unreserved_keywords()
+        ],
+        "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
+        "failures": _failures(found, clusters, recognizer),
+    }
+
+
+def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
+    """What is known of a survey before causes are searched: no clusters, no failures."""
     files = found.files
     parsed = [f for f in files if not f.failures]
     return {
@@ -63,13 +77,10 @@ def record_of(
         ],
         "origins": _origins(files),
         "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
-        "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
-        "swallowed": [
-            {"word": one.word, "files": one.files, "origins": one.origins}
-            for one in reviewer.unreserved_keywords()
-        ],
-        "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
-        "failures": _failures(found, clusters, recognizer),
+        "greedy": [],
+        "swallowed": [],
+        "clusters": [],
+        "failures": [],
     }
 
 

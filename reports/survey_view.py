@@ -50,10 +50,12 @@ class Copies:
 class SurveyView:
     """The fixed parts of the page. ``state``: no-files, complete, unclustered or clusters.
 
-    ``start`` is the section of the restrictive start, where that was surveyed too.
+    ``start`` is the section of the restrictive start, where that was surveyed too; ``pending``
+    says what is still being computed, empty when nothing is.
     """
 
     state: str
+    pending: str
     grammar: str
     grammar_hash: str
     grammar_note: str
@@ -78,6 +80,7 @@ def survey_view(record: Record) -> SurveyView:
     made = [version and f"krl {version}", moment(text(record, "generated"))]
     return SurveyView(
         state=_state(record, clusters),
+        pending=printable(clip(text(record, "pending"), 400)),
         grammar=printable(clip(text(record, "grammar"), 400)),
         grammar_hash=printable(clip(text(record, "grammar_sha256"), 64)),
         grammar_note=printable(clip(text(record, "grammar_note"), 400)),

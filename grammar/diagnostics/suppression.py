@@ -105,7 +105,7 @@ def _codes(words: Iterable[str]) -> tuple[str, ...]:
     codes = [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
     for code in codes:
         if not _is_known(code):
-            raise ValueError(f"no code begins with {code}")
+            raise ValueError(f"no code begins with {code}; krl explain lists them")
     return tuple(codes)
 
 

@@ -10,7 +10,7 @@ import typer
 
 from krl.commands.recover_auto import recover_auto
 from krl.construct_ledger import expected_errors
-from krl.errors import FINDINGS, FINE, InputError
+from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
@@ -87,7 +87,6 @@ def recover(
     from grammar.notation.generate import GRAMMAR
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load
-    from reports.survey_page import write_survey_page
 
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
@@ -116,18 +115,16 @@ def recover(
         chosen = read_file(grammar or GRAMMAR)
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
         given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
-        surveyor = _Surveyor(roots, load(given) if given else (), out / "cache", jobs, scheduler)
+        surveyor = _Surveyor(roots, load(given) if given else (), out, jobs, scheduler)
         # where nothing has grown yet, the start is what is in force
         if grammar is None and start and restrictive.sha256 != chosen.sha256:
             ledger = Ledger.read(GRAMMAR.with_name("constructs"))
             steps = replay(restrictive, ledger.accepted)
             record = surveyor.record(chosen, name)
-            record["start"] = surveyor.start(restrictive, steps)
+            record["start"] = surveyor.start(record, restrictive, steps)
         else:
             record = surveyor.record(chosen, name)
-    record["version"] = metadata.version("krl-workbench")
-    record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
-    page = write_survey_page(record, out)
+    page = surveyor.write_page(record)
     write_json(record, out / "survey.json")
     write_json(record, json_file)
     print_survey(record, page)
@@ -135,36 +132,49 @@ def recover(
 
 
 class _Surveyor:
-    """Surveys the same files under one grammar and another, with progress bars."""
+    """Surveys the same files under one grammar and another, with progress bars.
+
+    The page is written as soon as there is a survey, before causes are searched.
+    """
 
     def __init__(
         self,
         roots: Sequence[Path],
         negatives: "Sequence[Negative]",
-        cache: Path,
+        out: Path,
         jobs: int | None,
         scheduler: str | None,
     ) -> None:
         self.roots = roots
         self.negatives = negatives
-        self.cache = cache
+        self.out = out
+        self.cache = out / "cache"
         self.jobs = jobs
         self.scheduler = scheduler
 
     def record(self, grammar: "Grammar", name: str) -> "SurveyRecord":
         """The record of the survey under a grammar."""
-        found = self._survey(grammar, "surveying")
-        return self._analysed(found, name, "finding causes")
+        from recovery.survey_record import record_without_causes
 
-    def start(self, grammar: "Grammar", steps: "LedgerSteps") -> "StartRecord":
-        """The same under the restrictive start, with what the constructs answered."""
+        found = self._survey(grammar, "surveying")
+        return self._analysed(found, name, "", record_without_causes(found, name))
+
+    def start(
+        self, record: "SurveyRecord", grammar: "Grammar", steps: "LedgerSteps"
+    ) -> "StartRecord":
+        """The same under the restrictive start, with what the constructs answered.
+
+        ``record`` is shown meanwhile.
+        """
         from recovery.analysis import with_answers
 
         found = self._survey(grammar, "surveying the start")
-        record = self._analysed(found, "grammar/preliminary.g4", "finding causes of the start")
+        begun = self._analysed(
+            found, "grammar/preliminary.g4", " under the restrictive start", record
+        )
         with progress_bar("finding answers") as bar:
             return with_answers(
-                record,
+                begun,
                 found,
                 steps,
                 jobs=self.jobs,
@@ -187,15 +197,35 @@ class _Surveyor:
                 on_done=bar,
             )
 
-    def _analysed(self, found: "Survey", name: str, label: str) -> "SurveyRecord":
+    def _analysed(
+        self, found: "Survey", name: str, where: str, shown: "SurveyRecord"
+    ) -> "SurveyRecord":
         from recovery.analysis import analyse
 
-        with progress_bar(label) as bar:
+        failing = sum(len(one.places) for one in found.files if one.failures)
+        pending = f"the causes of failures{where}, in {failing:,} files"
+        with progress_bar(f"finding causes{where}") as bar:
+
+            def begin(total: int) -> None:
+                page = self.write_page({**shown, "pending": pending})
+                bar.note(
+                    one_line(f"Page so far: {page}. Now {pending}: minutes, once; they are kept.")
+                )
+                bar.expect(total)
+
             return analyse(
                 found,
                 self.negatives,
                 grammar_name=name,
                 cache=self.cache,
-                on_found=bar.expect,
+                on_found=begin,
                 on_done=bar,
             )
+
+    def write_page(self, record: "SurveyRecord") -> Path:
+        """Write the page of a record, dated now; return where it is."""
+        from reports.survey_page import write_survey_page
+
+        record["version"] = metadata.version("krl-workbench")
+        record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
+        return write_survey_page(record, self.out)

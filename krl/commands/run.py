@@ -177,7 +177,9 @@ def run(
         if is_auto:
             script = Script.read(OPERATOR, _AUTO)
         else:
-            script = Script() if io_script is None else Script.read(_text(io_script))
+            script = (
+                Script() if io_script is None else Script.read(_text(io_script), str(io_script))
+            )
         if is_auto and io_script is None:
             typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
         _check_targets(trace, path, html, video, robot)

@@ -1,5 +1,6 @@
 """The command line as a whole."""
 
+import os
 import subprocess
 import sys
 from importlib import metadata
@@ -22,6 +23,29 @@ def test_help_lists_the_commands(arguments: list[str], capsys: pytest.CaptureFix
     assert 0 == main(arguments)
     said = capsys.readouterr().out
     assert all(f"\n  {command} " in said for command in ("recover", "growth", "corpus"))
+
+
+def test_the_shell_is_told_what_could_be_typed() -> None:
+    """Completion knows commands and their options."""
+    asked = {"_KRL_COMPLETE": "complete_bash", "COMP_CWORD": "2", "COMP_WORDS": "krl run --ro"}
+    command = [sys.executable, "-m", "krl"]
+    done = subprocess.run(
+        command, env=os.environ | asked, capture_output=True, text=True, check=False
+    )
+    assert (0, ["--routine", "--robot"]) == (done.returncode, done.stdout.split())
+
+
+def test_the_demonstration_writes_its_page_and_opens_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The arm is on it, and the program ran to its end."""
+    pytest.importorskip("mujoco")
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    page = tmp_path / "demo.html"
+    assert 0 == main(["demo", "--html", str(page)])
+    assert [page.as_uri()] == opened
+    assert "search_demo.src" in page.read_text(encoding="utf-8")
 
 
 def test_module_runs_as_the_command(tmp_path: Path) -> None:

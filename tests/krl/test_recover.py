@@ -432,6 +432,31 @@ def test_the_start_is_surveyed_beside_the_grammar_in_force(
     assert page.index('id="rows"') < page.index('id="start-rows"')
 
 
+@pytest.mark.usefixtures("grown")
+def test_the_page_comes_before_the_causes(
+    corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It says what is still being computed, once for each grammar; what is kept is not awaited."""
+    shown: list[tuple[str | None, int, int]] = []
+
+    def write(record: dict[str, Any], folder: Path) -> Path:
+        pending = record.get("pending")
+        shown.append((pending, len(record["clusters"]), len(record.get("start", ()))))
+        return folder / "index.html"
+
+    monkeypatch.setattr("reports.survey_page.write_survey_page", write)
+    given = ["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert 0 == main(given)
+    assert [
+        ("the causes of failures, in 1 files", 0, 0),
+        ("the causes of failures under the restrictive start, in 4 files", 1, 0),
+    ] == shown[:2]
+    assert (None, 1) == shown[2][:2]
+    assert 3 == len(shown)
+    assert 0 == main(given)
+    assert shown[2:3] == shown[3:]
+
+
 @pytest.mark.parametrize("given", [["--no-start"], ["--grammar", "{grown}/KRL.g4"]])
 def test_the_start_can_be_left_out(
     given: list[str], grown: Path, corpus: Path, tmp_path: Path

@@ -92,6 +92,15 @@ def test_where_nothing_is_missing_the_start_is_told(
     assert 3 == page.count('<td class="answer dim">nothing yet</td>')
 
 
+def test_what_is_still_computed_is_said(survey_record: RecordBuilder, tmp_path: Path) -> None:
+    """A page without clusters whose causes are yet to come says so, and nothing of a bad record."""
+    record = survey_record("believable") | {"clusters": [], "greedy": []}
+    assert "No clusters in this record" in _page(record, tmp_path)
+    page = _page(record | {"pending": "the causes, in 7 files"}, tmp_path)
+    assert "What is missing here: the causes, in 7 files." in page
+    assert "No clusters in this record" not in page
+
+
 def test_failures_in_force_come_before_those_of_the_start(
     survey_record: RecordBuilder, tmp_path: Path
 ) -> None:

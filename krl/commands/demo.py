@@ -1,0 +1,45 @@
+"""`krl demo`: a run of the program that comes along, and its page."""
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from krl.commands.run import Robot, run
+from krl.errors import InputError, one_line
+
+__all__ = ["demo"]
+
+_NAME, _SUBMIT = "search_demo", "count_parts"
+#: In an installed package, and in a checkout.
+_PLACES = (
+    Path(__file__).parents[1] / _NAME,
+    Path(__file__).parents[2] / "corpus" / "programs" / _NAME,
+)
+
+
+def demo(
+    html: Annotated[Path, typer.Option(metavar="FILE", help="Where the page goes.")] = Path(
+        "krl-demo.html"
+    ),
+    opened: Annotated[
+        bool, typer.Option("--open/--no-open", help="Open the page in the browser.")
+    ] = True,
+) -> int:
+    """Run a program that searches for parts by touch and carries them, and open its page.
+
+    An arm with six axes in MuJoCo, inputs from a script; some seconds. The page shows the arm in
+    motion, the line that is executed, signals and axes over time.
+    """
+    folder = next((place for place in _PLACES if place.is_dir()), None)
+    if folder is None:
+        raise InputError("the program of the demonstration is missing: install the package again")
+    program = folder / "R1" / "Program" / f"{_NAME}.src"
+    script = program.with_suffix(".io")
+    words = f"krl run {program} --robot mujoco --io {script} --submit {_SUBMIT} --html {html}"
+    typer.echo(one_line(words), err=True)
+    status = run(program, robot=Robot.MUJOCO, io_script=script, submit=_SUBMIT, html=html)
+    if opened:
+        webbrowser.open(html.absolute().as_uri())
+    return status
