@@ -1,14 +1,17 @@
 """Where a command writes: checked before the work, written whole or not at all."""
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from krl.errors import InputError
 from support.files.atomic_write import write_atomic
 
-__all__ = ["check_files", "check_targets", "write_json"]
+__all__ = ["check_files", "check_targets", "json_text", "write_json"]
+
+_NOT_ASCII: Final = re.compile(r"[^\n\x20-\x7e]")
 
 
 def check_targets(out: Path, json_file: Path | None) -> None:
@@ -36,6 +39,15 @@ def write_json(record: Mapping[str, Any], target: Path | None, indent: int | Non
     """Write ``record``, if there is a target, on one line or with so many blanks a level."""
     if target is None:
         return
-    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent) + "\n"
-    # half of a character, which names of files may hold, is an escape of JSON then
-    write_atomic(target, text.encode(errors="backslashreplace"))
+    write_atomic(target, json_text(record, indent) + "\n")
+
+
+def json_text(record: Any, indent: int | None = None) -> str:
+    """The record as JSON that steers no terminal: what is not printable is escaped."""
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
+    return _NOT_ASCII.sub(_escaped, text)
+
+
+def _escaped(found: re.Match[str]) -> str:
+    char = found[0]
+    return char if char.isprintable() else json.dumps(char)[1:-1].replace("\x7f", "\\u007f")

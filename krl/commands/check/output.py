@@ -1,18 +1,18 @@
 """Findings as they are written: text for people, and forms that other tools read."""
 
 import io
-import json
 import re
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
 from krl.errors import one_line
+from krl.output_files import json_text
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ __all__ = ["Format", "sum_up", "write"]
 
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
-_NOT_ASCII = re.compile(r"[^\n\x20-\x7e]")
 _COMMANDS_OF_GITHUB = {"error": "error", "warning": "warning", "note": "notice"}
 #: What XML cannot have, not even as an escape.
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -73,24 +72,13 @@ def _written(
                 kept, lambda path, number: report.lines.get((path, number), ""), is_verbose
             )
         case Format.JSON:
-            yield _json(records(kept))
+            yield json_text(records(kept), indent=1)
         case Format.SARIF:
-            yield _json(sarif(kept, metadata.version("krl-workbench")))
+            yield json_text(sarif(kept, metadata.version("krl-workbench")), indent=1)
         case Format.GITHUB:
             yield from map(_github, in_order(kept))
         case Format.JUNIT:
             yield _junit(in_order(kept), report.paths)
-
-
-def _json(record: Any) -> str:
-    """The record as JSON that steers no terminal: what is not printable is escaped."""
-    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-    return _NOT_ASCII.sub(_shown, text)
-
-
-def _shown(found: re.Match[str]) -> str:
-    char = found[0]
-    return char if char.isprintable() else json.dumps(char)[1:-1].replace("\x7f", "\\u007f")
 
 
 def _said(found: "Diagnostic") -> str:
