@@ -159,6 +159,7 @@ def _strays(cases: Sequence[Case], root: Path) -> Iterator[str]:
     """Files that belong to no case."""
     used = {case.path for case in cases}
     used |= {case.path.with_name(source.path) for case in cases for source in case.sources}
+    used |= {case.path.with_name(case.machine) for case in cases if case.machine}
     for path in sorted(root.rglob("*")):
         if path.suffix.lower() in ENDINGS and path.is_file() and path not in used:
             yield f"{path.relative_to(root).as_posix()}: it belongs to no case"

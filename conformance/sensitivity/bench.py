@@ -132,6 +132,7 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
                 "why": one.why,
                 "reached": one.reached,
                 "runs": one.runs,
+                "changed": one.changed,
             }
             for one in every
         ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,14 +13,17 @@ from importlib import import_module
 from types import FrameType
 from typing import Any, Final
 
+import numpy as np
+
 from conformance.evaluation.execution import Setup
+from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity.mutants import modules
 from conformance.suite.case import Case
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["Reach", "reach_of"]
+__all__ = ["Reach", "reach_of", "seen_digest"]
 
 #: So many cases go to a process at once.
 _SHARE: Final = 16
@@ -27,11 +31,15 @@ _SHARE: Final = 16
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What a case runs: lines by module, and ``cost``, how many in all, one by one."""
+    """What a case runs: lines by module, and ``cost``, how many in all, one by one.
+
+    ``seen`` tells what was seen of it from anything else (`seen_digest`).
+    """
 
     case: Case
     lines: Mapping[str, frozenset[int]]
     cost: int
+    seen: str = ""
 
     def has(self, module: str, lines: frozenset[int]) -> bool:
         """Whether the case runs one of these lines of a module."""
@@ -60,13 +68,22 @@ def _reached(cases: Sequence[Case], setup: Setup) -> list[Reach]:
 
 def _reach(case: Case, setup: Setup) -> Reach | None:
     with _counted() as counts:
-        verdict = run_case(case, [setup], KnownFailures()).verdict
-    if verdict != "pass":
+        (result,) = run_case(case, [setup], KnownFailures()).results
+    if result.verdict != "pass" or result.observation is None:
         return None
     lines: dict[str, set[int]] = {}
     for file, line in counts:
         lines.setdefault(_modules_by_file()[file], set()).add(line)
-    return Reach(case, {name: frozenset(one) for name, one in lines.items()}, counts.total())
+    reached = {name: frozenset(one) for name, one in lines.items()}
+    return Reach(case, reached, counts.total(), seen_digest(result.observation))
+
+
+def seen_digest(seen: Observation) -> str:
+    """SHA-256 of all events, the ending, and the path to a ten-millionth of a degree."""
+    found = hashlib.sha256(repr((seen.events, seen.ending)).encode())
+    if seen.path is not None:
+        found.update((np.round(seen.path.axes, 7) + 0.0).tobytes())
+    return found.hexdigest()
 
 
 @contextmanager

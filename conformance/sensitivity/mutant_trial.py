@@ -2,7 +2,8 @@
 
 Each mutant has a process of its own, a copy of one that has everything loaded, so that nothing it
 does outlives it. It is tried on the cases that run one of its lines, until one fails. A case that
-takes many times as long as any should has failed too.
+takes many times as long as any should has failed too, and so has one on which the machine in C, of
+which the mutant is no part, does something else than the tree interpreter.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Final, Literal, NoReturn
 
-from conformance.evaluation.execution import Setup
+from conformance.evaluation.execution import Setup, missing
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.line_reach import Reach, reach_of
+from conformance.sensitivity.line_reach import Reach, reach_of, seen_digest
 from conformance.sensitivity.mutants import (
     InvalidMutant,
     Mutant,
@@ -37,11 +38,15 @@ from support.parallel.ordered_map import ordered_map
 
 __all__ = ["MOST", "Fate", "Trial", "equivalent", "is_possible", "reaches_of", "try_mutants"]
 
-#: Red: a case has failed. Soft: only cases whose rules may not fail have noticed. Equivalent: none
+#: Red: a case has failed, or executors differ on it. Soft: only cases whose rules may not fail have
+#: noticed. Equivalent: none
 #: can, and ``equivalent.toml`` says why. Invalid: it could not be put in place.
 Fate = Literal["red", "soft", "survived", "equivalent", "invalid"]
 
 _SETUP: Final = Setup("tree", "kinematic")
+_IN_C: Final = Setup("native", "kinematic")
+#: Packages of which the machine in C has its own: it is run beside the tree interpreter.
+_APART: Final = ("values", "tree")
 _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: So many cases that may fail are run with a mutant that none of them notices.
 MOST: Final = 60
@@ -56,7 +61,8 @@ class Trial:
     """What became of a mutant.
 
     ``case`` is the one that noticed it, ``why`` what it said, or why none can. ``reached`` is how
-    many cases run its lines, ``runs`` how many were run.
+    many cases run its lines, ``runs`` how many were run. ``changed`` is the first that did
+    something else with it, whether it noticed that or not.
     """
 
     mutant: Mutant
@@ -65,6 +71,7 @@ class Trial:
     why: str = ""
     reached: int = 0
     runs: int = 0
+    changed: str = ""
 
 
 def is_possible() -> bool:
@@ -126,24 +133,26 @@ def equivalent() -> Mapping[tuple[str, ...], str]:
     return {tuple(row[key] for key in keys): row["reason"] for row in rows}
 
 
-def _that_may_notice(mutant: Mutant, reaches: Sequence[Reach]) -> tuple[Case, ...]:
+def _that_may_notice(mutant: Mutant, reaches: Sequence[Reach]) -> tuple[Reach, ...]:
     uses = uses_of(mutant)
     return tuple(
-        one.case for one in reaches if any(one.has(module, lines) for module, lines in uses.items())
+        replace(one, lines={})  # they are large, and no longer needed
+        for one in reaches
+        if any(one.has(module, lines) for module, lines in uses.items())
     )
 
 
 # ------------------------------------------------------------------------- one mutant, one process
 
 
-def _tried(mutant: Mutant, cases: tuple[Case, ...], most: int) -> Trial:
+def _tried(mutant: Mutant, cases: tuple[Reach, ...], most: int) -> Trial:
     """Try a mutant in a copy of this process; what it told last is what became of it."""
     trial = Trial(mutant, "survived")
     if not any(uses_of(mutant).values()):
         return replace(trial, fate="invalid", why="it is used only while modules are loaded")
     if not cases:
         return trial
-    _load(cases[0])
+    _load(cases[0].case)
     reading, writing = os.pipe()
     child = os.fork()
     if not child:
@@ -169,7 +178,7 @@ def _load(case: Case) -> None:
         _loaded().append(run_case(case, [_SETUP]).verdict)
 
 
-def _in_copy(mutant: Mutant, cases: Sequence[Case], most: int, pipe: int) -> NoReturn:
+def _in_copy(mutant: Mutant, cases: Sequence[Reach], most: int, pipe: int) -> NoReturn:
     warnings.simplefilter("ignore")  # of computing with what a mutant has made
     try:
         with os.fdopen(pipe, "wb", buffering=0) as told:
@@ -180,45 +189,61 @@ def _in_copy(mutant: Mutant, cases: Sequence[Case], most: int, pipe: int) -> NoR
         os._exit(1)
 
 
-def _trials(mutant: Mutant, cases: Sequence[Case], most: int) -> Iterator[Trial]:
+def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial]:
     """Before each case what is true if it ends the process, and at the end what became of it."""
     import resource  # not on every system
 
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
     signal.signal(signal.SIGPROF, _end_case)
-    reached, runs = len(cases), 0
+    reached, runs, changed = len(cases), 0, ""
+    setups = [_SETUP]
+    if mutant.package in _APART and not missing(_IN_C):
+        setups.append(_IN_C)
     try:
         with put_in_place(mutant):
-            for runs, case in enumerate(_some(cases, most), 1):
+            for runs, one in enumerate(_some(cases, most), 1):
+                case = one.case
                 fate: Fate = "red" if case.may_fail else "soft"
                 yield Trial(mutant, fate, case.name, "the process ended", reached, runs)
-                why = _why_failed(case, _SETUP)
-                if why:
-                    yield Trial(mutant, fate, case.name, why, reached, runs)
+                verdict, why, seen = _noticed(case, setups)
+                changed = changed or (case.name if seen != one.seen else "")
+                if verdict:
+                    fate = verdict if verdict == "red" else fate
+                    yield Trial(mutant, fate, case.name, why, reached, runs, changed)
                     return
-            yield Trial(mutant, "survived", "", "", reached, runs)
+            yield Trial(mutant, "survived", "", "", reached, runs, changed)
     except InvalidMutant as error:
         yield Trial(mutant, "invalid", "", str(error), reached)
 
 
-def _some(cases: Sequence[Case], most: int) -> Iterator[Case]:
+def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
     """The first so many that may fail, and of the others a tenth as many."""
-    hard = [case for case in cases if case.may_fail]
+    hard = [one for one in cases if one.case.may_fail]
     yield from hard[:most]
-    yield from [case for case in cases if not case.may_fail][: max(1, most // 10)]
+    yield from [one for one in cases if not one.case.may_fail][: max(1, most // 10)]
 
 
-def _why_failed(case: Case, setup: Setup) -> str:
-    """Why a case does not pass with a mutant in place; empty where it does."""
-    signal.setitimer(signal.ITIMER_PROF, _SECONDS)
+def _noticed(case: Case, setups: Sequence[Setup]) -> tuple[Literal["red", "noticed", ""], str, str]:
+    """Whether a case notices the mutant that is in place, why, and the digest of what was seen.
+
+    Red, whatever the case: executors differ.
+    """
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS * len(setups))
     try:
-        results = run_case(case, [setup], KnownFailures()).results
+        results = run_case(case, setups, KnownFailures()).results
     except _TimeOver:
-        return f"more than {_SECONDS} seconds of computing"
+        return "noticed", f"more than {_SECONDS * len(setups)} seconds of computing", ""
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
-    bad = (one.reason for one in results if one.verdict not in ("pass", "skipped"))
-    return next(bad, "" if any(one.verdict == "pass" for one in results) else "it was skipped")
+    seen = results[0].observation
+    digest = seen_digest(seen) if seen else ""
+    for one in results:
+        if one.divergence is not None:
+            return "red", one.reason, digest
+        if one.verdict not in ("pass", "skipped"):
+            return "noticed", one.reason, digest
+    is_seen = any(one.verdict == "pass" for one in results)
+    return ("", "", digest) if is_seen else ("noticed", "it was skipped", digest)
 
 
 class _TimeOver(BaseException):

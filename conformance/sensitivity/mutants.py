@@ -40,9 +40,12 @@ __all__ = [
     "uses_of",
 ]
 
-#: What decides semantics, by the name under which it is reported: modules, and those left out.
+#: What decides semantics, by the name under which it is reported: modules, and those left out. Left
+#: out is what no program of KRL can tell apart: how a run is fed, recorded and shown, what another
+#: caller than a controller uses, and what only one of the robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
-    "values": (("interp.values.*",), ()),
+    # left out: how values are written in traces
+    "values": (("interp.values.*",), ("interp.values.json_form",)),
     "tree": (("interp.tree.*",), ()),
     # left out: the cell around the controller, and how a run is recorded
     "controller": (
@@ -55,7 +58,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.trace",
         ),
     ),
-    # left out: files of machine data, and planning in batches, which is there to be compared with
+    # left out: files of machine data and torques; motions written in Python, and planning in
+    # batches, which is there to be compared with
     "robot": (
         (
             "interp.robot.path.*",
@@ -66,7 +70,9 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ),
         (
             "interp.robot.api.batch",
+            "interp.robot.api.motions",
             "interp.robot.kinematics.data_list",
+            "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
         ),
     ),

@@ -9,13 +9,16 @@ constant     a number more or less by one, a truth value inverted
 statement    a call, an assignment to a part, ``raise``, ``break``, ``continue`` left out
 ============ ==================================================================
 
-Texts, annotations, assertions, defaults of parameters and class bodies are left as they are: they
-decide nothing, or what they have decided cannot be replaced in a module that is loaded.
+A ``raise`` is left out where a program of KRL can come to it: a fault, or that it cannot be linked.
+What tells a caller in Python of its mistake is left as it is. Texts, annotations, assertions,
+defaults of parameters and class bodies are left as they are: they decide nothing, or what they have
+decided cannot be replaced in a module that is loaded.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
@@ -59,6 +62,10 @@ _ARITHMETIC: Final[Mapping[type[ast.operator], type[ast.operator]]] = {
 #: A float from here on is doubled instead: one more or less would be lost in rounding.
 _LARGE: Final = 100.0
 _COMPOUND: Final = (ast.If, ast.While, ast.For, ast.With, ast.Try, ast.Match)
+#: Exceptions that tell a caller in Python of its mistake.
+_OWN_MISTAKE: Final = re.compile(
+    r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented)Error\b"
+)
 #: Fields that are not searched for changes.
 _LEFT_OUT: Final = frozenset({"decorator_list", "annotation", "returns", "ctx"})
 
@@ -268,8 +275,10 @@ def _is_droppable(node: ast.stmt) -> bool:
     match node:
         case ast.Expr(value):
             return isinstance(value, ast.Call | ast.Yield | ast.YieldFrom)
-        case ast.AugAssign() | ast.Raise() | ast.Break() | ast.Continue() | ast.Delete():
+        case ast.AugAssign() | ast.Break() | ast.Continue() | ast.Delete():
             return True
+        case ast.Raise(exc):
+            return exc is None or not _OWN_MISTAKE.match(ast.unparse(exc))
         case ast.Assign(targets):
             parts = [part for one in targets for part in _parts(one)]
             return all(isinstance(part, ast.Attribute | ast.Subscript) for part in parts)

@@ -40,6 +40,7 @@ _KEYS: Final = (
     "io",
     "robot",
     "with",
+    "machine",
     "seconds",
     "unconfirmed",
 )
@@ -60,6 +61,7 @@ class Case:
     ``name`` is ``suite/stem``. ``sources`` are its files, the one it begins with first; their paths
     are names without folders. ``rules`` are IDs, the first is the one it states. ``seconds`` is how
     much virtual time it has. ``unconfirmed`` is why its reading is ours although its rule is sure.
+    ``machine`` is the file beside it that is among its sources as ``$machine.dat``.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Case:
     robot: str = "none"
     seconds: float = 60.0
     unconfirmed: str = ""
+    machine: str = ""
 
     @property
     def suite(self) -> str:
@@ -180,7 +183,10 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     phase = next((one for one in PHASES if one == wanted), None)
     if phase is None:
         raise CaseError(f"{path}: the phase is parse, check or run, not {wanted!r}")
+    machine = front.get("machine", [""])[0]
     sources = (source, *_companions(path, front.get("with", [""])[0]))
+    if machine:
+        sources = (*sources, Source(_beside(path, machine).text, "$machine.dat"))
     expectations = tuple(one for each in sources for one in _expectations(each, path))
     if not expectations:
         raise CaseError(f"{path}: it expects nothing")
@@ -202,6 +208,7 @@ def read_case(path: Path, root: Path = CASES) -> Case:
         robot=front.get("robot", ["none"])[0],
         seconds=seconds,
         unconfirmed=front.get("unconfirmed", [""])[0],
+        machine=machine,
     )
 
 
@@ -232,9 +239,14 @@ def _companions(path: Path, named: str) -> Iterator[Source]:
     wanted = [path.with_name(name) for name in names]
     yield from (_read(one) for one in wanted if one.is_file() and not _is_case(one))
     for name in filter(None, (word.strip() for word in named.split(","))):
-        if not re.fullmatch(r"[$\w][\w.-]*", name) or not path.with_name(name).is_file():
-            raise CaseError(f"{path}: {name!r} is not beside it")
-        yield _read(path.with_name(name))
+        yield _beside(path, name)
+
+
+def _beside(path: Path, name: str) -> Source:
+    """A file of the folder of a case, by its name; raises `CaseError` where it is not there."""
+    if not re.fullmatch(r"[$\w][\w.-]*", name) or not path.with_name(name).is_file():
+        raise CaseError(f"{path}: {name!r} is not beside it")
+    return _read(path.with_name(name))
 
 
 def _expectations(source: Source, path: Path) -> Iterator[Expectation]:

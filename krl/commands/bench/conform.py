@@ -110,7 +110,7 @@ def _mutants(
 
 def _rows(drawn: Mapping[str, Any]) -> str:
     """The mutants that no case has failed with, a line each."""
-    keys = ("fate", "file", "line", "function", "was", "now", "case", "reached", "why")
+    keys = ("fate", "file", "line", "function", "was", "now", "case", "reached", "changed", "why")
     rows = [one for one in drawn.get("trials", ()) if one["fate"] not in ("red", "invalid")]
     lines = sorted({"\t".join(str(one[key]) for key in keys) for one in rows})
     return "\n".join(["\t".join(keys), *lines, ""])
