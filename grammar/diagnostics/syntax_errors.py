@@ -20,7 +20,6 @@ from grammar.diagnostics.line_edits import (
     LineEdit,
     bracket,
     doubled,
-    is_one_slip,
     keyword,
     left_out,
 )
@@ -187,19 +186,6 @@ def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
         slug="endloop-missing" if block.word == "LOOP" else "syntax",
         region=region,
     )
-
-
-def _misspelt_closer(site: ErrorSite, block: OpenBlock) -> _Mistake | None:
-    """A line behind a block that consists of its closer but for a letter."""
-    last = min(site.failure.line, len(site.source.lines))
-    for number in range(last, block.line, -1):
-        word = site.source.line(number).partition(";")[0].strip()
-        if is_one_slip(word.upper(), block.closer) and word.upper() not in CLOSERS:
-            column = site.source.line(number).index(word) + 1
-            region = Region(number, column, number, column + len(word))
-            fix = Fix(f"did you mean {block.closer}?", region, block.closer)
-            return _Mistake(f"{word} is no word of KRL", fix, region=region)
-    return None
 
 
 def _end_in_two_words(site: ErrorSite) -> _Mistake | None:

@@ -30,7 +30,6 @@ __all__ = [
     "ptp_target",
     "singularities",
     "solve",
-    "solve_many",
     "turn_of",
 ]
 
@@ -135,17 +134,6 @@ def solve(
     """
     ways = arm.inverse(matrix_of(flange)) if flange.is_finite else np.empty((0, 6))
     return _choose(arm, ways, status, turn, start, preference)
-
-
-def solve_many(
-    arm: Kinematics, flanges: npt.ArrayLike, statuses: Sequence[int], turns: Sequence[int]
-) -> list[Solution]:
-    """`solve` for poses of the flange ``(n, 4, 4)``, each with its Status and Turn."""
-    ways = arm.inverse(flanges)
-    return [
-        _choose(arm, way, status, turn, None, TargetStatus.SOURCE)
-        for way, status, turn in zip(ways, statuses, turns, strict=True)
-    ]
 
 
 def ptp_target(
