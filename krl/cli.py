@@ -9,6 +9,7 @@ from typing import Annotated, Final
 import typer
 
 from krl import errors
+from krl.extras import hiding_package
 
 __all__ = ["app", "main"]
 
@@ -83,6 +84,9 @@ def _krl(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
+    if hiding := hiding_package():
+        sys.stderr.write(f"krl: {errors.one_line(hiding)}\n")
+        return errors.BAD_INPUT
     if "_KRL_COMPLETE" in os.environ:  # the shell asks what could be typed
         app()(prog_name="krl")
     return errors.run(app(*given), given)

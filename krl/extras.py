@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
+from pathlib import Path
 
 from krl.errors import InputError
 
-__all__ = ["ARM", "expected_extras", "need"]
+__all__ = ["ARM", "expected_extras", "hiding_package", "need"]
 
 _EXTRA_OF = {
     "junitparser": "records",
@@ -22,6 +23,7 @@ _EXTRA_OF = {
     "watchfiles": "watch",
 }
 
+_OURS = ("conformance", "grammar", "interp", "recovery", "reports", "support")
 
 #: Packages that the arm imports when it first needs them, which would be in the midst of work.
 ARM = ("py_opw_kinematics", "scipy")
@@ -42,6 +44,20 @@ def expected_extras(*names: str) -> Iterator[None]:
         if name not in _EXTRA_OF:
             raise
         raise _refused(name) from error
+
+
+def hiding_package() -> str | None:
+    """What to say where another installed package hides one of ours: the names are common words."""
+    home = Path(__file__).parents[1]
+    for name in _OURS:
+        spec = find_spec(name)
+        found = Path((spec and spec.origin) or "nowhere").parent
+        if found != home / name:
+            return (
+                f"{name} should be {home / name} and is {found}, of another project: install "
+                "krl-workbench into an environment of its own, as `uv tool` and pipx do"
+            )
+    return None
 
 
 def need(name: str) -> None:

@@ -56,6 +56,17 @@ def test_module_runs_as_the_command(tmp_path: Path) -> None:
     assert "krl: no corpus folder here: run this in a checkout of the workbench\n" == done.stderr
 
 
+def test_a_package_of_the_same_name_is_named(tmp_path: Path) -> None:
+    """Where another project's `grammar` is found first, one line says so."""
+    other = tmp_path / "grammar"
+    other.mkdir()
+    (other / "__init__.py").touch()
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from krl.cli import main; main([])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ("", 1) == (done.stdout, len(done.stderr.splitlines()))
+    assert f"and is {other}, of another project" in done.stderr
+
+
 def test_start_is_quick() -> None:
     """Asking for help loads none of the rooms nor their parsers."""
     program = (
