@@ -21,7 +21,6 @@ from interp.port.requests import Value
 from interp.program.load import CheckedProgram, Limits
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import DataListError
 from interp.robot.kinematics.dynamics_data import with_torques
 from interp.robot.kinematics.machine_data import (
@@ -29,10 +28,9 @@ from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,
     read_machine,
-    with_axis_limits_of,
 )
 from interp.robot.models import default_machine, model_file
-from interp.robot.models.stand_in import fitting_arm
+from interp.robot.models.stand_in import arm_or_stand_in, machine_data_of, understood
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.factory import RobotName, make_robot
 from interp.robot.simulation.observations import Observation, Observer
@@ -145,10 +143,11 @@ def run_program(
     elif setup.machine is not None:
         machine = setup.machine
     elif setup.is_tolerant:
-        machine, note = _machine_or_other(program, profile)
+        sources = _own_sources(program)
+        machine, note = arm_or_stand_in(sources, _machine_of(profile))
         starts = [program.start(prepared.routine)]
         starts += [program.start(setup.submit)] if setup.submit else []
-        is_other = bool(note) and _machine_data(program) is not None
+        is_other = bool(note) and machine_data_of(sources) is not None
         is_tolerant = is_other or bool(program.used_stand_ins(*starts))
         profile = replace(profile, is_tolerant=is_tolerant)
     else:
@@ -241,31 +240,10 @@ def submit_of(program: CheckedProgram) -> str | None:
     return None
 
 
-def _machine_or_other(program: CheckedProgram, profile: Profile) -> tuple[MachineData, str]:
-    """The arm of the project's own machine data, else one in its place and why."""
-    source = _machine_data(program)
-    if source is None:
-        units = [unit for unit in program.units.values() if unit.module.folder != FOLDER]
-        lists = [unit.source.text for unit in units if unit.module.suffix == ".dat"]
-        programs = [unit.source.text for unit in units if unit.module.suffix != ".dat"]
-        machine = fitting_arm(machine_of_program(program, profile), programs, lists)
-        return machine, f"no machine data of an arm: {machine.name} stands in"
-    try:
-        return _understood(source), ""
-    except (DataListError, MachineDataError) as error:
-        machine = default_machine()
-        note = f"{error}: {machine.name} stands in"
-        return with_axis_limits_of(machine, source.text, source.path), note
-
-
-def _understood(source: Source) -> MachineData:
-    """The arm of machine data, whose kinematics can be solved."""
-    machine = read_machine(source.text, source.path)
-    try:
-        kinematics_of(machine)
-    except MachineDataError as error:
-        raise MachineDataError(f"{source.path}: {error}") from error
-    return machine
+def _own_sources(program: CheckedProgram) -> list[Source]:
+    """The files of the project itself, without those that stand in."""
+    units = program.units.values()
+    return [unit.source for unit in units if unit.module.folder != FOLDER]
 
 
 def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[MachineData, str]:
@@ -279,26 +257,22 @@ def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[Machin
     return machine, ""
 
 
-def _machine_data(program: CheckedProgram) -> Source | None:
-    for unit in program.units.values():
-        module = unit.module
-        is_machine = module.name == "$MACHINE" and module.suffix == ".dat"
-        if is_machine and "$LENGTH_A" in unit.source.text.upper():
-            return unit.source
-    return None
-
-
 def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData:
     """The arm of the project's own machine data, else that of the profile.
 
     Raises `LinkError` where the project has machine data of an arm that is not understood.
     """
-    source = _machine_data(program)
+    source = machine_data_of(_own_sources(program))
     if source is not None:
         try:
-            return _understood(source)
+            return understood(source)
         except (DataListError, MachineDataError) as error:
             raise LinkError(str(error)) from error
+    return _machine_of(profile)
+
+
+def _machine_of(profile: Profile) -> MachineData:
+    """The arm that a profile names. Raises `LinkError` where there is none."""
     if profile.machine == default_machine().name.lower():
         return default_machine()
     path = model_file(f"{profile.machine}.dat")

@@ -5,13 +5,14 @@ waits after 1`` stands for all of them: once the robot's program has waited so l
 inputs that its condition has read change one at a time, a cycle each, through all their
 combinations, beginning with the one it read first. Inputs that a script sets itself stay as they
 are. Where no combination makes the condition TRUE, they end as they began, and the program goes on
-waiting.
+waiting. Flags that nothing has set by five times then are set by an option package, for a message
+that has come for instance: they change like inputs, but last.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import islice
+from collections import deque
+from collections.abc import Iterator
 from typing import Final
 
 from interp.controller.input_script import Assign, Script
@@ -31,6 +32,11 @@ fulfil waits after 1
 
 #: More inputs than these are not tried: there would be too many combinations.
 _MOST: Final = 10
+#: So many times as long as inputs do flags stay as they are: mostly the program sets them itself.
+_PATIENCE: Final = 5
+
+#: ``$IN`` or ``$FLAG``, and a number.
+_Place = tuple[str, int]
 
 
 class AutomaticInputs:
@@ -42,9 +48,9 @@ class AutomaticInputs:
         actions = (action for step in script.steps for action in step.actions)
         paths = [action.path for action in actions if isinstance(action, Assign)]
         self._scripted = frozenset(place for path in paths for place in _places(path))
-        self._read: dict[int, None] = {}
+        self._read: dict[_Place, None] = {}
         self._since: tuple[At, int] | None = None
-        self._changes: Iterator[tuple[int, bool]] = iter(())
+        self._changes: deque[tuple[_Place, bool]] = deque()
         #: How many inputs were changed.
         self.count = 0
         #: Where the program has waited, for how long in µs, and the variables that it read there.
@@ -60,10 +66,16 @@ class AutomaticInputs:
     @property
     def wake(self) -> int | None:
         """When it will change an input, in µs, if it knows that it will."""
-        if self._after is None or self._since is None:
+        if self._since is None or not self._changes:
             return None
-        then = self._since[1] + self._after
+        then = self._since[1] + self._delay
         return then if then > self._before else None
+
+    @property
+    def _delay(self) -> int:
+        """How long the program has to wait for the next change, in µs."""
+        assert self._after is not None, "it fulfils waits"
+        return self._after * (_PATIENCE if self._changes[0][0][0] == "$FLAG" else 1)
 
     def was_read(self, path: Path) -> None:
         """The program reads a variable, perhaps an input for the condition of a WAIT FOR."""
@@ -82,31 +94,37 @@ class AutomaticInputs:
             return
         if self._since is None or self._since[0] != at:
             self._since, self._before = (at, now), now
-            self._changes = iter(())
+            self._changes.clear()
             found = [place for place in self._read if place not in self._scripted]
             if len(found) <= _MOST:
-                self._changes = _combinations({place: self._has(place) for place in found})
+                inputs = [place for place in found if place[0] == "$IN"]
+                self._changes += _combinations({place: self._has(place) for place in inputs})
+                flags = [place for place in found if place[0] == "$FLAG"]
+                if flags:
+                    every = (*flags, *inputs)
+                    self._changes += _combinations({place: self._has(place) for place in every})
         before = self.waited.get(at, (0, ()))[0]
         self.waited[at] = before + now - self._before, tuple(self._names)
         self._before = now
-        if now - self._since[1] >= self._after:
-            for place, value in islice(self._changes, 1):
-                self.count += 1
-                self._state.assign(("$IN", place), value)
+        if self._changes and now - self._since[1] >= self._delay:
+            place, value = self._changes.popleft()
+            self.count += 1
+            self._state.assign(place, value)
 
-    def _has(self, place: int) -> bool:
-        return self._state.signals.read(("$IN", place)) is True
-
-
-def _places(path: Path) -> Iterable[int]:
-    """The digital inputs of a path."""
-    if path[0] != "$IN" or len(path) == 1:
-        return ()
-    first, last = path[1], path[-1]
-    return range(first, last + 1) if isinstance(first, int) and isinstance(last, int) else ()
+    def _has(self, place: _Place) -> bool:
+        parts = self._state.signals if place[0] == "$IN" else self._state.variables
+        return parts.read(place) is True
 
 
-def _combinations(values: dict[int, bool]) -> Iterator[tuple[int, bool]]:
+def _places(path: Path) -> Iterator[_Place]:
+    """The digital inputs of a path, or its flag."""
+    if path[0] in ("$IN", "$FLAG") and len(path) > 1:
+        first, last = path[1], path[-1]
+        if isinstance(first, int) and isinstance(last, int):
+            yield from ((str(path[0]), number) for number in range(first, last + 1))
+
+
+def _combinations(values: dict[_Place, bool]) -> Iterator[tuple[_Place, bool]]:
     """One change after the other that lead through all combinations and back (a Gray code)."""
     places = list(values)
     for count in range(1, 2 ** len(places) + 1) if places else ():

@@ -8,7 +8,7 @@ names are used. Stand-ins are files like others, so executors and checks know no
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
@@ -23,6 +23,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
+from interp.robot.models.stand_in import Places
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import STOP
@@ -39,11 +40,13 @@ _ORIGINS: Final = {
     "library": "from the library",
     "package": "by the signature of an option package",
     "signature": "by its uses only",
+    "place": "at a place that the arm reaches",
     "default": "with the controller's default",
 }
 #: Where a stand-in comes from: our own version of it, the signature that its option package has,
-#: that which its uses tell, or the controller's default for data that $config.dat would declare.
-Origin = Literal["library", "package", "signature", "default"]
+#: that which its uses tell, also of points, which get places of their own, or the controller's
+#: default for data that $config.dat would declare.
+Origin = Literal["library", "package", "signature", "place", "default"]
 _Kind = Literal["routine", "variable", "type"]
 _Places = dict[str, tuple[Module, ast.Name]]
 
@@ -129,11 +132,14 @@ def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
     if not (wanted.data or wanted.routines or wanted.types):
         return Completed(project, (), _listed(wanted, sources))
     listed = _listed(wanted, sources)
-    made = _Making(project, wanted)
+    made = _Making(project, wanted, Places([sources[one.path] for one in project.modules]))
     for number in range(_ROUNDS):
         if not made.improve(sources, is_last=number == _ROUNDS - 1):
             break
-    return Completed(made.project, tuple(made.sources()), listed)
+    stand_ins = tuple(
+        replace(one, origin="place") if one.name.upper() in made.placed else one for one in listed
+    )
+    return Completed(made.project, tuple(made.sources()), stand_ins)
 
 
 def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ...]:
@@ -171,9 +177,12 @@ def _stand_in(
 class _Making:
     """Stand-ins in the making: each round knows the types that the last one has found."""
 
-    def __init__(self, project: Project, wanted: _Wanted) -> None:
+    def __init__(self, project: Project, wanted: _Wanted, places: Places) -> None:
         self._original = project
         self._wanted = wanted
+        self._places = places
+        #: Variables that stand in as points, by name in upper case.
+        self.placed: set[str] = set()
         self._texts: dict[str, str] = {}
         self._files: dict[tuple[str, str], File] = {}
         self._apart: set[tuple[str, str]] | None = None
@@ -203,7 +212,7 @@ class _Making:
             for name, datum in library.data.items()
             if name == f"{datum.type}{_DEFAULT}"
         }
-        signatures = Signatures(self._enumerations(), self._type, values)
+        signatures = Signatures(self._enumerations(), self._type, values, self._places)
         before = dict(self._texts)
         for name in unknown:
             signatures.type(name, uses.types[name])
@@ -217,6 +226,7 @@ class _Making:
         ]
         self._texts[_data_path()] = self._data_list(signatures, data)
         self._add_own_lists(signatures, uses, is_last=is_last)
+        self.placed = signatures.placed
         if self._texts == before and not is_last:
             return True
         self.project = self._linked()

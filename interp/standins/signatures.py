@@ -4,11 +4,13 @@ A routine becomes its signature alone: it does nothing, gives variables passed t
 they have none, and returns a default. The defaults are those with which a program goes on: TRUE for
 a function that tells whether something has worked, but FALSE where a WHILE waits for its end; 0 for
 its numbers; for a number that nothing assigns the first that a SWITCH asks for, else 1; for
-positions one where the arm may stand. What is only waited for, and never assigned, is an input.
+a point a place of its own that the arm reaches. What is only waited for, and never assigned, is an
+input.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
@@ -33,15 +35,16 @@ from grammar.semantics.types import (
     is_axes,
     is_cartesian,
 )
+from interp.robot.models.stand_in import Places
 from interp.standins.uses import DataUse, RoutineUse
 
 __all__ = ["Signatures"]
 
-#: Where the arm may stand, away from the singularity of its wrist.
-_UPRIGHT: Final = {"A1": "0.0", "A2": "-90.0", "A3": "90.0", "A5": "45.0"}
-_AXES: Final = frozenset({f"A{number}" for number in range(1, 7)})
+_ROBOT_AXES: Final = tuple(f"A{number}" for number in range(1, 7))
+_AXES: Final = frozenset(_ROBOT_AXES)
 _EXTERNAL: Final = frozenset({f"E{number}" for number in range(1, 7)})
-_FRAME: Final = frozenset("XYZABC")
+_COMPONENTS: Final = tuple("XYZABC")
+_FRAME: Final = frozenset(_COMPONENTS)
 _AXIS_MOTIONS: Final = frozenset({"PTP", "SPTP", "PTP_REL", "SPTP_REL"})
 _TEXT_LENGTH: Final = 80
 #: Elements in each dimension, by how many there are; more where an index is a larger number.
@@ -65,8 +68,9 @@ class _Kind:
 class Signatures:
     """Makes declarations; ``find_type`` gives a type of the project that is seen everywhere.
 
-    ``values`` are defaults by the names of their types, where zeros will not do. ``types`` are the
-    lines of new types, by name in upper case.
+    ``values`` are defaults by the names of their types, where zeros will not do; ``places`` are for
+    points. ``types`` are the lines of new types, by name in upper case; ``placed`` are the
+    variables that have got places.
     """
 
     def __init__(
@@ -74,8 +78,11 @@ class Signatures:
         enumerations: Iterable[Enumeration],
         find_type: Callable[[str], Type | None],
         values: Mapping[str, str],
+        places: Places,
     ) -> None:
         self.types: dict[str, str] = {}
+        self.placed: set[str] = set()
+        self._places = places
         self._values = values
         self._enumerations = list(enumerations)
         self._find_type = find_type
@@ -101,13 +108,18 @@ class Signatures:
             return [f"DECL {access}{kind.name} {name}={kind.value}"]
         sizes = self._sizes(use, is_text=kind.is_text)
         lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
-        if use.is_assigned:  # by the program, before it reads them
+        is_placed = name in self.placed
+        if use.is_assigned and not is_placed:  # by the program, before it reads them
             return lines
+        type_ = self._find_type(kind.name)
         counted = sizes[:-1] if kind.is_text else sizes
         elements = product(*(range(1, size + 1) for size in counted))
         for indices in islice(elements, _MOST_VALUES):
             place = ",".join(map(str, indices)) + ("," if kind.is_text else "")
-            lines.append(f"{name}[{place}]={kind.value}")
+            value = kind.value
+            if type_ is not None and is_placed:
+                value = self._default(type_, f"{name}[{place}]", is_target=bool(use.motions))
+            lines.append(f"{name}[{place}]={value}")
         return lines
 
     def type(self, name: str, use: DataUse) -> None:
@@ -119,9 +131,10 @@ class Signatures:
 
     def _kind(self, name: str, use: DataUse) -> _Kind | None:
         numbers = [one for one in use.types if one in (INT, REAL)]
+        is_pose = bool(use.motions - _AXIS_MOTIONS or _FRAME & set(use.members))
         for one in use.types:
-            if one not in numbers:
-                known = self._known(one, use)
+            if one not in numbers and not (is_pose and is_axes(one)):
+                known = self._known(name, one, use)
                 if known is not None:
                     return known
         if use.constants:
@@ -129,15 +142,15 @@ class Signatures:
         members = set(use.members)
         if members:
             if members <= _AXES | _EXTERNAL:
-                return self._named("E6AXIS")
+                return self._named("E6AXIS", name)
             if members <= _FRAME and not use.motions:
-                return self._named("FRAME")
+                return self._named("FRAME", name)
             if members <= _FRAME | _EXTERNAL | {"S", "T"}:
-                return self._position("E6POS")
+                return self._named("E6POS", name)
             made = f"{name[:_LONGEST]}_T"
             return _Kind(made, self._structure(made, use))
         if use.motions:
-            return self._position("E6AXIS" if use.motions <= _AXIS_MOTIONS else "E6POS")
+            return self._named("E6AXIS" if use.motions <= _AXIS_MOTIONS else "E6POS", name)
         if use.is_text:
             return _Kind("CHAR", '" "', is_text=True)
         return self._number(use) if numbers else None
@@ -147,28 +160,20 @@ class Signatures:
         value = "0" if begins_at_0 else use.asked_for or "1"
         return _Kind("REAL", f"{value}.0") if REAL in use.types else _Kind("INT", value)
 
-    def _known(self, type_: Type, use: DataUse) -> _Kind | None:
+    def _known(self, name: str, type_: Type, use: DataUse) -> _Kind | None:
         if type_ in (BOOL, CHAR):
             return _Kind(str(type_), "FALSE" if type_ == BOOL else '" "', use.is_text)
         if not isinstance(type_, Structure | Enumeration) or self._find_type(type_.name) != type_:
             return None
-        if use.motions and (is_axes(type_) or is_cartesian(type_)):
-            return self._position(type_.name)
         value = self._values.get(type_.name.upper())
-        return _Kind(type_.name, default(type_) if value is None else value)
+        if value is None:
+            value = self._default(type_, name, is_target=bool(use.motions))
+        return _Kind(type_.name, value)
 
-    def _named(self, name: str) -> _Kind:
-        found = self._find_type(name)
+    def _named(self, type_: str, name: str) -> _Kind:
+        found = self._find_type(type_)
         assert found is not None, "every controller has it"
-        return _Kind(name, default(found))
-
-    def _position(self, name: str) -> _Kind:
-        """A target: axes upright; of a pose nothing is told, so that the arm stays [POS-06]."""
-        found = self._find_type(name)
-        is_pose = found is not None and is_cartesian(found)
-        if is_pose:
-            return _Kind(name, "{E1 0.0}" if name in ("E6POS", "E3POS") else "{A 0.0}")
-        return self._named(name)
+        return _Kind(type_, self._default(found, name))
 
     def _enumeration(self, name: str, use: DataUse) -> _Kind:
         first = next(iter(use.constants.values()))
@@ -204,6 +209,41 @@ class Signatures:
             sizes[-1] = _TEXT_LENGTH
         return sizes
 
+    def _default(self, type_: Type, name: str, *, is_target: bool = False) -> str:
+        """A value of a type, as it is written in a data list; ``name`` is what has it.
+
+        Points have places. A FRAME is one where it ``is_target`` of motions, else a base or offset.
+        """
+        match type_:
+            case Enumeration(constants=constants):
+                return f"#{constants[0]}"
+            case Structure():
+                is_point = is_cartesian(type_) and (is_target or type_.name.upper() != "FRAME")
+                if is_point or is_axes(type_):
+                    return f"{{{','.join(self._place(type_, name))}}}"
+                return f"{{{','.join(self._components(type_, name))}}}"
+            case Scalar():
+                return {REAL: "0.0", BOOL: "FALSE", CHAR: '" "'}.get(type_, "0")
+        return "0"
+
+    def _place(self, type_: Structure, name: str) -> Iterator[str]:
+        self.placed.add(re.split(r"\W", name)[0])
+        if is_axes(type_):
+            place = zip(_ROBOT_AXES, self._places.axes(name), strict=True)
+        else:
+            place = zip(_COMPONENTS, self._places.pose(name), strict=True)
+        yield from (f"{part} {value}" for part, value in place)
+        externals = _EXTERNAL & {one.name.upper() for one in type_.members}
+        yield from (f"{part} 0.0" for part in sorted(externals))
+
+    def _components(self, type_: Structure, name: str) -> Iterator[str]:
+        for member in type_.members:
+            if isinstance(member.type, Array):
+                if member.type.element == CHAR and len(member.type.sizes) == 1:
+                    yield f'{member.name}[] " "'
+            elif member.type != UNKNOWN:
+                yield f"{member.name} {self._default(member.type, f'{name}.{member.name}')}"
+
     # ------------------------------------------------------------------------- routines
 
     def routine(self, name: str, use: RoutineUse, known: PackageRoutine | None = None) -> str:
@@ -230,7 +270,7 @@ class Signatures:
         if use.is_function or (known is not None and known.result):
             kind = self._kind(f"{name}_R", use.result) or self._number(DataUse(is_assigned=True))
             if known is not None and self._has_type(known.result):
-                kind = self._result(known)
+                kind = self._result(name, known)
             value = kind.value
             if known is not None and known.default:
                 value = known.default
@@ -252,12 +292,12 @@ class Signatures:
     def _has_type(self, name: str) -> bool:
         return name in SCALARS or (bool(name) and self._find_type(name) is not None)
 
-    def _result(self, known: PackageRoutine) -> _Kind:
+    def _result(self, name: str, known: PackageRoutine) -> _Kind:
         """What a routine of a package gives back."""
         found = SCALARS.get(known.result) or self._find_type(known.result)
         assert found is not None, "it was looked for"
         value = self._values.get(known.result)
-        return _Kind(known.result, default(found) if value is None else value)
+        return _Kind(known.result, self._default(found, name) if value is None else value)
 
     def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool, str]:
         """The type of a parameter, whether it is passed :OUT, and the brackets of an array."""
@@ -284,27 +324,3 @@ class Signatures:
 
 def _element(type_: Type) -> Type:
     return type_.element if isinstance(type_, Array) else type_
-
-
-def default(type_: Type) -> str:
-    """A value of a type, as it is written in a data list."""
-    match type_:
-        case Enumeration(constants=constants):
-            return f"#{constants[0]}"
-        case Structure(members=members) if is_axes(type_):
-            axes = (f"{one.name} {_UPRIGHT.get(one.name.upper(), '0.0')}" for one in members)
-            return f"{{{','.join(axes)}}}"
-        case Structure():
-            return f"{{{','.join(_components(type_))}}}"
-        case Scalar():
-            return {REAL: "0.0", BOOL: "FALSE", CHAR: '" "'}.get(type_, "0")
-    return "0"
-
-
-def _components(type_: Structure) -> Iterator[str]:
-    for member in type_.members:
-        if isinstance(member.type, Array):
-            if member.type.element == CHAR and len(member.type.sizes) == 1:
-                yield f'{member.name}[] " "'
-        elif member.type != UNKNOWN:
-            yield f"{member.name} {default(member.type)}"

@@ -206,7 +206,7 @@ class Uses:
         if isinstance(node, ast.Parenthesised):
             yield from self._targets(node.inner)
         elif isinstance(node, ast.Binary) and node.operator == ":":
-            yield from self._targets(node.right)
+            yield from [*self._targets(node.right)] or self._targets(node.left)
         elif node is not None:
             use = self._use(node)
             if use is not None:

@@ -1,24 +1,41 @@
-"""The arm that stands in for one whose machine data is missing, as large as the taught points ask.
+"""The arm of a project, or one in its place where its machine data is missing, and places for it.
 
 Points of a large robot lie out of reach of a small one. The stand-in is the default arm as long as
 its outstretched length covers the points of the project, measured from its shoulder. Where it does
 not, its links are longer by one factor, so that they do with any orientation. Its axis limits are
 wide enough for the taught axis positions. Nothing else is known of the arm; its dynamics are those
 of the default.
+
+A point that no file has gets a place that the arm reaches, by its name: about the same posture, so
+that a straight line leads from each place to each other one.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Final
 
-from interp.robot.kinematics.machine_data import MachineData, WristLink
+from grammar.syntax.source import Source
+from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.data_list import DataListError
+from interp.robot.kinematics.machine_data import (
+    ROBOT_AXES,
+    MachineData,
+    MachineDataError,
+    WristLink,
+    read_machine,
+    with_axis_limits_of,
+)
+from interp.robot.kinematics.solver import Kinematics
+from interp.robot.models import default_machine
 from interp.values.poses import Pose
 
-__all__ = ["fitting_arm"]
+__all__ = ["Places", "arm_or_stand_in", "fitting_arm", "machine_data_of", "understood"]
 
 _NUMBER: Final = r"\s*([-+]?\d*\.?\d+(?:E[-+]?\d+)?)\b"
 _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_NUMBER}", re.I)
@@ -31,6 +48,81 @@ _SHARE: Final = 0.95
 _USABLE: Final = 0.8
 _LARGEST: Final = 5.0
 _MOST_DEGREES: Final = 360.0
+#: Axes in degrees of the posture about which places lie, and how far they are from it at most: the
+#: forearm level, the hand half down.
+_POSTURE: Final = (0.0, -90.0, 95.0, 0.0, 50.0, 0.0)
+_SPREAD: Final = (35.0, 12.0, 12.0, 0.0, 15.0, 20.0)
+_DECIMALS: Final = 3
+
+
+def machine_data_of(sources: Iterable[Source]) -> Source | None:
+    """The machine data of an arm among the files of a project.
+
+    Tools that copy files leave out the dollar sign of its name.
+    """
+    for source in sources:
+        is_named = source.kind == "dat" and source.name.upper().lstrip("$") == "MACHINE"
+        if is_named and "$LENGTH_A" in source.text.upper():
+            return source
+    return None
+
+
+def understood(source: Source) -> MachineData:
+    """The arm of machine data. Raises `MachineDataError` where its kinematics cannot be solved."""
+    machine = read_machine(source.text, source.path)
+    try:
+        kinematics_of(machine)
+    except MachineDataError as error:
+        raise MachineDataError(f"{source.path}: {error}") from error
+    return machine
+
+
+def arm_or_stand_in(sources: Sequence[Source], default: MachineData) -> tuple[MachineData, str]:
+    """The arm of a project's own machine data, else one in its place and why.
+
+    ``sources`` are the files that the project has itself, ``default`` the arm where it has none.
+    """
+    source = machine_data_of(sources)
+    if source is None:
+        lists = [one.text for one in sources if one.kind == "dat"]
+        programs = [one.text for one in sources if one.kind != "dat"]
+        machine = fitting_arm(default, programs, lists)
+        return machine, f"no machine data of an arm: {machine.name} stands in"
+    try:
+        return understood(source), ""
+    except (DataListError, MachineDataError) as error:
+        machine = default_machine()
+        note = f"{error}: {machine.name} stands in"
+        return with_axis_limits_of(machine, source.text, source.path), note
+
+
+class Places:
+    """Places that the arm of a project reaches, for points that have none: one for each name."""
+
+    def __init__(self, sources: Sequence[Source]) -> None:
+        self._sources = sources
+
+    @cached_property
+    def _arm(self) -> Kinematics:
+        return kinematics_of(arm_or_stand_in(self._sources, default_machine())[0])
+
+    def axes(self, name: str) -> tuple[float, ...]:
+        """The six axes in degrees; names that differ only in case have the same."""
+        digest = hashlib.sha256(name.upper().encode()).digest()
+        wanted = []
+        for place, axis in enumerate(self._arm.machine.axes):
+            drawn = int.from_bytes(digest[4 * place : 4 * place + 4]) / 2**31 - 1.0
+            value = _POSTURE[place] + _SPREAD[place] * drawn
+            wanted.append(min(max(value, axis.lower), axis.upper))
+        coupled = self._arm.coupled(wanted)
+        return tuple(round(float(value), _DECIMALS) for value in coupled)
+
+    def pose(self, name: str) -> tuple[float, ...]:
+        """X, Y, Z in mm and A, B, C in degrees of the flange in $WORLD, at those axes."""
+        machine = self._arm.machine
+        flange = Pose.from_matrix(self._arm.forward(self.axes(name)).tolist())
+        foot = machine.foot(machine.standing(self.axes(name))[ROBOT_AXES:])
+        return tuple(round(value, _DECIMALS) for value in (foot @ flange).components)
 
 
 def fitting_arm(

@@ -163,6 +163,25 @@ def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bo
     assert len(changes) == ran.controller.automatic_inputs.count
 
 
+@pytest.mark.parametrize("condition", ["$FLAG[7]", "$IN[2] AND $FLAG[7]"])
+def test_flags_of_packages_are_set(go: Go, condition: str) -> None:
+    """A flag that nothing has set by then is set after five times as long as inputs take."""
+    ran = go(f"DEF main()\nWAIT FOR {condition}\n$OUT[1]=TRUE\nEND\n", "fulfil waits after 1")
+    assert ("end", True) == (ran.outcome.ending, 5.0 <= ran.times("out")[0] < 5.1)
+
+
+def test_flags_of_the_program_are_its_own(go: Go) -> None:
+    """A flag that an interrupt sets meanwhile is left alone."""
+    text = (
+        "DEF main()\nINTERRUPT DECL 5 WHEN $TIMER[1]>0 DO READY()\n$TIMER[1]=-3000\n"
+        "$TIMER_STOP[1]=FALSE\nINTERRUPT ON 5\nWAIT FOR $FLAG[7]\n$OUT[1]=TRUE\nEND\n"
+        "DEF READY()\n$FLAG[7]=TRUE\nEND\n"
+    )
+    ran = go(text, "fulfil waits after 1")
+    assert 0 == ran.controller.automatic_inputs.count
+    assert 3.0 <= ran.times("out")[0] < 3.1
+
+
 def test_scripted_inputs_are_not_fulfilled(go: Go) -> None:
     """What a script sets itself comes when the script says."""
     ran = go("DEF main()\nWAIT FOR $IN[3]\nEND\n", "fulfil waits\nt=2 IN[3]=TRUE")

@@ -1,7 +1,15 @@
 """An arm that stands in is as large as the points ask."""
 
-from interp.robot.models import default_machine
-from interp.robot.models.stand_in import fitting_arm
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grammar.syntax.source import Source
+from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.solver import matrix_of
+from interp.robot.kinematics.targets import check_limits
+from interp.robot.models import default_machine, model_file
+from interp.robot.models.stand_in import Places, fitting_arm
+from interp.values.poses import Pose
 
 FAR = "".join(f"XP{number}={{X 2600.0,Y {number},Z 1000.0}}\n" for number in range(5))
 
@@ -39,3 +47,41 @@ def test_garbage() -> None:
     """One point that no arm can reach makes no arm larger."""
     wild = FAR.replace("2600", "500").replace("1000", "300") * 8 + "{X 1e9,Y 0,Z 0}"
     assert default_machine() == fitting_arm(default_machine(), [wild], [])
+
+
+def _machine(**changes: str) -> Source:
+    text = model_file("kr6r900.dat").read_text()
+    for name, value in changes.items():
+        text = text.replace("\nENDDAT", f"\n${name}={value}\nENDDAT")
+    return Source(text, "R1/Mada/MACHINE.DAT")
+
+
+PROJECTS: tuple[list[Source], ...] = (
+    [],
+    [Source(f"DEFDAT POINTS\n{FAR}ENDDAT\n", "points.dat")],
+    [_machine()],
+    [_machine(DEF_A4FIX="TRUE")],
+    [_machine(ROBROOT="{X 500,Y 0,Z 900,A 90,B 0,C 0}")],
+)
+
+
+@given(st.sampled_from(PROJECTS), st.text("ABXP[]123", min_size=1, max_size=6))
+def test_places_are_reached(project: list[Source], name: str) -> None:
+    """The axes of a place keep their limits, and its pose in $WORLD is where they lead."""
+    places = Places(project)
+    arm = places._arm
+    machine = arm.machine
+    check_limits(machine.axes, places.axes(name))
+    wanted = machine.foot(machine.standing(places.axes(name))[6:]).inverse() @ Pose.of(
+        *places.pose(name)
+    )
+    ways = kinematics_of(machine).inverse(matrix_of(wanted))
+    assert min(abs(ways - places.axes(name)).max(axis=-1)) < 0.02
+
+
+@given(st.sets(st.text("XP0123456789", min_size=2, max_size=5), min_size=2, max_size=8))
+def test_places_differ(names: set[str]) -> None:
+    """No two names have one place; small and capital letters are the same."""
+    places = Places([])
+    assert len(names) == len({places.axes(name) for name in names})
+    assert places.pose("xp1") == places.pose("XP1")

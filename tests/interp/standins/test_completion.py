@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
 from interp.controller.profile import Profile
@@ -127,13 +129,38 @@ def test_system_variable_of_a_package(executor: str) -> None:
     assert ("end", "") == _outcome(_run(_main(body, declared="INT I\n"), executor))
 
 
-def test_points_without_a_data_list() -> None:
-    """A point that no data list has is executed: a PTP goes upright, a LIN stays."""
-    run = _run(_main("PTP XP1\nLIN XP2\nPTP {A1 5.0}\n"))
-    planned = [
-        event.fields["motion_kind"] for event in run.events if event.kind == "motion_planned"
-    ]
-    assert (("end", ""), ["PTP", "LIN", "PTP"]) == (_outcome(run), planned)
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_points_without_a_data_list(executor: str) -> None:
+    """The arm goes to a place of its own for each point that no data list has."""
+    body = (
+        "PTP XP1\nLIN XP2 C_DIS\nCIRC XP3,XP4\nLIN ROW[2]\nHIGH=XP1\nHIGH.Z=HIGH.Z+10\nLIN HIGH\n"
+    )
+    program = _main(body)
+    run = _run(program, executor)
+    assert ("end", "") == _outcome(run)
+    assert [] == run.controller.skipped_motions
+    assert ["PTP", "LIN", "CIRC", "LIN", "LIN"] == _planned(run)
+    assert 5 == len({str(point.position) for point in run.controller.points})
+    places = {"XP1", "XP2", "XP3", "XP4", "ROW", "HIGH"}
+    assert {(name, "variable", "place") for name in places} == set(_names(program))
+
+
+@settings(max_examples=20)
+@given(st.lists(st.sampled_from("ABCDEFGH"), min_size=2, max_size=6), st.data())
+def test_ways_between_places(points: list[str], data: st.DataObject) -> None:
+    """A motion of any kind leads from each place to each other one."""
+    kinds = st.sampled_from(["PTP", "LIN", "SPTP", "SLIN"])
+    lines = [f"{data.draw(kinds)} X{point}{data.draw(st.integers(1, 99))}\n" for point in points]
+    run = _run(_main(f"PTP XSTART\n{''.join(lines)}"))
+    assert ("end", "") == _outcome(run)
+    assert [] == run.controller.skipped_motions
+
+
+def test_offset_of_an_undeclared_point() -> None:
+    """Of a point and an offset that is written out the point has the place."""
+    run = _run(_main("PTP XP1\nLIN XP2:{X 0.0,Y 0.0,Z -20.0,A 0.0,B 0.0,C 0.0}\n"))
+    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+    assert 2 == len(run.controller.points)
 
 
 def test_input_that_is_waited_for() -> None:
