@@ -43,6 +43,7 @@ from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
 
 if TYPE_CHECKING:
+    from interp.debugging.debugger import Debugger
     from interp.robot.simulation.robot_files import RobotFile
 
 __all__ = [
@@ -125,11 +126,13 @@ def run_program(
     *,
     take: Callable[[TraceEvent], None] | None = None,
     on_time: Callable[[int], None] = lambda _now: None,
+    debugger: Debugger | None = None,
 ) -> RunResult:
     """Run a program to its end, its fault or the end of its time.
 
     ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
-    virtual time now and then. Raises `LinkError` for a program that cannot begin,
+    virtual time now and then. A ``debugger`` calls this as often as it needs
+    (`interp.debugging.debugger.Debugger.run`). Raises `LinkError` for a program that cannot begin,
     `interp.controller.input_script.ScriptError` for a script about what does not exist, and
     `ImportError` for a robot that is not installed.
     """
@@ -169,6 +172,8 @@ def run_program(
     sink, submit_sink = trace.sink(), trace.sink("submit")
     limits = setup.limits or Limits(per_slice=profile.statements)
     executor = prepared.executor(setup.executor, limits, sink)
+    if debugger is not None:
+        executor = debugger.around(executor, limits.per_slice)
     submit = executor.companion(setup.submit, submit_sink) if setup.submit else None
     kind = BatchCore if setup.motion == "batch" else ControlCore
 
@@ -188,6 +193,8 @@ def run_program(
         values=values,
         tracking=tracking,
     )
+    if debugger is not None:
+        debugger.attach(controller)
     outcome = _run(controller, setup, on_time)
     path = tracking.record() if robot.step else None
     return RunResult(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 
+from grammar.semantics.types import Type
 from interp.controller.advance_run import AdvanceRun
 from interp.controller.arm_control import ArmControl
 from interp.controller.automatic_inputs import AutomaticInputs
@@ -28,21 +30,34 @@ from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
 from interp.controller.script_player import ScriptPlayer
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state import ControllerState
-from interp.controller.tasks import Task
+from interp.controller.tasks import LevelKind, Task
 from interp.controller.trace import TaskName, TaskSink, Trace
 from interp.controller.variable_access import VariableAccess
 from interp.controller.variables import Computed
 from interp.controller.waits import Waits
 from interp.port import requests
 from interp.port.executor import Executor
-from interp.port.requests import Value
+from interp.port.requests import At, Path, Value
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import Tracking
 
-__all__ = ["Controller"]
+__all__ = ["ArmState", "Controller"]
 
 _MOST_WAITS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class ArmState:
+    """The time in µs, the motion under way, and how many have not ended and have ended.
+
+    ``running`` is the line of the motion that has started last, ``None`` while the arm has none.
+    """
+
+    time: int
+    running: At | None
+    waiting: int
+    ended: int
 
 
 class Controller:
@@ -127,11 +142,40 @@ class Controller:
         self.automatic_inputs = automatic
         self.skipped_motions = motions.skipped
         self._queue = queue
+        self._state = state
 
     @property
     def points(self) -> list[PlannedPoint]:
         """The end points of all motions that were planned and do not end where they start."""
         return self._queue.points
+
+    @property
+    def arm(self) -> ArmState:
+        """What the arm does now."""
+        waiting = self._queue.pending
+        running = self._queue.running if waiting else None
+        return ArmState(self._state.clock.now, running, waiting, self._queue.ended)
+
+    def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
+        """What runs on top of a program, the outermost first: its kind and priority."""
+        found = (one for one in self._scheduler.tasks if one.name == task)
+        return [(level.kind, level.priority) for one in found for level in one.levels]
+
+    def look(self, path: Path) -> Value:
+        """The value of a system variable, which nobody notices; raises `Fault`."""
+        before = self.variables.has_read_changing
+        try:
+            return self.variables.read(path)
+        finally:
+            self.variables.has_read_changing = before
+
+    def type_of(self, path: Path) -> Type:
+        """The type of a system variable or a part of it, `UNKNOWN` where no table has it."""
+        return self.variables.part_type(path)
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Give a system variable a value from outside, an input for instance; raises `Fault`."""
+        self._state.assign(path, value)
 
     @property
     def unfulfilled(self) -> list[str]:

@@ -142,6 +142,8 @@ class MotionQueue:
         self.points: list[PlannedPoint] = []
         #: The line of the motion that has started last.
         self.running: At | None = None
+        #: How many motions have ended.
+        self.ended = 0
         #: How many events of the core there were.
         self.count = 0
         #: Whether the arm is on its way to the first point of the program [ADV-14].
@@ -347,6 +349,7 @@ class MotionQueue:
     def _ended(self, event: CoreEvent, queued: _QueuedMotion) -> None:
         state = self._state
         motion, task, command = queued.planned.motion, queued.task, event.command
+        self.ended += 1
         self._remove(motion.number, task)
         if isinstance(command, MotionCommand) and _LENGTH_ZERO in command.notices:
             task.spent += state.profile.requests // 2  # it took no time: a loop of such has to wait

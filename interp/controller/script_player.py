@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from functools import partial
 
-from grammar.semantics.types import Array, Enumeration, Structure, Type
+from grammar.semantics.types import Enumeration
 from interp.controller.channels import Channels
 from interp.controller.input_script import (
     Answer,
@@ -150,7 +150,7 @@ class ScriptPlayer:
     def _typed(self, path: Path, value: Literal) -> Value:
         """The value that a literal is for a variable."""
         if isinstance(value, Word):
-            type_ = self._type(path)
+            type_ = self._variables.part_type(path)
             if not isinstance(type_, Enumeration):
                 raise LinkError(f"#{value.name} is given to what is no enumeration")
             return constant(type_, value.name)
@@ -164,12 +164,3 @@ class ScriptPlayer:
         if isinstance(before, bool) != isinstance(value, bool):
             raise LinkError(f"{value!r} is no value for {path[0]}")
         return value
-
-    def _type(self, path: Path) -> Type:
-        type_ = self._variables.type_of(str(path[0]))
-        for step in path[1:]:
-            if isinstance(type_, Array):
-                type_ = type_.element
-            elif isinstance(type_, Structure) and isinstance(step, str):
-                type_ = type_.member(step) or type_
-        return type_

@@ -126,6 +126,16 @@ class Variables:
                 return self._sized(name, found.type)
         return UNKNOWN
 
+    def part_type(self, path: Path) -> Type:
+        """The type of a variable or a part of it, `UNKNOWN` where no table has it."""
+        type_ = self.type_of(str(path[0]))
+        for step in path[1:]:
+            if isinstance(type_, Array):
+                type_ = type_.element
+            elif isinstance(type_, Structure) and isinstance(step, str):
+                type_ = type_.member(step) or UNKNOWN
+        return type_
+
     def _sized(self, name: str, type_: Type) -> Type:
         if not isinstance(type_, Array):
             return type_

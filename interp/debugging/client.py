@@ -1,4 +1,4 @@
-"""Who decides when a program has stopped: what a debugger tells, and what it can be told.
+"""Who decides when a program has stopped: what a debugger reports, and what it can be told.
 
 A client is called where the program stops and answers with a command. It may take its time, as
 virtual time stands still meanwhile, so an adapter for an editor can wait there for its user.
@@ -9,23 +9,41 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from interp.controller.trace import TaskName
 from interp.port.requests import At
 from interp.values.values import Value
 
 __all__ = [
-    "Backward",
+    "Back",
     "Breakpoint",
     "Command",
     "Go",
+    "Position",
+    "Quit",
+    "Restart",
     "Select",
-    "StackFrame",
     "StepCommand",
     "Stop",
     "Watch",
 ]
 
+#: A moment of a run: how many statements of all programs have begun, and how many times a statement
+#: was about to begin since then. Moments of the same program and the same changes compare.
+Position = tuple[int, int]
+
 #: Why a program has stopped. ``refused`` follows a command that could not be carried out.
-Reason = Literal["entry", "breakpoint", "step", "watch", "pause", "selected", "backward", "refused"]
+Reason = Literal[
+    "entry",
+    "breakpoint",
+    "step",
+    "watch",
+    "pause",
+    "fault",
+    "selected",
+    "back",
+    "refused",
+    "ended",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,42 +51,40 @@ class Breakpoint:
     """Stop before the statement that begins in this line, if the condition is TRUE there.
 
     ``file`` is a path or its end, letter case aside. The condition is an expression over what is
-    visible there; one that cannot be evaluated counts as TRUE, so that nothing is missed.
+    visible there; one that cannot be evaluated counts as TRUE, so that nothing is missed. ``hits``
+    says which of its hits count: ``3`` the third only, ``>=3`` from the third on, ``%3`` each
+    third. With ``log`` it does not stop: the text is told, values in place of what stands in
+    braces.
     """
 
     file: str
     line: int
     condition: str | None = None
+    hits: str | None = None
+    log: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """Stop where an expression has got another value.
+    """Stop where an expression has got another value: a variable, a signal, anything of these.
 
     Data of a data list is watched wherever it is known by that name, data of a routine in the
-    activation that the watch was set in; with that it ends.
+    routine and at the depth of calls where the watch was set.
     """
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class StackFrame:
-    """A routine that is open: its name, and where it is."""
-
-    name: str
-    at: At
-
-
-@dataclass(frozen=True, slots=True)
 class Stop:
-    """A program has stopped before the statement at ``at``.
+    """A program has stopped before the statement at ``at``, or at its fault or end.
 
-    ``watch`` is the one that changed, with the values before and now. ``text`` tells what was
-    refused, or which breakpoint's condition could not be evaluated.
+    ``watch`` is the one that changed, with the values before and now. ``text`` is the fault, what
+    was refused, or why the condition of the breakpoint could not be evaluated.
     """
 
     reason: Reason
+    task: TaskName
     at: At
     watch: Watch | None = None
     before: Value | None = None
@@ -81,17 +97,29 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Go:
-    """Go on to the next stop."""
+    """Go on to the next stop; behind a fault and the end, end the session."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepCommand:
-    """Go on by a statement: into calls, over them, or out of the routine.
+    """Go on by a statement of this program: into calls, over them, out of the routine.
 
     Actions of interrupts and triggers that come up meanwhile are stepped into only with ``into``.
+    ``motion`` goes on until a motion has ended, and to the next statement of this program then.
     """
 
-    way: Literal["into", "over", "out"] = "over"
+    way: Literal["into", "over", "out", "motion"] = "over"
+
+
+@dataclass(frozen=True, slots=True)
+class Back:
+    """Go back, with all variables, outputs, the arm and the clock.
+
+    By a step as `StepCommand` has it, or with ``go`` to where it would have stopped last. Where
+    there is no such place, it is the first statement.
+    """
+
+    way: Literal["into", "over", "out", "motion", "go"] = "over"
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +133,13 @@ class Select:
 
 
 @dataclass(frozen=True, slots=True)
-class Backward:
-    """Travel the motion back that was travelled last, execute nothing else, and stop again.
-
-    When the program goes on, the motions that were travelled back are travelled forwards first.
-    """
+class Restart:
+    """Begin anew, without the changes that were made."""
 
 
-Command = Go | StepCommand | Select | Backward
+@dataclass(frozen=True, slots=True)
+class Quit:
+    """End the session."""
+
+
+Command = Go | StepCommand | Back | Select | Restart | Quit

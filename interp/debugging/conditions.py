@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 
-from grammar.semantics.types import Enumeration
+from grammar.semantics.types import Enumeration, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from interp.port.executor import Reader
@@ -19,18 +19,24 @@ from interp.values.faults import LinkError
 from interp.values.operators import apply, apply_unary
 from interp.values.values import (
     EnumValue,
+    StructureValue,
     Value,
     constant,
+    converted,
+    empty,
     index,
     integer,
     known,
     letters,
+    position_type,
     single,
 )
 
-__all__ = ["evaluated", "parsed", "root_of"]
+__all__ = ["evaluated", "parsed", "place_of", "root_of"]
 
 _Look = Callable[[str], Seen | None]
+#: What a signal of a name stands for: one variable, or all from the first to the last.
+_Signal = Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]
 
 
 @cache
@@ -51,21 +57,51 @@ def root_of(node: ast.Expression) -> str | None:
     return node.name.key if isinstance(node, ast.Variable) else None
 
 
-def evaluated(node: ast.Expression, look: _Look, read: Reader | None = None) -> Value:
-    """The value; ``read`` is for variables of the controller.
+def evaluated(
+    node: ast.Expression,
+    look: _Look,
+    read: Reader | None = None,
+    signal: _Signal = lambda _name: None,
+    wanted: Type | None = None,
+) -> Value:
+    """The value; ``read`` is for variables of the controller, ``signal`` for names of signals.
 
-    Raises `interp.values.faults.Fault` as the program would, and `LinkError` for what is not known
-    here.
+    ``wanted`` is the type that it is for, which tells of what enumeration a constant is. Raises
+    `interp.values.faults.Fault` as the program would, and `LinkError` for what is not known here.
     """
-    return _Evaluation(look, read).value(node)
+    return _Evaluation(look, read, signal).value(node, wanted)
+
+
+def place_of(node: ast.Expression, look: _Look, read: Reader | None, signal: _Signal) -> str | Path:
+    """What a value can be given: a variable by its text, or the path of a system variable."""
+    evaluation = _Evaluation(look, read, signal)
+    steps = evaluation.steps(node)
+    path = evaluation.system_path(steps)
+    return _text(steps) if path is None else path
 
 
 class _Evaluation:
-    def __init__(self, look: _Look, read: Reader | None) -> None:
+    def __init__(self, look: _Look, read: Reader | None, signal: _Signal) -> None:
         self._look = look
         self._read = read
+        self._signal = signal
 
     def value(self, node: ast.Expression, wanted: object = None) -> Value:
+        match node:
+            case ast.Parenthesised():
+                return self.value(node.inner, wanted)
+            case ast.Aggregate():
+                return self._aggregate(node, wanted)
+            case ast.Unary():
+                return apply_unary(node.operator, self.value(node.operand))
+            case ast.Binary():
+                return self._binary(node)
+            case ast.Variable() | ast.Subscript() | ast.Member():
+                return self._variable(node)
+        return self._constant(node, wanted)
+
+    @staticmethod
+    def _constant(node: ast.Expression, wanted: object) -> Value:
         match node:
             case ast.IntegerLiteral():
                 return integer(node.value)
@@ -81,15 +117,21 @@ class _Evaluation:
                 if not isinstance(wanted, Enumeration):
                     raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
                 return constant(wanted, node.name.key)
-            case ast.Parenthesised():
-                return self.value(node.inner, wanted)
-            case ast.Unary():
-                return apply_unary(node.operator, self.value(node.operand))
-            case ast.Binary():
-                return self._binary(node)
-            case ast.Variable() | ast.Subscript() | ast.Member():
-                return self._variable(node)
         raise LinkError("only variables, constants and operators can be looked at")
+
+    def _aggregate(self, node: ast.Aggregate, wanted: object) -> Value:
+        names = frozenset(one.name.key for one in node.components)
+        type_ = wanted if isinstance(wanted, Structure) else position_type(names)
+        if type_ is None:
+            raise LinkError("nothing tells which structure this is")
+        made = empty(type_)
+        assert isinstance(made, StructureValue), "of a structure"
+        for one in node.components:
+            member = type_.member(one.name.key)
+            if member is None or one.indices:
+                raise LinkError(f"{one.name.text} is no member that can be given here")
+            made.set(one.name.key, converted(self.value(one.value, member), member))
+        return made
 
     def _binary(self, node: ast.Binary) -> Value:
         if isinstance(node.left, ast.EnumConstant):
@@ -101,11 +143,12 @@ class _Evaluation:
         return apply(node.operator, left, right)
 
     def _variable(self, node: ast.Expression) -> Value:
-        steps = self._steps(node)
-        if str(steps[0]).startswith("$"):
+        steps = self.steps(node)
+        path = self.system_path(steps)
+        if path is not None:
             if self._read is None:
                 raise LinkError(f"{steps[0]} is the controller's, which nobody asks here")
-            asked: Value = self._read(steps)
+            asked: Value = self._read(path)
             return asked
         text = _text(steps)
         seen = self._look(text)
@@ -113,18 +156,29 @@ class _Evaluation:
             raise LinkError(f"{text} is not known here")
         return known(seen.value)
 
-    def _steps(self, node: ast.Expression) -> Path:
+    def system_path(self, steps: Path) -> Path | None:
+        """The path of a system variable, or of what a signal stands for."""
+        if str(steps[0]).startswith("$"):
+            return steps
+        stands_for = self._signal(str(steps[0])) if len(steps) == 1 else None
+        if stands_for is None:
+            return None
+        first, last = stands_for
+        path = self.steps(first)
+        return path if last is None else (*path, "TO", *self.steps(last)[1:])
+
+    def steps(self, node: ast.Expression) -> Path:
         """The way to a variable, with its indices evaluated; one left out ends it."""
         match node:
             case ast.Variable():
                 return (node.name.key,)
             case ast.Parenthesised():
-                return self._steps(node.inner)
+                return self.steps(node.inner)
             case ast.Member():
-                return (*self._steps(node.base), node.name.key)
+                return (*self.steps(node.base), node.name.key)
             case ast.Subscript():
                 given = [index(self.value(one)) for one in node.indices if one is not None]
-                return (*self._steps(node.base), *given)
+                return (*self.steps(node.base), *given)
         raise LinkError("only a variable has parts")
 
 

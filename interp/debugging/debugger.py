@@ -1,111 +1,204 @@
-"""A debugger: an executor around another one, which can stop before every statement.
+"""A debugger: stops, steps, looks, changes and goes back, for all programs of a run.
 
-The executor inside has slices of no statement at all, so it asks before each of them. The debugger
-looks whether to stop, and lets time pass as often as the limits given say: outside, a program that
-is debugged asks and tells exactly what it does without a debugger, but for motions that a client
-has travelled back and forth.
+It runs what it is given to run, and calls its client where a program stops; until that answers
+nothing goes on. To go back is to run once more and to stop earlier (`interp.debugging.history`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from array import array
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol, TypeVar
 
-from interp.debugging.backward_motions import MotionRecord
+from grammar.semantics.types import UNKNOWN, Type
+from interp.controller.controller import ArmState
+from interp.controller.tasks import LevelKind
+from interp.controller.trace import TaskName
 from interp.debugging.client import (
-    Backward,
+    Back,
     Breakpoint,
     Command,
+    Go,
+    Quit,
+    Restart,
     Select,
-    StackFrame,
     StepCommand,
     Stop,
     Watch,
 )
-from interp.debugging.conditions import evaluated, parsed, root_of
-from interp.debugging.open_routines import OpenRoutines
+from interp.debugging.conditions import evaluated, parsed, place_of, root_of
+from interp.debugging.executor import DebuggedExecutor
+from interp.debugging.history import START, Assigned, History, Selected
+from interp.debugging.names import Names, names_in, signal_in
 from interp.debugging.selection import reason_against
-from interp.port.events import Sink
-from interp.port.executor import Executor, Reader
-from interp.port.inspection import Inspectable, Seen
-from interp.port.requests import At, CodeHandle, End, Fail, Move, MoveSpline, Request, Slice, Value
-from interp.program.load import CheckedProgram, Limits
+from interp.debugging.value_text import value_text
+from interp.port.inspection import Seen, StackFrame
+from interp.port.requests import Fail, Path, Value
+from interp.program.load import CheckedProgram
 from interp.program.statement_paths import routine_at, statement_lines
-from interp.values.faults import Fault, LinkError, RuntimeFailure
+from interp.values.faults import LinkError, RuntimeFailure
+from interp.values.values import converted
 
-__all__ = ["Client", "Debugger", "Make"]
+__all__ = ["Client", "Debugger", "World"]
 
-#: Makes the executor inside from the limits and the sink it is to have.
-Make = Callable[[Limits, Sink], Inspectable]
 #: Called where a program stops; may look around in the debugger, and set what it likes there.
 Client = Callable[["Debugger", Stop], Command]
+_T = TypeVar("_T")
+
+
+class World(Protocol):
+    """What a debugger asks of the controller, as `interp.controller.controller.Controller`."""
+
+    @property
+    def arm(self) -> ArmState:
+        """What the arm does."""
+
+    def look(self, path: Path) -> Value:
+        """The value of a system variable."""
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Give a system variable a value."""
+
+    def type_of(self, path: Path) -> Type:
+        """The type of a system variable or a part of it."""
+
+    def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
+        """What runs on top of a program."""
 
 
 @dataclass(slots=True)
 class _Watched:
-    """A watch as it was set: where its variable is at home, and what it had last."""
+    """A watch as it was set: where its variable is at home, and what it had last.
+
+    ``place`` are program, height and routine for data of a routine. ``is_known``: it was looked at
+    in this run.
+    """
 
     watch: Watch
     home: str
-    serial: int
-    value: Value | None
+    place: tuple[TaskName, int, str] | None
+    value: Value | None = None
+    is_known: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class _Stepping:
-    """A step that was begun: its way, the depth, and how many actions were open."""
+    """A step that was begun: its way, and program, height and motions that had ended then."""
 
     way: str
-    depth: int
-    actions: int
+    task: TaskName
+    height: int
+    ended: int
+
+    def is_over(self, executor: DebuggedExecutor, ended: int) -> bool:
+        """Whether the step ends before the statement that a program is about to begin."""
+        if executor.task != self.task:
+            return False
+        if self.way == "motion":
+            return ended > self.ended
+        return self.way == "into" or executor.height < self.height + (self.way == "over")
+
+
+class _Again(Exception):
+    """The run is left, as another one is to begin."""
+
+
+class _Left(Exception):
+    """The run is left for good."""
 
 
 class Debugger:
-    """Runs what ``make`` makes, and calls ``client`` where it stops; see `interp.port.executor`.
+    """Debugs the runs of one program; it stops before the first statement.
 
-    ``read`` gives the values of system variables for conditions and watches, where they are to be
-    looked at. It stops before the first statement.
+    ``log`` takes the texts of breakpoints that only report.
     """
 
     def __init__(
-        self,
-        make: Make,
-        program: CheckedProgram,
-        client: Client,
-        limits: Limits | None = None,
-        sink: Sink | None = None,
-        read: Reader | None = None,
+        self, program: CheckedProgram, client: Client, log: Callable[[str], None] = print
     ) -> None:
-        self._limits = limits or Limits()
-        self._sink = OpenRoutines(sink, program.start().name)
-        self._inner = make(replace(self._limits, per_slice=0), self._sink)
+        self.stops_at_faults = True
         self._program = program
         self._client = client
-        self._read = read
-        self.breakpoints: list[Breakpoint] = []
-        self.record = MotionRecord()
+        self._log = log
+        self._world: World | None = None
+        self._tasks: dict[TaskName, DebuggedExecutor] = {}
+        self._history = History()
+        self._breakpoints: dict[int, list[Breakpoint]] = {}
+        self._hits: dict[Breakpoint, array[int]] = {}
         self._watches: list[_Watched] = []
         self._stepping: _Stepping | None = None
-        self._reason: Stop | None = None
-        self._is_begun = False
-        self._is_to_pause = False
-        self._since = 0
-        self._given: Request | None = None
-        self._own: Move | MoveSpline | None = None
-        self._is_asked = True
-        #: For each action that runs: the depth it was entered at, and what it interrupted.
-        self._inside: list[tuple[int, Request | None, Move | MoveSpline | None]] = []
-        self._at = At("", 0, 0)
+        self._is_begun = self._is_selected = self._is_to_pause = self._is_ended = False
 
-    # ----------------------------------------------------------------------- looking around
+    # ----------------------------------------------------------------------- running
 
-    def value(self, text: str) -> Value:
-        """The value of an expression where the program has stopped.
+    def run(self, begin: Callable[[], _T]) -> _T | None:
+        """Run to the end, as often as the client wants; ``None`` where it does not wait for that.
 
-        Raises `LinkError` where it is none or names what is not known, and the fault that the
-        program would have.
+        ``begin`` makes and runs the program, anew each time and each time the same; its executor is
+        one that this debugger is ``around``.
         """
-        return evaluated(parsed(text), self._inner.look, self._read)
+        while True:
+            self._tasks.clear()
+            self._history.begin()
+            self._stepping, self._is_ended = None, False
+            self._is_selected = False
+            for one in self._watches:
+                one.is_known = False
+            try:
+                result = begin()
+                self._end(str(getattr(result, "outcome", "")))
+            except _Again:
+                continue
+            except _Left:
+                return None
+            return result
+
+    def _end(self, text: str) -> None:
+        """A run has ended: leave it to the client whether that is the end."""
+        self._history.ends(self._count())
+        if self._history.is_repeating:
+            self._history.end_search()
+            raise _Again
+        self._is_ended = True
+        robot = self._tasks["robot"]
+        self._stopped(robot, Stop("ended", "robot", robot.at, text=text))
+
+    def around(self, inside: Any, per_slice: int, task: TaskName = "robot") -> DebuggedExecutor:
+        """The executor that stops for this debugger; ``inside`` is an `Inspectable`."""
+        made = self._tasks[task] = DebuggedExecutor(self, task, inside, per_slice)
+        return made
+
+    def attach(self, world: World) -> None:
+        """The controller of the run that begins."""
+        self._world = world
+
+    def pause(self) -> None:
+        """Stop before the next statement; may be called from another thread."""
+        self._is_to_pause = True
+
+    @property
+    def is_repeating(self) -> bool:
+        """Whether the run only comes back to where it was, so that its events are known."""
+        return self._history.is_repeating
+
+    # ----------------------------------------------------------------------- breakpoints
+
+    def set_breakpoints(self, breakpoints: Sequence[Breakpoint]) -> None:
+        """These in place of all there were; raises `LinkError` for hits that cannot be read."""
+        by_line: dict[int, list[Breakpoint]] = {}
+        for one in breakpoints:
+            _is_hit(one.hits, 1)
+            by_line.setdefault(one.line, []).append(one)
+        self._breakpoints = by_line
+        self._hits = {one: self._hits.get(one, array("q")) for one in breakpoints if one.hits}
+
+    @property
+    def breakpoints(self) -> list[Breakpoint]:
+        """All there are, by lines."""
+        return [one for _, found in sorted(self._breakpoints.items()) for one in found]
 
     def lines(self, file: str) -> tuple[int, ...]:
         """The lines of a file at which a program can stop, in ascending order."""
@@ -113,22 +206,18 @@ class Debugger:
         routines = [one for unit in units for one in self._program.routines_of(unit)]
         return tuple(sorted({line for one in routines for line in statement_lines(one)}))
 
-    def pause(self) -> None:
-        """Stop before the next statement; may be called from another thread."""
-        self._is_to_pause = True
-
-    def frames(self) -> tuple[StackFrame, ...]:
-        """The routines that are open, the one that runs first."""
-        return self._sink.frames(self._at)
-
-    def watch(self, text: str) -> None:
+    def watch(self, text: str, task: TaskName = "robot", frame: int = 0) -> Watch:
         """Stop where the value of an expression changes; raises `LinkError` for what is none."""
-        node = parsed(text)
-        root = root_of(node)
-        seen = self._inner.look(root) if root is not None else None
-        home = "" if seen is None else seen.home
-        serial = self._sink.serial(self._at.depth)
-        self._watches.append(_Watched(Watch(text), home, serial, self._value_of(text)))
+        root = root_of(parsed(text))
+        seen = self._look(task, frame, root) if root is not None else None
+        frames, place = self.frames(task), None
+        if seen is not None and not seen.home:
+            height = self._tasks[task].height - frame
+            place = (task, height, frames[frame].name)
+        watched = _Watched(Watch(text), "" if seen is None else seen.home, place)
+        watched.value, watched.is_known = self._value_of(task, frame, text), True
+        self._watches.append(watched)
+        return watched.watch
 
     @property
     def watches(self) -> tuple[Watch, ...]:
@@ -139,207 +228,328 @@ class Debugger:
         """Watch something no longer."""
         self._watches = [one for one in self._watches if one.watch != watch]
 
-    def _value_of(self, text: str) -> Value | None:
+    # ----------------------------------------------------------------------- looking around
+
+    @property
+    def tasks(self) -> tuple[TaskName, ...]:
+        """The programs of the run: that of the robot, and that of the submit where there is one."""
+        return tuple(self._tasks)
+
+    @property
+    def arm(self) -> ArmState:
+        """What the arm does."""
+        return ArmState(0, None, 0, 0) if self._world is None else self._world.arm
+
+    def frames(self, task: TaskName = "robot") -> tuple[StackFrame, ...]:
+        """What is open in a program, the innermost first."""
+        frames = self._tasks[task].inside.frames()
+        levels = [] if self._world is None else self._world.levels(task)
+        return tuple(_named(one, levels) for one in frames)
+
+    def names(self, task: TaskName = "robot", frame: int = 0) -> Names:
+        """What variables can be seen in a frame."""
+        return names_in(self._program, self._tasks[task].inside.frames()[frame])
+
+    def look(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value | None:
+        """The value of a variable that is known by its name, ``None`` where it has none.
+
+        Raises `LinkError` where there is no such.
+        """
+        seen = self._look(task, frame, text)
+        return self.value(text, task, frame) if seen is None else seen.value
+
+    def value(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value:
+        """The value of an expression in a frame.
+
+        Raises `LinkError` where it is none or names what is not known, and the fault that the
+        program would have.
+        """
+        return evaluated(parsed(text), *self._names_of(task, frame))
+
+    def assign(self, text: str, value: str, task: TaskName = "robot", frame: int = 0) -> None:
+        """Give a variable, system variable or input the value of an expression.
+
+        Raises `LinkError`, and `Fault` for a value that it cannot have.
+        """
+        if self._is_ended:
+            raise LinkError("the program has ended")
+        names = self._names_of(task, frame)
+        target = place_of(parsed(text), *names)
+        if isinstance(target, str):
+            seen = self._look(task, frame, target)
+            type_ = UNKNOWN if seen is None else seen.type
+        else:
+            type_ = UNKNOWN if self._world is None else self._world.type_of(target)
+        found = evaluated(parsed(value), *names, type_)
+        if type_ != UNKNOWN and not isinstance(target, str):
+            found = converted(found, type_)
+        change = Assigned(task, frame, target, found)
+        self._apply(change)
+        self._history.change(change)
+
+    def _apply(self, change: Assigned) -> None:
+        if isinstance(change.target, str):
+            self._tasks[change.task].inside.put(change.target, change.value, change.frame)
+        elif self._world is None:
+            raise LinkError(f"{change.target[0]} is the controller's, which nobody asks here")
+        else:
+            self._world.assign(change.target, change.value)
+
+    def _names_of(self, task: TaskName, frame: int) -> tuple[Any, Any, Any]:
+        """How `conditions` finds what names mean in a frame."""
+        read = None if self._world is None else self._world.look
+        place = self._tasks[task].inside.frames()[frame]
+        return partial(self._look, task, frame), read, partial(signal_in, self._program, place)
+
+    def _look(self, task: TaskName, frame: int, text: str) -> Seen | None:
+        return self._tasks[task].inside.look(text, frame)
+
+    def _value_of(self, task: TaskName, frame: int, text: str) -> Value | None:
         try:
-            return self.value(text)
+            return self.value(text, task, frame)
         except RuntimeFailure:
             return None
 
-    # ----------------------------------------------------------------------- the port
-
-    @property
-    def depth(self) -> int:
-        """How many calls deep the program is."""
-        return self._inner.depth
-
-    def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the controller is needed, or the client wants a motion travelled."""
-        if self._own is not None:
-            if not self._is_asked:
-                self._is_asked = True
-                return self._own
-            self._own = None
-            motion = self._at_statement(is_new=False)
-            if motion is not None:
-                return self._asked_of_our_own(motion)
-            reply = None
-        else:
-            self._note(reply)
-        while True:
-            request = self._inner.advance(reply)
-            reply = None
-            if isinstance(request, End) and self._inside:
-                return self._left_action(request)
-            if not isinstance(request, Slice):
-                self._since, self._given = 0, request
-                return request
-            self._at = request.at
-            motion = self._at_statement()
-            if motion is not None:
-                return self._asked_of_our_own(motion)
-            if self._since >= self._limits.per_slice:
-                self._since, self._given = 1, None
-                return replace(request, at=self._at)
-            self._since += 1
-
-    def enter(self, code: CodeHandle) -> None:
-        """Push an action, which runs before the program goes on."""
-        self._inside.append((self._inner.depth, self._given, self._own))
-        self._given = self._own = None
-        self._inner.enter(code)
-
-    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
-        """The value of a condition; nothing stops in it."""
-        return self._inner.evaluate(code, read)
-
-    def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``, and what was entered there."""
-        self._inside = [one for one in self._inside if one[0] < depth]
-        self._given = self._own = None
-        self._inner.unwind(depth)
-
-    def companion(self, routine: str, sink: Sink | None = None) -> Executor:
-        """A second executor over the same data lists, which is not debugged."""
-        return self._inner.companion(routine, sink)
-
-    def look(self, text: str) -> Seen | None:
-        """A variable, as the executor inside has it; see `interp.port.inspection`."""
-        return self._inner.look(text)
-
     # ----------------------------------------------------------------------- what goes by
 
-    def _note(self, reply: Value | Fault | None) -> None:
-        """A request was answered."""
-        if self._given is not None and not isinstance(reply, Fault):
-            self.record.note(self._given)
-        self._given = None
+    @property
+    def unseen(self) -> int:
+        """How many statements may begin before one has to be looked at."""
+        history = self._history
+        if history.is_repeating:
+            return history.unseen(self._count())
+        looks = self._breakpoints or self._watches or self._stepping
+        if looks or self._is_to_pause or self._is_selected or not self._is_begun:
+            return 0
+        return history.unseen(self._count())
 
-    def _left_action(self, end: Request) -> Request:
-        _, self._given, self._own = self._inside.pop()
-        self._is_asked = False
-        return end
+    def begins(self, executor: DebuggedExecutor) -> int | None:
+        """A program is about to begin a statement; the line to go on at instead, if any.
 
-    def _asked_of_our_own(self, motion: Move | MoveSpline) -> Request:
-        self._own, self._is_asked = motion, True
-        return motion
-
-    # ----------------------------------------------------------------------- stopping
-
-    def _at_statement(self, *, is_new: bool = True) -> Move | MoveSpline | None:
-        """A statement is about to begin: stop as often as need be; a motion to travel, if any.
-
-        It is not ``is_new`` when a motion was travelled before it.
+        Only of what the debugger wants to see: whatever `unseen` says.
         """
-        while True:
-            stop = self._reason or (self._stop() if is_new else None)
-            self._reason = None
-            if stop is None:
-                return self.record.again()
-            motion = self._obey(self._client(self, stop))
-            if motion is not None:
-                return motion
-            if self._reason is None:
-                return self.record.again()
+        history = self._history
+        history.comes(self._count())
+        line: int | None = None
+        for change in history.due():
+            if isinstance(change, Assigned):
+                self._apply(change)
+            else:
+                line = change.line
+        self._end_search_at(executor)
+        if history.has_arrived():
+            self._is_begun = True
+            for hits in self._hits.values():
+                del hits[bisect_right(hits, history.here[0]) :]
+            self._changed(executor)  # watches have now what they had then
+            return self._stopped(executor, Stop("back", executor.task, executor.at))
+        if line is not None or history.is_repeating:
+            return line
+        stop = self._why(executor)
+        return None if stop is None else self._stopped(executor, stop)
 
-    def _stop(self) -> Stop | None:
+    def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
+        """A program has come to a fault that it does not handle."""
+        self._history.comes(self._count())
+        self._end_search_at(None)
+        if self.stops_at_faults and not self._history.is_repeating:
+            stop = Stop("fault", executor.task, request.at, text=str(request.fault))
+            self._stopped(executor, stop)
+
+    def _end_search_at(self, executor: DebuggedExecutor | None) -> None:
+        if self._history.is_searched(executor):
+            self._history.end_search()
+            raise _Again
+
+    def _count(self) -> int:
+        return sum(one.inside.begun for one in self._tasks.values())
+
+    # ----------------------------------------------------------------------- why to stop
+
+    def _why(self, executor: DebuggedExecutor) -> Stop | None:
         """Why to stop here, if there is a reason."""
-        at = self._at
+        task, at = executor.task, executor.at
         if not self._is_begun:
             self._is_begun = True
-            return Stop("entry", at)
+            return Stop("entry", task, at)
+        if self._is_selected:
+            self._is_selected = False
+            return Stop("selected", task, at)
         if self._is_to_pause:
             self._is_to_pause = False
-            return Stop("pause", at)
-        changed = self._changed(at)
+            return Stop("pause", task, at)
+        changed = self._changed(executor)
         if changed is not None:
             return changed
-        if self._is_stepped():
-            return Stop("step", at)
-        for one in self.breakpoints:
-            if one.line == at.line and _is_of(one.file, at.file):
-                text = self._unmet(one)
-                if text is not None:
-                    return Stop("breakpoint", at, text=text)
-        return None
-
-    def _is_stepped(self) -> bool:
         step = self._stepping
-        if step is None or (len(self._inside) > step.actions and step.way != "into"):
-            return False
-        if len(self._inside) < step.actions:
-            return True
-        if step.way == "into":
-            return True
-        return self._at.depth < step.depth + (step.way == "over")
+        if step is not None and step.is_over(executor, self._ended_motions(step.way)):
+            return Stop("step", task, at)
+        return self._broken(executor)
 
-    def _unmet(self, one: Breakpoint) -> str | None:
+    def _ended_motions(self, way: str) -> int:
+        return self.arm.ended if way == "motion" else 0
+
+    def _broken(self, executor: DebuggedExecutor) -> Stop | None:
+        """The breakpoint that this statement has and that counts."""
+        at, task = executor.at, executor.task
+        found: Stop | None = None
+        for one in self._breakpoints.get(at.line, ()):
+            if not _is_of(one.file, at.file):
+                continue
+            text = self._unmet(one, task)
+            if text is None or not self._counts(one):
+                continue
+            if one.log is None:
+                found = found or Stop("breakpoint", task, at, text=text)
+            elif not self._history.is_repeating:
+                self._log(self._told(one.log, task))
+        return found
+
+    def _unmet(self, one: Breakpoint, task: TaskName) -> str | None:
         """``None`` where the condition is FALSE; else empty, or why it cannot be evaluated."""
         if one.condition is None:
             return ""
         try:
-            return None if self.value(one.condition) is False else ""
+            return None if self.value(one.condition, task) is False else ""
         except RuntimeFailure as error:
             return str(error)
 
-    def _changed(self, at: At) -> Stop | None:
-        """The first watch that changed; those whose activation has ended are forgotten."""
-        self._watches = [one for one in self._watches if one.home or self._is_open(one)]
+    def _counts(self, one: Breakpoint) -> bool:
+        """Whether this hit is one that counts; each is kept, so that going back undoes it."""
+        if one.hits is None:
+            return True
+        hits, count = self._hits[one], self._history.here[0]
+        if not self._history.is_repeating:
+            hits.append(count)
+        return _is_hit(one.hits, bisect_right(hits, count))
+
+    def _told(self, text: str, task: TaskName) -> str:
+        """The text of a breakpoint with the values of what stands in braces."""
+        parts = text.replace("}", "{").split("{")
+        for place in range(1, len(parts), 2):
+            try:
+                parts[place] = value_text(self.value(parts[place], task))
+            except RuntimeFailure as error:
+                parts[place] = f"({error})"
+        return "".join(parts)
+
+    def _changed(self, executor: DebuggedExecutor) -> Stop | None:
+        """The first watch that changed; to be unknown here, or without a value, is no change."""
         found: Stop | None = None
         for one in self._watches:
-            if not self._is_here(one):
+            if not self._is_here(one, executor):
                 continue
-            before, one.value = one.value, self._value_of(one.watch.text)
-            if found is None and _differ(before, one.value):
-                found = Stop("watch", at, one.watch, before, one.value)
+            is_known, one.is_known = one.is_known, True
+            before, now = one.value, self._value_of(executor.task, 0, one.watch.text)
+            if now is None or not _differ(before, now):
+                continue
+            one.value = now
+            if found is None and is_known:
+                found = Stop("watch", executor.task, executor.at, one.watch, before, now)
         return found
 
-    def _is_open(self, one: _Watched) -> bool:
-        return self._sink.is_open(one.serial, self._at.depth)
-
-    def _is_here(self, one: _Watched) -> bool:
+    def _is_here(self, one: _Watched, executor: DebuggedExecutor) -> bool:
         """Whether the watched variable is known here, and not another one of its name."""
+        if one.place is not None:
+            if one.place[:2] != (executor.task, executor.height):
+                return False
+            return one.place[2] == executor.inside.frames()[0].name
         if not one.home:
-            return one.serial == self._sink.serial(self._at.depth)
+            return True
         root = root_of(parsed(one.watch.text))
-        seen = None if root is None else self._inner.look(root)
+        seen = None if root is None else executor.inside.look(root)
         return seen is not None and seen.home == one.home
 
     # ----------------------------------------------------------------------- commands
 
-    def _obey(self, command: Command) -> Move | MoveSpline | None:
-        """Carry out a command; gives the motion that it wants travelled."""
-        self._stepping = None
-        match command:
-            case StepCommand(way=way):
-                self._stepping = _Stepping(way, self._at.depth, len(self._inside))
-            case Select(line=line):
-                self._select(line)
-            case Backward():
-                motion = self.record.undoing()
-                text = "" if motion else "there is no motion that can be travelled back"
-                self._reason = Stop("backward" if motion else "refused", self._at, text=text)
-                return motion
-        return None
+    def _stopped(self, executor: DebuggedExecutor, stop: Stop) -> int | None:
+        """Do what the client wants: go on, and if so at which line, or leave this run."""
+        while True:
+            self._stepping = None
+            match self._told_by_client(stop):
+                case Go():
+                    return None
+                case StepCommand(way=way):
+                    self._stepping = self._step(way, executor)
+                    return None
+                case Back(way=way):
+                    if self._history.here > START:
+                        self._history.look_back(self._fitting(way, executor))
+                        raise _Again
+                    text = "this is the first statement"
+                case Restart():
+                    self._history.forget()
+                    self._history.return_to(START)
+                    raise _Again
+                case Quit():
+                    raise _Left
+                case Select(line=line):
+                    text = self._against(line, executor, stop)
+                    if not text:
+                        self._history.change(Selected(line))
+                        self._is_selected = True
+                        return line
+            stop = Stop("refused", stop.task, stop.at, text=text)
 
-    def _select(self, line: int) -> None:
-        name = self.frames()[0].name
-        routine = routine_at(self._program, self._at.file, name)
-        if self._inside and self._inside[-1][0] == self._at.depth:
-            reason = "an action is no routine"
-        elif routine is None:
-            reason = f"{name} is not known"
-        else:
-            reason = reason_against(routine, self._at.line, line)
-        if reason:
-            self._reason = Stop("refused", self._at, text=reason)
-            return
-        self._inner.select(line)
-        self._at = replace(self._at, line=line)
-        # The executor comes to the statement, which asks before it begins, as every one does.
-        request = self._inner.advance(None)
-        if isinstance(request, Fail):
-            raise LinkError("the statement that was selected cannot begin")
-        self._reason = Stop("selected", self._at)
+    def _told_by_client(self, stop: Stop) -> Command:
+        try:
+            return self._client(self, stop)
+        except RuntimeFailure as error:  # which would count as a fault of the program
+            raise RuntimeError(f"the client has failed: {error}") from error
+
+    def _step(self, way: str, executor: DebuggedExecutor) -> _Stepping:
+        return _Stepping(way, executor.task, executor.height, self._ended_motions(way))
+
+    def _fitting(self, way: str, executor: DebuggedExecutor) -> Callable[[DebuggedExecutor], bool]:
+        """What statement to go back to."""
+        if way == "go":
+            return lambda one: self._changed(one) is not None or self._broken(one) is not None
+        step = self._step(way, executor)
+        if way == "motion":
+            return lambda one: one.task == step.task and self.arm.ended < step.ended
+        return lambda one: step.is_over(one, 0)
+
+    def _against(self, line: int, executor: DebuggedExecutor, stop: Stop) -> str:
+        """Why a line cannot be selected; empty where it can."""
+        if self._is_ended or stop.reason == "fault":
+            return "the program has ended"
+        frame = executor.inside.frames()[0]
+        routine = routine_at(self._program, executor.at.file, frame.name)
+        if frame.is_action:
+            return "an action is no routine"
+        if routine is None:
+            return f"{frame.name} is not known"
+        return reason_against(routine, executor.at.line, line)
+
+
+def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame:
+    """A frame by its name, an action by what has entered it: the last of ``levels``."""
+    if not frame.is_action or not levels:
+        return frame
+    kind, priority = levels.pop()
+    return replace(frame, name=f"{kind} {priority or ''}".rstrip() + f" in {frame.name}")
+
+
+def _is_hit(hits: str | None, count: int) -> bool:
+    """Whether the hit of a number counts; raises `LinkError` for what says nothing about hits."""
+    text = (hits or ">=1").replace(" ", "")
+    for sign in (">=", ">", "<=", "<", "==", "=", "%", ""):
+        if text.startswith(sign) and text[len(sign) :].isdigit():
+            number = int(text[len(sign) :])
+            match sign:
+                case ">=":
+                    return count >= number
+                case ">":
+                    return count > number
+                case "<=":
+                    return count <= number
+                case "<":
+                    return count < number
+                case "%" if number > 0:
+                    return count % number == 0
+                case "" | "=" | "==":
+                    return count == number
+    raise LinkError(f"{hits}: hits are a number such as 3, >=3 or %3")
 
 
 def _is_of(wanted: str, file: str) -> bool:

@@ -19,7 +19,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.services import Services
-from interp.bytecode.vm.state import Completion, Operation, State
+from interp.bytecode.vm.state import Call, Completion, Operation, State
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
 from interp.port.events import Kind, Sink, wanting
@@ -105,6 +105,10 @@ class _Calls:
     def __len__(self) -> int:
         return self._core.open
 
+    def __getitem__(self, where: int) -> Call:
+        code, first, statement, serial = self._core.call(where % self._core.open)
+        return _nowhere, code, first, 0, statement, serial
+
 
 class _State(Core):
     """What the machine works on, which lies in C, as `interp.bytecode.vm.state.State` shows it."""
@@ -124,6 +128,10 @@ class _State(Core):
     def cells(self) -> Core:
         """The memory."""
         return self
+
+
+def _nowhere() -> None:
+    """Where an open call goes on is C's affair."""
 
 
 class _Body:

@@ -277,6 +277,21 @@ static PyObject *core_close(PyObject *self, PyObject *Py_UNUSED(ignored))
     Py_RETURN_NONE;
 }
 
+/* Of an open call, the outermost being 0: the code object, first cell, statement, serial number. */
+static PyObject *core_call(PyObject *self, PyObject *arguments)
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    int number;
+    if (!PyArg_ParseTuple(arguments, "i", &number))
+        return NULL;
+    if (number < 0 || number >= machine->open) {
+        PyErr_SetString(PyExc_IndexError, "there is no such call");
+        return NULL;
+    }
+    const struct krl_call *call = &machine->calls[number];
+    return Py_BuildValue("iiii", (int)call->code, (int)call->fp, (int)call->statement, (int)call->serial);
+}
+
 /* The first cell of the frame of a serial number; None where its routine has ended. */
 static PyObject *core_frame_of(PyObject *self, PyObject *arguments)
 {
@@ -308,6 +323,7 @@ static PyMethodDef core_methods[] = {
     {"run", core_run, METH_VARARGS, "run(step, is_begun): why it stopped, and 8 times where."},
     {"open_frame", core_open, METH_VARARGS, "open_frame(code): whether there is room for it."},
     {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
+    {"call", core_call, METH_VARARGS, "call(number): code, first cell, statement, serial of an open call."},
     {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
     {NULL, NULL, 0, NULL},
 };

@@ -1,6 +1,7 @@
-"""What a debugger needs of an executor besides running: to look at variables, and to jump.
+"""What a debugger needs of an executor besides running: to look, to change, to stop, to jump.
 
-Both are for the moment between two statements, while a `interp.port.requests.Slice` is open.
+All is for the moment between two statements, while a `interp.port.requests.Slice` is open, and for
+an executor that has ended.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ from typing import Protocol
 
 from grammar.semantics.types import Type
 from interp.port.executor import Executor
+from interp.port.requests import At
 from interp.values.values import Value
 
-__all__ = ["Inspectable", "Seen"]
+__all__ = ["Inspectable", "Seen", "StackFrame"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +30,43 @@ class Seen:
     home: str
 
 
-class Inspectable(Executor, Protocol):
-    """An executor that can be debugged."""
+@dataclass(frozen=True, slots=True)
+class StackFrame:
+    """A routine that is open and where it is, or an action of an interrupt or a trigger in one."""
 
-    def look(self, text: str) -> Seen | None:
-        """A variable of the program, or a part of one, by what it is called where the program is.
+    name: str
+    at: At
+    is_action: bool = False
+
+
+class Inspectable(Executor, Protocol):
+    """An executor that can be debugged. Frames are counted from the innermost, which is 0."""
+
+    @property
+    def begun(self) -> int:
+        """How many statements have begun, those of conditions included."""
+        ...
+
+    def ask_at(self, count: int) -> None:
+        """Ask for time before the next statement once so many have begun, instead of later.
+
+        It holds until the next request: then a slice is as long as the limits have it.
+        """
+        ...
+
+    def frames(self) -> tuple[StackFrame, ...]:
+        """What is open, the innermost first."""
+        ...
+
+    def look(self, text: str, frame: int = 0) -> Seen | None:
+        """A variable of the program, or a part of one, by what it is called in a frame.
 
         ``"I"``, ``"F.X"``, ``"A[2,1]"``, ``"T[]"``; ``None`` where there is no such.
         """
+        ...
+
+    def put(self, text: str, value: Value, frame: int = 0) -> None:
+        """Give such a variable a value; raises `interp.values.faults.Fault`, `LinkError`."""
         ...
 
     def select(self, line: int) -> None:

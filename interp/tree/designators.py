@@ -163,6 +163,11 @@ class Designators(ABC):
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:
         """A variable of the program by what it is called here [TYP-18]."""
+        place = self.place_of(text)
+        return None if place is None else (place.type, place.get())
+
+    def place_of(self, text: str) -> LocalPlace | None:
+        """The place of a variable of the program by what it is called here."""
         return find_text(text, self._named)
 
     def _named(self, key: str) -> Place | None:

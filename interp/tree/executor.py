@@ -12,7 +12,7 @@ from typing import Any
 
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Seen
+from interp.port.inspection import Seen, StackFrame
 from interp.port.requests import (
     At,
     CodeHandle,
@@ -175,9 +175,38 @@ class TreeExecutor:
         self._run.guard = Guard.OFF
         self._open, self._is_asked, self._resumed = None, False, Resumed()
 
-    def look(self, text: str) -> Seen | None:
+    # ----------------------------------------------------------------------- inspection
+
+    @property
+    def begun(self) -> int:
+        """How many statements have begun."""
+        return self._run.begun
+
+    def ask_at(self, count: int) -> None:
+        """The slice that has begun ends once so many statements have begun altogether."""
+        self._run.due = count
+
+    def frames(self) -> tuple[StackFrame, ...]:
+        """What is open; see `interp.port.inspection`."""
+        found: list[StackFrame] = []
+        depth = self._run.depth
+        for active in reversed(self._stack):
+            frame, is_action = active.frame, active.interrupted is not None
+            at = At(frame.unit.module.path, frame.line, depth)
+            found.append(StackFrame(frame.name, at, is_action))
+            depth -= not is_action
+        return tuple(found)
+
+    def look(self, text: str, frame: int = 0) -> Seen | None:
         """A variable where the program is; see `interp.port.inspection`."""
-        return Statements(self._run, self._stack[-1].frame).look(text)
+        return Statements(self._run, self._stack[-1 - frame].frame).look(text)
+
+    def put(self, text: str, value: Value, frame: int = 0) -> None:
+        """Give a variable a value; see `interp.port.inspection`."""
+        place = Statements(self._run, self._stack[-1 - frame].frame).place_of(text)
+        if place is None:
+            raise LinkError(f"{text} is not known here")
+        place.set(value)
 
     def select(self, line: int) -> None:
         """Go on at a line of the routine that runs; see `interp.port.inspection`."""

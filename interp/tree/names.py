@@ -5,10 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from grammar.semantics.types import Type
 from interp.tree.places import LocalPlace, Place, element, member
 from interp.values.faults import Fault, LinkError
-from interp.values.values import Value
 
 __all__ = ["find_text"]
 
@@ -19,8 +17,8 @@ _WRITTEN = re.compile(
 _STEP = re.compile(r"(\.?)(\w+)|\[([\s\d,]*)\]", re.ASCII)
 
 
-def find_text(text: str, find: Callable[[str], Place | None]) -> tuple[Type, Value | None] | None:
-    """The type and value of a variable of the program or a part of one, ``None`` without one.
+def find_text(text: str, find: Callable[[str], Place | None]) -> LocalPlace | None:
+    """The place of a variable of the program or a part of one, ``None`` without one.
 
     An array may have empty brackets. ``find`` gives the place of a variable by its name in upper
     case; variables of the world are not looked up.
@@ -41,4 +39,4 @@ def find_text(text: str, find: Callable[[str], Place | None]) -> tuple[Type, Val
                 return None
     except (Fault, LinkError):  # there is no such part
         return None
-    return (place.type, place.get()) if isinstance(place, LocalPlace) else None
+    return place if isinstance(place, LocalPlace) else None

@@ -89,7 +89,8 @@ class ProgramState:
     """The state of a program apart from its frames.
 
     ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold. The
-    sink is there once for each kind of event, where it wants that kind.
+    sink is there once for each kind of event, where it wants that kind. ``begun`` are the
+    statements that have begun, ``due`` is when as many have begun as end the slice.
     """
 
     def __init__(
@@ -109,8 +110,8 @@ class ProgramState:
         self.depth = 0
         self.cells = 0
         self.guard = Guard.OFF
-        self._begun = 0
-        self._since = 0
+        self.begun = 0
+        self.due = self.limits.per_slice
         self._sizes: dict[Routine, int] = {}
         self._codes: list[Handed] = []
         self._numbers: dict[tuple[ast.Node, Frame], int] = {}
@@ -123,18 +124,17 @@ class ProgramState:
         """A statement begins: it is counted, told, and time may pass before it."""
         frame.line, frame.has_begun = line, True
         self.guard = Guard.NOW if self.guard is Guard.NEXT else Guard.OFF
-        if self._begun >= self.limits.statements:
+        if self.begun >= self.limits.statements:
             raise BudgetExhausted("the program does not end")
-        if self._since >= self.limits.per_slice:
+        if self.begun >= self.due:
             yield Slice(self.at(frame))
-        self._begun += 1
-        self._since += 1
+        self.begun += 1
         if self.lines is not None:
             self.lines.line(self.at(frame))
 
     def asked(self) -> None:
         """A request was made: a new slice begins."""
-        self._since = 0
+        self.due = self.begun + self.limits.per_slice
 
     def size_of(self, routine: Routine) -> int:
         """How many cells the parameters and local data of a routine have."""

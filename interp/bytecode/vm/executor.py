@@ -19,14 +19,15 @@ from interp.bytecode.cell_layout import Raw
 from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
 from interp.bytecode.verifier.verify import Verified
+from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services
 from interp.bytecode.vm.state import Completion, Operation, State
 from interp.bytecode.vm.statement_budget import Guard
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Seen
-from interp.port.requests import CodeHandle, Crash, End, Fail, Request, Value, Write
+from interp.port.inspection import Seen, StackFrame
+from interp.port.requests import At, CodeHandle, Crash, End, Fail, Request, Value, Write
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
@@ -209,9 +210,54 @@ class Machine:
         self._services.counter.guard = Guard.OFF
         self._open = _Open(self._behind_statement())
 
-    def look(self, text: str) -> Seen | None:
+    # ----------------------------------------------------------------------- inspection
+
+    @property
+    def begun(self) -> int:
+        """How many statements have begun."""
+        return self._services.counter.begun
+
+    def ask_at(self, count: int) -> None:
+        """The slice that has begun ends once so many statements have begun altogether."""
+        self._services.counter.ask_at(count)
+
+    def frames(self) -> tuple[StackFrame, ...]:
+        """What is open; see `interp.port.inspection`."""
+        found: list[StackFrame] = []
+        depth, actions = self.depth, {one.calls for one in self._entered}
+        for number in range(len(self._state.calls) + 1):
+            code, _, statement = self._frame(number)
+            code_object = self._program.codes[code]
+            line = code_object.line
+            if statement >= 0:
+                line = code_object.instructions[statement].operands[0]
+            is_action = len(self._state.calls) - number in actions
+            owner = (
+                code_object if code_object.owner is None else self._program.codes[code_object.owner]
+            )
+            found.append(StackFrame(owner.name, At(code_object.file, line, depth), is_action))
+            depth -= not is_action
+        return tuple(found)
+
+    def look(self, text: str, frame: int = 0) -> Seen | None:
         """A variable where the program is; see `interp.port.inspection`."""
-        return self._services.look(text)
+        return self._names(frame).look(text)
+
+    def put(self, text: str, value: Value, frame: int = 0) -> None:
+        """Give a variable a value; see `interp.port.inspection`."""
+        self._names(frame).put(text, value)
+
+    def _frame(self, number: int) -> tuple[int, int, int]:
+        """The code object, the first cell and the statement of a frame, the innermost first."""
+        state = self._state
+        if number == 0:
+            return state.code, state.fp, state.statement
+        _, code, first, _, statement, _ = state.calls[-number]
+        return code, first, statement
+
+    def _names(self, number: int) -> Names:
+        code, first, _ = self._frame(number)
+        return Names(self._program, InFrame(self._state.cells, code, first))
 
     def select(self, line: int) -> None:
         """Go on at a line of the routine that runs; see `interp.port.inspection`."""

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
 from grammar.semantics.types import Array, Type
-from interp.bytecode.cell_layout import array_at, offset_of, path_to, shown, value_at
+from interp.bytecode.cell_layout import (
+    Raw,
+    array_at,
+    cells_of,
+    offset_of,
+    path_to,
+    shown,
+    size,
+    value_at,
+)
 from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
 from interp.bytecode.vm.state import State
 from interp.port.inspection import Seen
 from interp.port.requests import Path
+from interp.values.faults import LinkError
 from interp.values.values import Value
 
-__all__ = ["Names"]
+__all__ = ["InFrame", "Names"]
 
 
 _WRITTEN = re.compile(
@@ -24,6 +35,16 @@ _WRITTEN = re.compile(
 _STEP = re.compile(r"\w+", re.ASCII)
 
 
+@dataclass(frozen=True, slots=True)
+class InFrame:
+    """A frame that is open: the cells, the number of its code object, its first cell."""
+
+    cells: list[Raw | None]
+    code: int
+    fp: int
+    last: int = 0
+
+
 class Names:
     """Finds out what is called how, and what it has as its value.
 
@@ -31,7 +52,7 @@ class Names:
     tells something else than it has assigned is told nothing.
     """
 
-    def __init__(self, program: Program, state: State) -> None:
+    def __init__(self, program: Program, state: State | InFrame) -> None:
         self._program = program
         self._state = state
         self._slots: dict[int, tuple[Slot, ...]] = {}
@@ -99,6 +120,23 @@ class Names:
 
         An array may have empty brackets. The data of the own module come before those of others.
         """
+        place = self._place(text)
+        if place is None:
+            return None
+        type_, address = place
+        if address is None:
+            return type_, None
+        return shown(type_), value_at(self._state.cells, address, type_)
+
+    def put(self, text: str, value: Value) -> None:
+        """Give what a text names a value; raises `LinkError` and `interp.values.faults.Fault`."""
+        type_, address = self._place(text) or (None, None)
+        if type_ is None or address is None:
+            raise LinkError(f"{text} is not known here")
+        self._state.cells[address : address + size(type_)] = cells_of(value, type_)
+
+    def _place(self, text: str) -> tuple[Type, int | None] | None:
+        """The type of what a text names, and its address, if it leads anywhere."""
         match = _WRITTEN.fullmatch(text)
         if match is None:
             return None
@@ -106,14 +144,10 @@ class Names:
             int(step) if step.isdigit() else step for step in _STEP.findall(match[1].upper())
         ]
         place = self._variable(str(root))
-        if place is None:
-            return None
-        if place[1] is None:
-            return None if steps else (place[0], None)
+        if place is None or place[1] is None:
+            return None if steps else place
         part = offset_of(place[0], steps)
-        if part is None:
-            return None
-        return shown(part[1]), value_at(self._state.cells, place[1] + part[0], part[1])
+        return None if part is None else (part[1], place[1] + part[0])
 
     def look(self, text: str) -> Seen | None:
         """The same with what a debugger wants to know besides; see `interp.port.inspection`."""

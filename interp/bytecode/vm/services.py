@@ -17,7 +17,6 @@ from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests
 from interp.port.events import Sink, wanting
-from interp.port.inspection import Seen
 from interp.port.requests import At, MoveEmily, Request, Slice, Value, Write
 from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Limits
@@ -85,10 +84,6 @@ class Services:
         captures = self._program.codes[number].captures
         serial = self._state.serial if captures else 0
         return HandedOver(number + serial * len(self._program.codes))
-
-    def look(self, text: str) -> Seen | None:
-        """A variable where the program is; see `interp.port.inspection`."""
-        return self._names.look(text)
 
     # ----------------------------------------------------------------------- statements
 

@@ -46,7 +46,7 @@ class Counter:
         self._limits = limits
         self._guard = Guard.OFF
         self._begun = 0
-        self._since = 0
+        self._due = limits.per_slice
         self._quota = 0
         self._refill()
 
@@ -61,10 +61,19 @@ class Counter:
         self._guard = guard
         self._refill()
 
+    @property
+    def begun(self) -> int:
+        """How many statements have begun."""
+        return self._begun + self._quota - self._state.left
+
     def asked(self) -> None:
         """A request was made: a new slice begins."""
+        self.ask_at(self.begun + self._limits.per_slice)
+
+    def ask_at(self, count: int) -> None:
+        """The slice that has begun ends once so many statements have begun altogether."""
         self._settle(self._quota - self._state.left)
-        self._since = 0
+        self._due = count
         self._refill()
 
     def pause(self) -> Pause:
@@ -74,18 +83,16 @@ class Counter:
         self._guard = Guard.NOW if self._guard is Guard.NEXT else Guard.OFF
         if self._begun >= self._limits.statements:
             return Pause.EXHAUSTED
-        return Pause.SLICE if self._since >= self._limits.per_slice else Pause.NOTHING
+        return Pause.SLICE if self._begun >= self._due else Pause.NOTHING
 
     def begin(self) -> None:
         """The statement begins, after whatever came before it."""
         self._begun += 1
-        self._since += 1
         self._refill()
 
     def _settle(self, begun: int) -> None:
         self._begun += begun
-        self._since += begun
 
     def _refill(self) -> None:
-        free = min(self._limits.per_slice - self._since, self._limits.statements - self._begun)
+        free = min(self._due, self._limits.statements) - self._begun
         self._quota = self._state.left = 1 + (max(free, 0) if self._guard is Guard.OFF else 0)

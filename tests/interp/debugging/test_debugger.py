@@ -4,30 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from grammar.semantics.types import UNKNOWN
 from grammar.syntax.source import Source
 from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
-from interp.debugging import (
-    Backward,
-    Breakpoint,
-    Command,
-    Debugger,
-    Go,
-    Select,
-    StepCommand,
-    Stop,
-    Watch,
-)
+from interp.controller.controller import ArmState
+from interp.debugging.client import Breakpoint, Command, Go, Select, StepCommand, Stop, Watch
+from interp.debugging.debugger import Debugger
 from interp.native import AVAILABLE
 from interp.port.events import Recorder, Sink
 from interp.port.inspection import Inspectable
-from interp.port.requests import At, DeclareInterrupt, End, Fail, Move, Request, Slice, Wait, Write
+from interp.port.requests import DeclareInterrupt, End, Fail, Request, Slice, Wait, Write
 from interp.program.load import CheckedProgram, Limits, load
 from interp.tree import TreeExecutor
 from interp.values.faults import LinkError
@@ -72,19 +66,6 @@ DEFFCT INT HALF(N:IN)
 ENDFCT
 """
 DATA = "DEFDAT MAIN\nINT TOTAL=0\nENDDAT\n"
-MOVES = """\
-DEF MAIN()
-  INT I
-  I=1
-  PTP {A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 0.0,A6 0.0}
-  LIN {X 100.0,Y 0.0,Z 900.0,A 0.0,B 90.0,C 0.0} C_DIS
-  I=2
-  CIRC {X 150.0,Y 50.0,Z 900.0}, {X 200.0,Y 0.0,Z 900.0,A 0.0,B 90.0,C 0.0}
-  I=3
-  LIN_REL {X 10.0}
-  I=4
-END
-"""
 
 
 @dataclass
@@ -96,14 +77,16 @@ class Script:
     seen: list[Any] = field(default_factory=list)
 
     def __call__(self, debugger: Debugger, stop: Stop) -> Command:
-        """The next command, behind all that only looks."""
+        """The next command, behind all that only looks; the end is no stop here."""
+        if stop.reason == "ended":
+            return Go()
         self.stops.append(stop)
         while self.commands:
             command = self.commands.pop(0)
             if callable(command):
                 self.seen.append(command(debugger))
             else:
-                assert isinstance(command, Go | StepCommand | Select | Backward)
+                assert isinstance(command, Go | StepCommand | Select)
                 return command
         return Go()
 
@@ -116,6 +99,29 @@ class Script:
     def reasons(self) -> list[str]:
         """Why it stopped."""
         return [one.reason for one in self.stops]
+
+
+@dataclass
+class World:
+    """What a debugger asks of the controller."""
+
+    stub: StubController
+    arm: ArmState = field(default_factory=lambda: ArmState(0, None, 0, 0))
+
+    def look(self, path: Any) -> Any:
+        """The value of a system variable."""
+        return self.stub.read(path)
+
+    def assign(self, path: Any, value: Any) -> None:
+        """Nothing is assigned here."""
+
+    def type_of(self, _path: Any) -> Any:
+        """Types are not known here."""
+        return UNKNOWN
+
+    def levels(self, _task: str) -> Any:
+        """Nothing is known of interrupts here."""
+        return []
 
 
 def make_of(name: str, program: CheckedProgram) -> Callable[[Limits, Sink | None], Inspectable]:
@@ -159,8 +165,12 @@ def debug(request: pytest.FixtureRequest) -> Callable[..., tuple[Script, list[Re
         program = program_of(text, data if text is MAIN else "")
         script, world = Script(list(commands)), StubController()
         make = make_of(request.param, program)
-        debugger = Debugger(make, program, script, read=world.read)
-        return script, driven(debugger, world)
+        debugger = Debugger(program, script)
+        debugger.attach(World(world))
+        inside = make(Limits(), None)
+        requests = debugger.run(lambda: driven(debugger.around(inside, 1000), world))
+        assert requests is not None
+        return script, requests
 
     return ran
 
@@ -177,7 +187,10 @@ def test_a_program_does_the_same_under_a_debugger(name: str, per_slice: int) -> 
     alone, debugged = Recorder(), Recorder()
     expected = driven(make(limits, alone), StubController())
     script = Script([StepCommand("into")] * 20)
-    found = driven(Debugger(make, program, script, limits, debugged), StubController())
+    debugger = Debugger(program, script)
+    inside = make(limits, debugged)
+    found = debugger.run(lambda: driven(debugger.around(inside, per_slice), StubController()))
+    assert found is not None
     assert expected == found
     assert alone.events == debugged.events
     assert any(isinstance(one, Slice) for one in expected) == (per_slice < 1000)
@@ -196,21 +209,21 @@ def test_it_stops_before_the_first_statement(debug: Any) -> None:
 
 def test_breakpoint_stops_at_each_pass(debug: Any) -> None:
     """A breakpoint in a loop is met at each pass."""
-    script, _ = debug(lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 16)))
+    script, _ = debug(lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 16)]))
     assert [4, 16, 16, 16] == script.lines
 
 
 def test_condition_of_a_breakpoint(debug: Any) -> None:
     """A breakpoint with a condition stops only where it is TRUE."""
     set_one = Breakpoint("MAIN.SRC", 16, "(I==4) AND (F.X>5.0) AND NOT (A[1]==A[2])")
-    script, _ = debug(lambda debugger: debugger.breakpoints.append(set_one))
+    script, _ = debug(lambda debugger: debugger.set_breakpoints([set_one]))
     assert [4, 16] == script.lines
 
 
 def test_condition_that_means_nothing_stops_and_says_so(debug: Any) -> None:
     """A condition that cannot be evaluated counts as TRUE, and the reason is told."""
     set_one = Breakpoint("main.src", 22, "NOWHERE==1")
-    script, _ = debug(lambda debugger: debugger.breakpoints.append(set_one))
+    script, _ = debug(lambda debugger: debugger.set_breakpoints([set_one]))
     assert [4, 22] == script.lines
     assert "NOWHERE is not known here" == script.stops[1].text
 
@@ -258,7 +271,7 @@ def test_step_out_goes_back_to_the_caller(debug: Any) -> None:
 def test_frames_tell_who_called_from_where(debug: Any) -> None:
     """The routines that are open are told from the innermost outwards, each with its place."""
     script, _ = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 27)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 27)]),
         Go(),
         lambda debugger: [(one.name, one.at.line) for one in debugger.frames()],
     )
@@ -272,7 +285,7 @@ def test_values_where_a_program_has_stopped(debug: Any) -> None:
     """Variables, members, elements, data lists, system variables and expressions can be seen."""
     texts = ("I", "A[2]", "A[I+1]", "F.Z", "TOTAL", "$OUT[1]", "(I+1)*2", "A[1]>A[2]")
     script, _ = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 8)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 8)]),
         Go(),
         lambda debugger: [debugger.value(text) for text in texts],
     )
@@ -313,7 +326,7 @@ def test_watch_on_local_data_is_of_its_activation(debug: Any) -> None:
     script, _ = debug(
         StepCommand(),
         lambda debugger: debugger.watch("I"),
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 27)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 27)]),
     )
     assert [("breakpoint", 27), ("watch", 9)] == [
         (one.reason, one.at.line) for one in script.stops[2:4]
@@ -358,7 +371,7 @@ def test_loop_entered_by_selection_goes_on_as_a_loop(debug: Any) -> None:
     script, _ = debug(
         StepCommand(),
         Select(16),
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 16)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 16)]),
     )
     assert [16, 16, 16, 16, 16] == script.lines[2:]
 
@@ -366,7 +379,7 @@ def test_loop_entered_by_selection_goes_on_as_a_loop(debug: Any) -> None:
 def test_selection_out_of_a_loop(debug: Any) -> None:
     """The loop around the present statement is left."""
     script, _ = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 19)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 19)]),
         Go(),
         Select(5),
         StepCommand(),
@@ -377,7 +390,7 @@ def test_selection_out_of_a_loop(debug: Any) -> None:
 def test_selection_within_a_for(debug: Any) -> None:
     """Inside a FOR that has begun, its statements can be selected."""
     script, _ = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 19)),
+        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 19)]),
         Go(),
         Select(19),
         lambda debugger: debugger.value("I"),
@@ -402,56 +415,6 @@ def test_selection_that_is_refused(debug: Any, line: int, text: str) -> None:
     assert text == script.stops[1].text
 
 
-# ------------------------------------------------------------------------------- backwards
-
-
-def moves(requests: list[Request]) -> list[tuple[str, float]]:
-    """Kinds of motions with the first component of their targets."""
-    return [(one.kind, one.target.members[0]) for one in requests if isinstance(one, Move)]
-
-
-def test_motions_are_travelled_back_and_forth(debug: Any) -> None:
-    """CIRC and LIN are undone in turn, the first motion is not; then both are travelled again."""
-    script, requests = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 8)),
-        Go(),
-        *[Backward()] * 3,
-        text=MOVES,
-    )
-    assert ["entry", "breakpoint", "backward", "backward", "refused"] == script.reasons
-    assert [3, 8, 8, 8, 8] == script.lines
-    expected = [("PTP", 0.0), ("LIN", 100.0), ("CIRC", 200.0)]
-    back = [("CIRC", 100.0), ("LIN", 0.0)]
-    again = [("LIN", 100.0), ("CIRC", 200.0)]
-    assert [*expected, *back, *again, ("LIN_REL", 10.0)] == moves(requests)
-    undone = [one for one in requests if isinstance(one, Move)][3:5]
-    assert [(), ()] == [one.criteria for one in undone]
-
-
-def test_statements_are_not_undone(debug: Any) -> None:
-    """Going backwards changes no variable, and executes none but motions."""
-    script, requests = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 8)),
-        Go(),
-        Backward(),
-        lambda debugger: debugger.value("I"),
-        text=MOVES,
-    )
-    assert 2 == script.seen[-1]
-    assert {"Move", "End"} == {type(one).__name__ for one in requests}
-
-
-def test_relative_motion_is_undone_absolutely(debug: Any) -> None:
-    """The way back from LIN_REL is a LIN to where it began."""
-    _, requests = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 10)),
-        Go(),
-        Backward(),
-        text=MOVES,
-    )
-    assert [("LIN_REL", 10.0), ("LIN", 200.0), ("LIN_REL", 10.0)] == moves(requests)[3:]
-
-
 # ------------------------------------------------------------------------------- interrupts
 
 INTERRUPTED = """\
@@ -473,7 +436,8 @@ def test_steps_and_actions(name: str, way: Any, lines: list[int]) -> None:
     """An action that comes up meanwhile is stepped over, or into."""
     program, world = program_of(INTERRUPTED), StubController()
     script = Script([StepCommand(way)] * (len(lines) - 1))
-    debugger = Debugger(make_of(name, program), program, script)
+    stops = Debugger(program, script)
+    debugger = stops.around(make_of(name, program)(Limits(), None), 1000)
     action = None
     reply: Any = None
     is_done = False
@@ -506,12 +470,9 @@ def test_an_expression_is_no_statement(debug: Any) -> None:
     assert ["I=: this is no expression"] == script.seen
 
 
-def test_places_of_own_motions_are_those_of_the_program(debug: Any) -> None:
-    """A motion that is travelled back says which motion of the program it undoes."""
-    _, requests = debug(
-        lambda debugger: debugger.breakpoints.append(Breakpoint("main.src", 8)),
-        Go(),
-        Backward(),
-        text=MOVES,
-    )
-    assert At("main.src", 7, 0) == [one for one in requests if isinstance(one, Move)][3].at
+def test_the_example_of_the_documentation(capsys: pytest.CaptureFixture[str]) -> None:
+    """It works as it stands: a breakpoint, a value, a step back."""
+    text = (Path(__file__).parents[3] / "docs/debugging.md").read_text(encoding="utf-8")
+    exec(text.partition("```python\n")[2].partition("```")[0], {})
+    expected = ["entry 3", "breakpoint 4", "8", "back 3", "6"]
+    assert expected == [line.partition(" [")[0] for line in capsys.readouterr().out.splitlines()]

@@ -1,0 +1,107 @@
+"""An executor around another one, which a debugger can stop before every statement.
+
+The executor inside is asked to ask for time where the debugger wants to look. Slices that would
+not have come are kept from the outside: there, a program that is debugged makes the same requests
+as without a debugger.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from interp.controller.trace import TaskName
+from interp.port.events import Sink
+from interp.port.executor import Executor, Reader
+from interp.port.inspection import Inspectable
+from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, Value
+from interp.values.faults import Fault
+
+if TYPE_CHECKING:
+    from interp.debugging.debugger import Debugger
+
+__all__ = ["DebuggedExecutor"]
+
+
+class DebuggedExecutor:
+    """Runs ``inside``, and shows ``debugger`` every statement it wants to see; see `Executor`."""
+
+    def __init__(
+        self, debugger: Debugger, task: TaskName, inside: Inspectable, per_slice: int
+    ) -> None:
+        self.task: TaskName = task
+        self.inside = inside
+        self.at = At("", 0, 0)
+        self._debugger = debugger
+        self._per_slice = per_slice
+        #: When the slice ends that the outside has given.
+        self._due = inside.begun + per_slice
+        self._open: Request | None = None
+        self._again: Request | None = None
+        #: For each action that runs: the depth it was entered at, and the request it interrupted.
+        self._actions: list[tuple[int, Request | None]] = []
+
+    @property
+    def height(self) -> int:
+        """How many calls and actions are open."""
+        return self.at.depth + len(self._actions)
+
+    @property
+    def is_at_action(self) -> bool:
+        """Whether what runs is an action itself, and no routine that it has called."""
+        return bool(self._actions) and self._actions[-1][0] == self.at.depth
+
+    # ----------------------------------------------------------------------- the port
+
+    @property
+    def depth(self) -> int:
+        """How many calls deep the program is."""
+        return self.inside.depth
+
+    def advance(self, reply: Value | Fault | None = None) -> Request:
+        """Compute until the controller is needed."""
+        inside, debugger = self.inside, self._debugger
+        if self._again is not None:  # behind an action, as it was asked before
+            self._open, self._again = self._again, None
+            return inside.advance(None)
+        while True:
+            inside.ask_at(min(self._due, inside.begun + debugger.unseen))
+            request = inside.advance(reply)
+            reply = None
+            self.at = request.at
+            if isinstance(request, Slice):
+                line = debugger.begins(self)
+                if line is not None:  # its statement asks before it begins, as every one does
+                    inside.select(line)
+                    continue
+                if inside.begun < self._due:
+                    continue
+            elif isinstance(request, End) and self._actions:
+                self._again = self._actions.pop()[1]
+                return request
+            elif isinstance(request, Fail):
+                debugger.fails(self, request)
+            if not isinstance(request, End):
+                self._due = inside.begun + self._per_slice
+            self._open = request
+            return request
+
+    def enter(self, code: CodeHandle) -> None:
+        """Push an action, which runs before the program goes on."""
+        self._actions.append((self.inside.depth, self._again or self._open))
+        self._open = self._again = None
+        self.inside.enter(code)
+
+    def evaluate(self, code: CodeHandle, read: Reader) -> Value:
+        """The value of a condition; nothing stops in it."""
+        return self.inside.evaluate(code, read)
+
+    def unwind(self, depth: int) -> None:
+        """Leave all routines deeper than ``depth``, and what was entered there."""
+        self._actions = [one for one in self._actions if one[0] < depth]
+        self._open = self._again = None
+        self.inside.unwind(depth)
+
+    def companion(self, routine: str, sink: Sink | None = None) -> Executor:
+        """A second executor over the same data lists, the submit's, which is debugged too."""
+        companion = self.inside.companion(routine, sink)
+        return self._debugger.around(companion, self._per_slice, "submit")
