@@ -27,6 +27,7 @@ __all__ = [
     "Repeat",
     "Rule",
     "Span",
+    "complement",
     "normalised",
     "reached",
     "walk",
@@ -232,3 +233,16 @@ def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
         else:
             merged.append((low, high))
     return tuple(merged)
+
+
+def complement(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
+    """All other characters, for ranges as `normalised` gives them."""
+    found: list[CharRange] = []
+    start = 0
+    for low, high in ranges:
+        if start < low:
+            found.append((start, low - 1))
+        start = high + 1
+    if start <= MAX_CODE_POINT:
+        found.append((start, MAX_CODE_POINT))
+    return tuple(found)

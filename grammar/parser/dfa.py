@@ -25,6 +25,7 @@ from grammar.notation.model import (
     Reference,
     Repeat,
     Rule,
+    complement,
     normalised,
 )
 
@@ -81,6 +82,7 @@ class _Nfa:
         self.grammar = grammar
         self.edges: list[list[tuple[tuple[CharRange, ...] | None, int]]] = [[]]
         self.open_rules: list[str] = []
+        self._closures: dict[int, frozenset[int]] = {}
 
     def state(self) -> int:
         self.edges.append([])
@@ -132,15 +134,19 @@ class _Nfa:
         self.edges[start].append((ranges, end))
         return end
 
-    def closure(self, states: Iterable[int]) -> frozenset[int]:
-        seen = set(states)
-        todo = list(seen)
-        while todo:
-            for ranges, target in self.edges[todo.pop()]:
-                if ranges is None and target not in seen:
-                    seen.add(target)
-                    todo.append(target)
-        return frozenset(seen)
+    def closure(self, state: int) -> frozenset[int]:
+        """The states reached without reading; only for when all edges are there."""
+        found = self._closures.get(state)
+        if found is None:
+            seen = {state}
+            todo = [state]
+            while todo:
+                for ranges, target in self.edges[todo.pop()]:
+                    if ranges is None and target not in seen:
+                        seen.add(target)
+                        todo.append(target)
+            found = self._closures[state] = frozenset(seen)
+        return found
 
 
 def automaton_of(grammar: Grammar, rules: Sequence[Rule]) -> CharAutomaton:
@@ -152,17 +158,15 @@ def automaton_of(grammar: Grammar, rules: Sequence[Rule]) -> CharAutomaton:
         | {p for edges in nfa.edges for rs, _ in edges for lo, hi in rs or () for p in (lo, hi + 1)}
     )
     letters = cuts[:-1]  # one representative for each class of characters
-    index = {nfa.closure([0]): 0}
+    index = {nfa.closure(0): 0}
     table: list[list[int]] = []
     order = list(index)
     for states in order:  # grows while it is walked
         row = []
+        ways = [(rs, t) for s in states for rs, t in nfa.edges[s] if rs is not None]
         for letter in letters:
-            targets = nfa.closure(
-                t
-                for s in states
-                for rs, t in nfa.edges[s]
-                if rs is not None and any(lo <= letter <= hi for lo, hi in rs)
+            targets = frozenset[int]().union(
+                *(nfa.closure(t) for rs, t in ways if any(lo <= letter <= hi for lo, hi in rs))
             )
             if targets and targets not in index:
                 index[targets] = len(order)
@@ -256,4 +260,7 @@ def class_of(ranges: Sequence[CharRange]) -> str:
 
     if len(ranges) == 1 and ranges[0][0] == ranges[0][1]:
         return one(ranges[0][0])
-    return "[" + "".join(one(lo) if lo == hi else f"{one(lo)}-{one(hi)}" for lo, hi in ranges) + "]"
+    negated = ranges[-1][1] == MAX_CODE_POINT and len(ranges) > 1  # compiled in far less time
+    written = complement(ranges) if negated else ranges
+    inside = "".join(one(lo) if lo == hi else f"{one(lo)}-{one(hi)}" for lo, hi in written)
+    return f"[{'^' if negated else ''}{inside}]"

@@ -23,6 +23,7 @@ from grammar.notation.model import (
     Rule,
 )
 from grammar.parser.dfa import (
+    CharAutomaton,
     automaton_of,
     both_cases,
     class_of,
@@ -113,17 +114,16 @@ class Lexer:
         ranks = [self._ranked(rule) for rule in others]
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
         self.kinds = _Kinds(literals, classify, ranks, fold)
+
         # A literal that another token matches whole (a keyword that could be a name) adds nothing
         # to where tokens end, and leaving it out keeps the automaton small.
-        tokens = re.compile("|".join(_translate(grammar, r) for r in others if not r.is_skipped))
+        def is_other(rule: Rule) -> bool:
+            found = classify.fullmatch(_only_literal(rule))
+            return found is not None and ranks[(found.lastindex or 0) - 1][1] != SKIPPED
+
         cutting = [
-            r
-            for r in rules
-            if r.is_skipped
-            or r.name not in names_of_literals
-            or not tokens.fullmatch(_only_literal(r))
+            r for r in rules if r.is_skipped or r.name not in names_of_literals or not is_other(r)
         ]
-        self._automaton = automaton_of(grammar, cutting)
         self._leaves_out_skipped = not any(r.is_skipped for r in rules)
         self._pattern = self._pattern_for(grammar, cutting)
 
@@ -131,8 +131,11 @@ class Lexer:
         kind = self.kind_of[rule.name]
         return kind, SKIPPED if rule.is_skipped else kind
 
-    def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | None:
-        """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do."""
+    def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | CharAutomaton:
+        """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do.
+
+        The automaton itself where no pattern says the same.
+        """
         skipped = [r for r in rules if r.is_skipped]
         tokens = [r for r in rules if not r.is_skipped]
         if skipped and tokens:
@@ -142,8 +145,9 @@ class Lexer:
                 if skip_pattern and token_pattern:
                     self._leaves_out_skipped = True
                     return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
-        everything = pattern_of(self._automaton)
-        return re.compile(f"({everything}|[\\s\\S])") if everything else None
+        automaton = automaton_of(grammar, rules)
+        everything = pattern_of(automaton)
+        return re.compile(f"({everything}|[\\s\\S])") if everything else automaton
 
     def with_keyword(self, word: str) -> Lexer:
         """The lexer of the same rules plus a keyword; kinds keep their numbers.
@@ -177,8 +181,8 @@ class Lexer:
 
     def lexemes(self, text: str) -> list[str]:
         """The texts of the tokens in order; skipped ones may be among them."""
-        if self._pattern is None:
-            return [text[start:end] for start, end in self._spans(text)]
+        if isinstance(self._pattern, CharAutomaton):
+            return [text[start:end] for start, end in _spans(self._pattern, text)]
         found: list[str] = self._pattern.findall(text)
         while found and not found[-1]:  # what is skipped at the end leads to no token
             found.pop()
@@ -186,8 +190,8 @@ class Lexer:
 
     def offsets(self, text: str, start: int = 0) -> Iterator[int]:
         """Where each of the `lexemes` from ``start`` on begins in ``text``."""
-        if self._pattern is None:
-            return (begin for begin, _ in self._spans(text, start))
+        if isinstance(self._pattern, CharAutomaton):
+            return (begin for begin, _ in _spans(self._pattern, text, start))
         begins = (found.start(1) for found in self._pattern.finditer(text, start))
         return takewhile(len(text).__gt__, begins)
 
@@ -196,12 +200,13 @@ class Lexer:
         pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
         return [offset for lexeme, offset in pairs if self.kinds[lexeme] != SKIPPED]
 
-    def _spans(self, text: str, start: int = 0) -> Iterator[tuple[int, int]]:
-        """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
-        while start < len(text):
-            end = max(self._automaton.longest(text, start), start + 1)
-            yield start, end
-            start = end
+
+def _spans(automaton: CharAutomaton, text: str, start: int = 0) -> Iterator[tuple[int, int]]:
+    """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
+    while start < len(text):
+        end = max(automaton.longest(text, start), start + 1)
+        yield start, end
+        start = end
 
 
 def _only_literal(rule: Rule) -> str:

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
 from enum import StrEnum
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
@@ -396,6 +395,8 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
 
 def _record(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> dict[str, Any]:
     """What the page of a run is made of; see `reports.run_page.write_run_page`."""
+    from importlib import metadata
+
     from interp.run_record import record_of
 
     return {

@@ -1,21 +1,23 @@
 """Findings as they are written: text for people, and forms that other tools read."""
 
 import io
+import os
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
-from rich.console import Console
-from rich.text import Text
 
 from krl.errors import one_line
 from krl.output_files import json_text
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from grammar.check.batch import CheckReport
     from grammar.diagnostics.diagnostic import Diagnostic
 
@@ -133,15 +135,21 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
 
 def _print_text(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> None:
     """The findings on the terminal, in colours where it has any."""
-    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
-    for line in _written(kept, report, Format.TEXT, is_verbose):
-        if console.is_terminal:
-            console.print(_coloured(line))
-        else:
+    lines = _written(kept, report, Format.TEXT, is_verbose)
+    if not (sys.stdout.isatty() or os.environ.get("FORCE_COLOR")):
+        for line in lines:
             typer.echo(line)
+        return
+    from rich.console import Console  # only here: it takes as long as checking a small program
+
+    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    for line in lines:
+        console.print(_coloured(line))
 
 
-def _coloured(line: str) -> Text:
+def _coloured(line: str) -> "Text":
+    from rich.text import Text
+
     text = Text(line)
     if not line.startswith(" "):
         for severity, style in _STYLES.items():
