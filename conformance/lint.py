@@ -96,8 +96,12 @@ def lint(root: Path = CASES) -> list[str]:
 def _faults(case: Case) -> Iterator[str]:
     if not case.title or case.title.endswith(".") or len(case.title) > _LONGEST:
         yield "the title is one sentence without a full stop"
-    if len(set(case.rules)) != len(case.rules):
-        yield "a rule stands twice"
+    for one in dict.fromkeys((case.basis, *(each.basis for each in case.expectations))):
+        rule = registry().get(one)
+        if rule is not None and rule.clauses:
+            yield f"{one} has clauses: name the one that says so"
+        if one and one.partition(".")[0] not in case.rules:
+            yield f"it rests on {one}, which is none of its rules"
     if case.profile not in PROFILES:
         yield f"the profile is one of {', '.join(PROFILES)}"
     if case.robot not in _ROBOTS:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any, Final
 
@@ -110,6 +111,7 @@ def _rules(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
             "statement": rule.statement,
             "source": rule.source,
             "unshown": rule.unshown,
+            "clauses": [asdict(one) for one in rule.clauses],
             "cases": [one.case.name for one in by_rule[rule.id]],
             "verdicts": dict(Counter(one.verdict for one in by_rule[rule.id])),
         }
@@ -166,6 +168,8 @@ def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
                 "text": check.text,
                 "state": check.state,
                 "actual": check.actual,
+                "basis": check.basis,
+                "is_sure": check.is_sure,
             }
             for check in result.checks
         ],

@@ -140,7 +140,7 @@ def evaluate_recording(
             wrong.append(f"{name}: the case has changed since it was recorded")
             continue
         checks = tuple(evaluate(case, seen))
-        verdict, reason = verdict_of(case, checks)
+        verdict, reason = verdict_of(checks)
         result = Result(recording.controller, seen.robot, verdict, reason, checks, 0.0, None, seen)
         results.append(CaseResult(case, (result,)))
     return results, wrong

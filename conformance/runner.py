@@ -78,7 +78,7 @@ def run_case(
         seen = _seen(see, case, setup)
         checks = _checks(case, seen)
         listed = known.reason(case.name, setup.executor, setup.robot)
-        verdict, reason = verdict_of(case, checks, listed)
+        verdict, reason = verdict_of(checks, listed)
         took = time.perf_counter() - begun
         result = Result(setup.executor, setup.robot, verdict, reason, checks, took, None, seen)
         results.append(_compared(result, results))
@@ -100,7 +100,7 @@ def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
         return tuple(evaluate(case, seen))
     except Exception as error:
         reason = f"the evaluation has failed: {type(error).__name__}: {error}"
-        return (Check(case.main, 0, "the case can be evaluated", "unmet", reason),)
+        return (Check(case.main, 0, "the case can be evaluated", "unmet", reason, case.may_fail),)
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:

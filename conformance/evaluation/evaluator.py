@@ -9,7 +9,8 @@ change changes only as it says, that the program ends.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Literal
 
 from conformance.evaluation.observation import Finding, Observation
@@ -25,13 +26,18 @@ State = Literal["met", "unmet", "open"]
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """What became of an expectation: ``actual`` says what was seen instead, or why it is open."""
+    """What became of an expectation: ``actual`` says what was seen instead, or why it is open.
+
+    ``is_sure``: where it is unmet the case has failed; ``basis`` is the rule or clause it rests on.
+    """
 
     file: str
     line: int
     text: str
     state: State
     actual: str = ""
+    is_sure: bool = True
+    basis: str = ""
 
 
 _ROBOTS = ("none", "kinematic", "mujoco")
@@ -39,8 +45,21 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 
 def evaluate(case: Case, seen: Observation) -> list[Check]:
     """All checks of a case, in the order of its lines; what every case expects comes last."""
-    if case.phase != "run":
-        return [*(_said(one, seen) for one in case.expectations), *_unsaid(case, seen)]
+    found = _said_run(case, seen) if case.phase == "run" else _said_all(case, seen)
+    said = [
+        replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
+        for check, one in zip(found, case.expectations, strict=True)
+    ]
+    unsaid = (_unsaid_outputs(case, seen), _ended(case, seen))
+    every = chain(*unsaid) if case.phase == "run" else _unsaid(case, seen)
+    return [*said, *(replace(one, is_sure=case.may_fail) for one in every)]
+
+
+def _said_all(case: Case, seen: Observation) -> list[Check]:
+    return [_said(one, seen) for one in case.expectations]
+
+
+def _said_run(case: Case, seen: Observation) -> list[Check]:
     marks = _marks(case)
     found = []
     for one in case.expectations:
@@ -53,7 +72,7 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
             continue
         evaluated = evaluate_on_trace if one.needs == "none" else evaluate_on_path
         found.append(_check(one, *evaluated(one, seen, marks)))
-    return [*found, *_unsaid_outputs(case, seen), *_ended(case, seen)]
+    return found
 
 
 def _marks(case: Case) -> Marks:

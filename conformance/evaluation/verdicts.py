@@ -3,7 +3,7 @@
 ==============  ==================================================================================
 pass            all that is expected was seen
 fail            it was not; or executors differ; or a known failure passes
-unconfirmed     it was not, but the rule is not sure enough to fail an executor (`Rule.may_fail`)
+unconfirmed     it was not, but no rule or clause that says so is sure enough to fail an executor
 known-failure   it was not, and ``known_failures.toml`` says why
 skipped         no expectation could be evaluated, and why
 ==============  ==================================================================================
@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
 from conformance.evaluation.evaluator import Check
-from conformance.suite.case import Case
 
 __all__ = ["VERDICTS", "Known", "KnownFailures", "Verdict", "verdict_of"]
 
@@ -70,15 +69,15 @@ class KnownFailures:
         return [one.case for one in self.entries if one.case not in known]
 
 
-def verdict_of(case: Case, checks: Sequence[Check], known: str = "") -> tuple[Verdict, str]:
+def verdict_of(checks: Sequence[Check], known: str = "") -> tuple[Verdict, str]:
     """The verdict and its reason, from what became of the expectations of a case."""
     unmet = [one for one in checks if one.state == "unmet"]
     if unmet:
-        first = unmet[0]
+        first = next((one for one in unmet if one.is_sure), unmet[0])
         reason = f"line {first.line}: {first.text}; seen: {first.actual or 'nothing'}"
         if known:
             return "known-failure", known
-        return ("fail" if case.may_fail else "unconfirmed"), reason
+        return ("fail" if first.is_sure else "unconfirmed"), reason
     if all(one.state == "open" for one in checks):
         return "skipped", checks[0].actual if checks else "nothing is expected"
     if known:

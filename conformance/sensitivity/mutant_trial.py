@@ -24,7 +24,7 @@ from typing import Final, Literal, NoReturn
 
 from conformance.evaluation.execution import Setup, missing
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import run_case
+from conformance.runner import Result, run_case
 from conformance.sensitivity.line_reach import Reach, reach_of, seen_digest
 from conformance.sensitivity.mutants import (
     InvalidMutant,
@@ -205,11 +205,10 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
                 case = one.case
                 fate: Fate = "red" if case.may_fail else "soft"
                 yield Trial(mutant, fate, case.name, "the process ended", reached, runs)
-                verdict, why, seen = _noticed(case, setups)
+                noticed, why, seen = _noticed(case, setups)
                 changed = changed or (case.name if seen != one.seen else "")
-                if verdict:
-                    fate = verdict if verdict == "red" else fate
-                    yield Trial(mutant, fate, case.name, why, reached, runs, changed)
+                if noticed:
+                    yield Trial(mutant, noticed, case.name, why, reached, runs, changed)
                     return
             yield Trial(mutant, "survived", "", "", reached, runs, changed)
     except InvalidMutant as error:
@@ -223,27 +222,28 @@ def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
     yield from [one for one in cases if not one.case.may_fail][: max(1, most // 10)]
 
 
-def _noticed(case: Case, setups: Sequence[Setup]) -> tuple[Literal["red", "noticed", ""], str, str]:
-    """Whether a case notices the mutant that is in place, why, and the digest of what was seen.
-
-    Red, whatever the case: executors differ.
-    """
+def _noticed(case: Case, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
+    """How a case notices the mutant that is in place, why, and the digest of what was seen."""
+    unsure: Fate = "red" if case.may_fail else "soft"
     signal.setitimer(signal.ITIMER_PROF, _SECONDS * len(setups))
     try:
         results = run_case(case, setups, KnownFailures()).results
     except _TimeOver:
-        return "noticed", f"more than {_SECONDS * len(setups)} seconds of computing", ""
+        return unsure, f"more than {_SECONDS * len(setups)} seconds of computing", ""
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     seen = results[0].observation
     digest = seen_digest(seen) if seen else ""
-    for one in results:
-        if one.divergence is not None:
-            return "red", one.reason, digest
-        if one.verdict not in ("pass", "skipped"):
-            return "noticed", one.reason, digest
+    bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)
+    if bad:
+        return ("red" if bad[0].verdict == "fail" else "soft"), bad[0].reason, digest
     is_seen = any(one.verdict == "pass" for one in results)
-    return ("", "", digest) if is_seen else ("noticed", "it was skipped", digest)
+    return (None, "", digest) if is_seen else (unsure, "it was skipped", digest)
+
+
+def _grave(result: Result) -> bool:
+    """What comes first in order: that it failed."""
+    return result.verdict != "fail"
 
 
 class _TimeOver(BaseException):

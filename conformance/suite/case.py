@@ -22,7 +22,7 @@ from conformance.suite.expectations import (
     Phase,
     read_expectation,
 )
-from conformance.suite.registry import registry
+from conformance.suite.registry import basis
 from grammar.syntax.source import Source
 from support.files.untrusted import read_text
 
@@ -59,7 +59,8 @@ class Case:
     """A case.
 
     ``name`` is ``suite/stem``. ``sources`` are its files, the one it begins with first; their paths
-    are names without folders. ``rules`` are IDs, the first is the one it states. ``seconds`` is how
+    are names without folders. ``rules`` are IDs, the first is the one it states; ``basis`` is that
+    or the clause of it on which all expectations rest that name no other. ``seconds`` is how
     much virtual time it has. ``unconfirmed`` is why its reading is ours although its rule is sure.
     ``machine`` is the file beside it that is among its sources as ``$machine.dat``.
     """
@@ -77,6 +78,7 @@ class Case:
     seconds: float = 60.0
     unconfirmed: str = ""
     machine: str = ""
+    basis: str = ""
 
     @property
     def suite(self) -> str:
@@ -90,8 +92,12 @@ class Case:
 
     @property
     def may_fail(self) -> bool:
-        """Whether what it states is sure enough that not to do so is a fault."""
-        return registry()[self.rules[0]].may_fail and not self.unconfirmed
+        """Whether anything it states is sure enough that not to do so is a fault."""
+        return any(self.is_sure(one) for one in self.expectations)
+
+    def is_sure(self, one: Expectation) -> bool:
+        """Whether what an expectation rests on is sure enough to fail the case."""
+        return basis(one.basis or self.basis or self.rules[0]).may_fail and not self.unconfirmed
 
     @property
     def is_negative(self) -> bool:
@@ -177,8 +183,7 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     front = _front_matter(source)
     rules = tuple(word.strip() for word in front.get("rule", [""])[0].split(","))
     for rule in rules:
-        if rule not in registry():
-            raise CaseError(f"{path}: there is no rule {rule!r}")
+        _known(rule, path)
     wanted = front.get("phase", [""])[0]
     phase = next((one for one in PHASES if one == wanted), None)
     if phase is None:
@@ -188,6 +193,8 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     if machine:
         sources = (*sources, Source(_beside(path, machine).text, "$machine.dat"))
     expectations = tuple(one for each in sources for one in _expectations(each, path))
+    for one in expectations:
+        _known(one.basis or rules[0], path)
     if not expectations:
         raise CaseError(f"{path}: it expects nothing")
     try:
@@ -199,7 +206,8 @@ def read_case(path: Path, root: Path = CASES) -> Case:
         name=(folder / path.stem).as_posix(),
         path=path,
         title=front.get("title", [""])[0],
-        rules=rules,
+        rules=tuple(dict.fromkeys(rule.partition(".")[0] for rule in rules)),
+        basis=rules[0],
         phase=phase,
         profile=front.get("profile", ["kss8"])[0],
         sources=sources,
@@ -210,6 +218,13 @@ def read_case(path: Path, root: Path = CASES) -> Case:
         unconfirmed=front.get("unconfirmed", [""])[0],
         machine=machine,
     )
+
+
+def _known(rule: str, path: Path) -> None:
+    try:
+        basis(rule)
+    except KeyError:
+        raise CaseError(f"{path}: there is no rule {rule!r}") from None
 
 
 def _read(path: Path) -> Source:

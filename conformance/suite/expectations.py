@@ -150,6 +150,7 @@ class Expectation:
     """What one ``;>`` says; ``file`` and ``line`` are the place it is about.
 
     ``tolerance`` is in the unit of what is compared (seconds for times); ``None``: the usual one.
+    ``basis`` is the rule or clause it rests on; empty: the first of its case.
     """
 
     kind: str
@@ -159,6 +160,7 @@ class Expectation:
     text: str
     when: When | None = None
     tolerance: float | None = field(default=None)
+    basis: str = ""
 
     @property
     def needs(self) -> Literal["none", "kinematic", "mujoco"]:
@@ -167,6 +169,7 @@ class Expectation:
 
 
 _WORDS: Final = re.compile(r'"[^"]*"|[^\s"]+')
+_BASIS: Final = re.compile(r"\s\[([A-Z]{3}-\d\d(?:\.[a-z])?)\]$")
 _WITHIN: Final = re.compile(rf"(?:^| )within ({_NUMBER})$")
 _EVENT: Final = r"(?:(?:start|end|apex|blend-start|blend-end|planned) \d+|mark \w+|(?:out|in) \d+)"
 _MOMENT: Final = rf"(?:{_EVENT}(?: [-+] {_NUMBER})?|{_NUMBER})"
@@ -182,7 +185,8 @@ _MOMENT_PARTS: Final = re.compile(
 
 def read_expectation(text: str, file: str, line: int) -> Expectation:
     """The expectation that stands behind ``;>``. Raises `ExpectationError`."""
-    rest = " ".join(_WORDS.findall(text))
+    cited = _BASIS.search(text.strip())
+    rest = " ".join(_WORDS.findall(text.strip()[: cited.start()] if cited else text))
     word, _, rest = rest.partition(" ")
     kind = KINDS.get(word)
     if kind is None:
@@ -201,7 +205,8 @@ def read_expectation(text: str, file: str, line: int) -> Expectation:
     if not re.fullmatch(kind.form, rest):
         raise ExpectationError(f"{rest or 'nothing'!r} cannot stand behind {word}")
     arguments = tuple(_WORDS.findall(rest))
-    return Expectation(word, arguments, file, line, text.strip(), when, tolerance)
+    rests_on = cited[1] if cited else ""
+    return Expectation(word, arguments, file, line, text.strip(), when, tolerance, rests_on)
 
 
 def _when(found: re.Match[str]) -> When:

@@ -1,7 +1,8 @@
 """The rules of KRL that cases state: what each says, how sure that is, what may follow.
 
-``rules.toml`` is the registry. A case names the rules it is about by their IDs; whether it may fail
-depends on the first of them (`Rule.may_fail`).
+``rules.toml`` is the registry. A case names the rules it is about by their IDs, or by that of a
+clause where a rule has any; whether an expectation may fail a case depends on what it rests on
+(`basis`).
 """
 
 from __future__ import annotations
@@ -13,7 +14,18 @@ from functools import cache
 from importlib import resources
 from types import MappingProxyType
 
-__all__ = ["Rule", "registry"]
+__all__ = ["Clause", "Rule", "basis", "registry"]
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """A part of a rule that is better or worse known than others; its ID is ``BLD-01.b``."""
+
+    id: str
+    tier: str
+    may_fail: bool
+    source: str
+    statement: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +44,7 @@ class Rule:
     today: tuple[str, ...]
     statement: str
     unshown: str = ""
+    clauses: tuple[Clause, ...] = ()
 
     @property
     def topic(self) -> str:
@@ -45,5 +58,13 @@ def registry() -> Mapping[str, Rule]:
     text = resources.files("conformance").joinpath("rules.toml").read_text(encoding="utf-8")
     found = {}
     for row in tomllib.loads(text)["rule"]:
-        found[row["id"]] = Rule(**{**row, "today": tuple(row["today"])})
+        clauses = tuple(Clause(**one) for one in row.get("clauses", ()))
+        found[row["id"]] = Rule(**{**row, "today": tuple(row["today"]), "clauses": clauses})
     return MappingProxyType(found)
+
+
+@cache
+def basis(id_: str) -> Rule | Clause:
+    """The rule or clause of an ID. Raises `KeyError` where there is none."""
+    rule = registry()[id_.partition(".")[0]]
+    return rule if rule.id == id_ else {one.id: one for one in rule.clauses}[id_]

@@ -69,6 +69,8 @@ recollection of a manual that could not be read again. `X`: a page of unknown or
 tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` reports it,
 with these codes. *lint*: `krl check --stops` reports it. *running*: interpreters and controller act
 on it.
+A rule whose parts are not equally well known has clauses, and what a case expects rests on one of
+them.
 What shows it are the conformance cases: `krl conform RULE` runs them.
 """
 
@@ -110,7 +112,7 @@ def page() -> str:
         by_topic[rule.topic].append(rule)
     parts = [_HEAD, _overview(by_topic)]
     for topic, (title, about) in _TOPICS.items():
-        rows = "\n".join(_row(rule, codes[rule.id]) for rule in by_topic[topic])
+        rows = "\n".join(row for rule in by_topic[topic] for row in _rows(rule, codes[rule.id]))
         parts.append(
             f"## {title}\n\n{about}\n\n| rule | tier | | today | source |\n"
             f"| --- | --- | --- | --- | --- |\n{rows}\n"
@@ -141,6 +143,15 @@ def _counts(its: list[Rule]) -> Iterator[int]:
     yield sum(bool({"grammar", "tables"} & set(rule.today)) for rule in its)
     yield sum(bool({"check", "lint"} & set(rule.today)) for rule in its)
     yield sum(rule.today == ("run",) for rule in its)
+
+
+def _rows(rule: Rule, codes: tuple[str, ...]) -> Iterator[str]:
+    """The row of a rule, and one of each clause."""
+    yield _row(rule, codes)
+    for one in rule.clauses:
+        sure = "" if one.may_fail else "; fails no case"
+        source = "–" if one.source == "-" else one.source
+        yield f"| {one.id} | {one.tier} | {one.statement} | clause{sure} | {source} |"
 
 
 def _row(rule: Rule, codes: tuple[str, ...]) -> str:

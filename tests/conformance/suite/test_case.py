@@ -45,6 +45,27 @@ def test_case_has_what_its_front_matter_says(write: Write, tmp_path: Path) -> No
     assert (60.0, "kss8", "run") == (case.seconds, case.profile, case.phase)
 
 
+def test_an_expectation_may_rest_on_another_clause(write: Write, tmp_path: Path) -> None:
+    """Only those that rest on what is sure may fail the case."""
+    text = GOOD.replace("CTL-01, CTL-02", "BLD-01.a, CTL-02")
+    text = text.replace("value N 1 ", "value N 1 [CTL-02] ").replace("runs 1", "runs 1 [BLD-01.b]")
+    case = read_case(write("control/good.src", text), tmp_path)
+    assert ("BLD-01", "CTL-02") == case.rules
+    assert [False, False, True] == [case.is_sure(one) for one in case.expectations]
+    assert ("N", "1") == case.expectations[0].arguments
+    with pytest.raises(CaseError, match=r"no rule 'BLD-01\.z'"):
+        read_case(write("control/bad.src", text.replace("BLD-01.b", "BLD-01.z")), tmp_path)
+
+
+def test_machine_data_are_a_file_beside_it(write: Write, tmp_path: Path) -> None:
+    """It is among the sources under the name that a controller has for it."""
+    write("control/arm.dat", "DEFDAT $MACHINE PUBLIC\nENDDAT\n")
+    text = GOOD.replace(";@ phase: run", ";@ phase: run\n;@ machine: arm.dat")
+    case = read_case(write("control/good.src", text), tmp_path)
+    assert ["good.src", "$machine.dat"] == [one.path for one in case.sources]
+    assert "arm.dat" == case.machine
+
+
 def test_expectations_belong_to_lines_with_code(write: Write, tmp_path: Path) -> None:
     """One on a line of its own belongs to the last line that says something."""
     case = read_case(write("control/good.src", GOOD), tmp_path)
