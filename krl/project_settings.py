@@ -5,6 +5,8 @@ the option of `krl check` that is named so; docs/settings.md has them all.
 """
 
 import difflib
+import json
+import os
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,13 +17,22 @@ from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 from krl.errors import InputError
 
 if TYPE_CHECKING:
+    from grammar.diagnostics.baseline import Baseline
     from grammar.diagnostics.diagnostic import Diagnostic
     from support.files.discovery import Found
 
-__all__ = ["FILE_NAME", "Settings", "read_settings", "settings_of"]
+__all__ = [
+    "FILE_NAME",
+    "Settings",
+    "baseline_place",
+    "read_baseline",
+    "read_settings",
+    "settings_of",
+]
 
 FILE_NAME: Final = "krl.toml"
 _LARGEST: Final = 1_000_000
+_LARGEST_BASELINE: Final = 64_000_000
 
 _Level = Literal["error", "warning", "note", "off"]
 
@@ -38,9 +49,9 @@ class Settings:
     root: Path
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
-    severity: Mapping[str, _Level] = field(default_factory=dict)
+    severity: Mapping[str, _Level] = field(default_factory=dict, hash=False)
     exclude: tuple[str, ...] = ()
-    ignored_in: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    ignored_in: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
     baseline: Path | None = None
     complete: bool = False
     packages: tuple[str, ...] = ()
@@ -127,6 +138,31 @@ def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
     if "baseline" in given:
         given["baseline"] = root / given["baseline"]
     return Settings(root, **given)
+
+
+# ----------------------------------------------------------------------------------- the baseline
+
+
+def read_baseline(file: Path) -> "Baseline":
+    """The findings that are known; raises `InputError` where they cannot be read."""
+    from grammar.diagnostics.baseline import Baseline
+    from support.files.untrusted import open_file
+
+    try:
+        with open_file(file) as stream:
+            data = stream.read(_LARGEST_BASELINE)
+        return Baseline.read(json.loads(data))
+    except OSError as error:
+        hint = f": make it with --write-baseline {file}" if not file.exists() else ""
+        raise InputError(f"{file}: {error.strerror or error}{hint}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def baseline_place(baseline: Path) -> Callable[[str], str]:
+    """Paths as they are seen from a baseline: the same from whatever folder one checks."""
+    home = baseline.absolute().parent
+    return lambda path: Path(os.path.relpath(Path(path).absolute(), home)).as_posix()
 
 
 # ------------------------------------------------------------------------------- kinds of values

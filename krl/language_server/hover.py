@@ -11,12 +11,12 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region
 from grammar.diagnostics.explanations import explanation
 from grammar.semantics.predefined import PredefinedFunction, System, SystemVariable
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind, Symbol
-from grammar.syntax import ast
+from grammar.semantics.symbols import Kind
 from grammar.syntax.source import Source
+from krl.language_server.symbols import signature
 from krl.language_server.workspace import Looked, OpenProject
 
-__all__ = ["Definition", "Outline", "definition", "found_at", "hover", "outline"]
+__all__ = ["Definition", "definition", "found_at", "hover"]
 
 _WORD = re.compile(r"\$?[A-Za-z_][A-Za-z0-9_$]*")
 _MOST_RULES = 6
@@ -36,21 +36,6 @@ class Definition:
 
     path: str
     region: Region
-
-
-@dataclass(frozen=True, slots=True)
-class Outline:
-    """A routine or a declaration of a file, with what stands in it.
-
-    ``whole`` is the region of all of it, ``region`` that of its name.
-    """
-
-    name: str
-    kind: Kind
-    detail: str
-    whole: Region
-    region: Region
-    inner: tuple[Outline, ...] = ()
 
 
 def definition(project: OpenProject, looked: Looked, offset: int) -> Definition | None:
@@ -105,34 +90,6 @@ def _explained(found: Diagnostic) -> str:
     return "\n\n".join([*lines, *_cited(found.rules, "")])
 
 
-def outline(looked: Looked) -> tuple[Outline, ...]:
-    """The routines of a program with their data, or the data of a list."""
-    module, source = looked.module, looked.source
-    if module is None or module.table is None or module.syntax is None:
-        return ()
-    data = [_outlined(source, symbol) for _, symbol in module.table.table.symbols()]
-    content = module.syntax.content
-    if isinstance(content, ast.DataList):
-        return tuple(data)
-    pairs = zip(content.routines, module.table.routines, strict=True)
-    routines = []
-    for node, table in pairs:
-        inner = [
-            _outlined(source, symbol)
-            for _, symbol in table.table.symbols()
-            if symbol.kind is not Kind.LABEL
-        ]
-        whole, name = Region.of(source, node.span), Region.of(source, node.name.span)
-        detail = _signature(table.routine)
-        routines.append(Outline(node.name.text, Kind.ROUTINE, detail, whole, name, tuple(inner)))
-    return tuple(routines)
-
-
-def _outlined(source: Source, symbol: Symbol) -> Outline:
-    region = Region.of(source, symbol.span)
-    return Outline(symbol.name, symbol.kind, _type(symbol), region, region)
-
-
 def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
     line, column = source.place(offset)
     for found in _WORD.finditer(source.line(line)):
@@ -157,7 +114,7 @@ def _declared(project: OpenProject, looked: Looked, found: Found) -> str:
     path = found.module.path
     source = project.source(path)
     place = path.rpartition("/")[2]
-    lines = [f"```krl\n{_signature(symbol)}\n```"]
+    lines = [f"```krl\n{signature(symbol)}\n```"]
     if source is not None:
         number = source.place(symbol.span[0])[0]
         comment = source.comment(number)
@@ -168,21 +125,6 @@ def _declared(project: OpenProject, looked: Looked, found: Found) -> str:
     if looked.project is not None and symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
         lines.append(f"seen from: {symbol.access.value}")
     return "\n\n".join(lines)
-
-
-def _signature(symbol: Symbol) -> str:
-    parameters = getattr(symbol, "parameters", None)
-    if parameters is None:
-        return f"{_type(symbol)} {symbol.name}".strip()
-    listed = ", ".join(f"{one.name}:{one.mode}" for one in parameters)
-    head = f"DEFFCT {_type(symbol)}" if symbol.type or symbol.given else "DEF"
-    return f"{head} {symbol.name}({listed})"
-
-
-def _type(symbol: Symbol) -> str:
-    if symbol.type is not None:
-        return symbol.type.name
-    return "" if symbol.given is None else str(symbol.given)
 
 
 def _predefined(key: str) -> str | None:

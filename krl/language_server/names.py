@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from grammar.diagnostics.diagnostic import Region
 from grammar.semantics.link import words_of
 from grammar.semantics.predefined import System
-from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Scope
-from grammar.semantics.symbols import Access, Kind, Symbol, Table, TypeSymbol
+from grammar.semantics.scopes import Answer, Found
+from grammar.semantics.symbols import Kind, Table, TypeSymbol
 from grammar.semantics.types import Enumeration
 from grammar.syntax.references import Space
 from krl.language_server.hover import found_at
-from krl.language_server.workspace import Looked, OpenProject
+from krl.language_server.symbols import seen_everywhere, type_name
+from krl.language_server.workspace import Looked, OpenProject, certain
 
-__all__ = ["Candidate", "RenameError", "completions", "places", "renaming"]
+__all__ = ["Candidate", "RenameError", "completions", "highlights", "places", "renaming"]
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
 _MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
@@ -57,12 +58,20 @@ def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str,
         if source is None or key not in words_of(source.text):
             continue
         there = project.look(path)
-        if there is None or there.checked is None:
-            continue
-        for name, answer in there.checked.resolution.answers.items():
-            if isinstance(answer, Found) and answer.symbol is found.symbol:
-                listed.add((path, Region.of(source, name.span)))
+        if there is not None:
+            listed |= {(path, region) for region in highlights(there, found)}
     return sorted(listed)
+
+
+def highlights(looked: Looked, found: Found) -> set[Region]:
+    """The places in one file of what a name means."""
+    if looked.checked is None:
+        return set()
+    return {
+        Region.of(looked.source, name.span)
+        for name, answer in looked.checked.resolution.answers.items()
+        if isinstance(answer, Found) and answer.symbol is found.symbol
+    }
 
 
 def renaming(
@@ -119,18 +128,8 @@ def completions(looked: Looked, offset: int) -> list[Candidate]:
     return list({one.name.upper(): one for one in reversed([*found])}.values())[::-1]
 
 
-def _scope(looked: Looked, line: int) -> Scope | None:
-    """What is known at a line: in its routine, if it stands in one."""
-    if looked.project is None or looked.module is None or looked.module.table is None:
-        return None
-    for routine in reversed(looked.module.table.routines):
-        if looked.source.place(routine.routine.span[0])[0] <= line:
-            return looked.project.scope(looked.module, routine)
-    return looked.project.scope(looked.module)
-
-
 def _visible(looked: Looked, line: int) -> Iterator[Candidate]:
-    scope, module, project = _scope(looked, line), looked.module, looked.project
+    scope, module, project = looked.scope(line), looked.module, looked.project
     if scope is not None and module is not None and project is not None and module.table:
         if scope.routine is not None:
             yield from _declared(scope.routine.table)
@@ -153,13 +152,9 @@ def _visible(looked: Looked, line: int) -> Iterator[Candidate]:
 def _declared(table: Table, file: str | None = None) -> Iterator[Candidate]:
     """What a table has; of another file's what is seen from everywhere."""
     for _, symbol in table.symbols():
-        is_seen = file is None or symbol.access is Access.GLOBAL or symbol.key == file
+        is_seen = file is None or seen_everywhere(symbol, file)
         if is_seen and symbol.kind is not Kind.LABEL:
-            yield Candidate(symbol.name, symbol.kind, _type(symbol))
-
-
-def _type(symbol: Symbol) -> str:
-    return symbol.type.name if symbol.type else "" if symbol.given is None else str(symbol.given)
+            yield Candidate(symbol.name, symbol.kind, type_name(symbol))
 
 
 def _constants(looked: Looked) -> Iterator[Candidate]:
@@ -175,20 +170,13 @@ def _constants(looked: Looked) -> Iterator[Candidate]:
                 yield Candidate(name, Kind.ENUM_CONSTANT, type_.name)
 
 
-def _certain(answer: Answer) -> Answer:
-    """What is meant, also where the line that one types keeps that from being certain."""
-    if isinstance(answer, MaybeElsewhere) and len(answer.candidates) == 1:
-        return answer.candidates[0]
-    return answer
-
-
 def _members(looked: Looked, line: int, chain: str) -> Iterator[Candidate]:
     """The members of what ``A.B[1]`` is."""
-    scope = _scope(looked, line)
+    scope = looked.scope(line)
     if scope is None:
         return
     first, *others = (re.sub(r"\[.*", "", part).upper() for part in chain.split("."))
-    found: Answer = _certain(scope.find(Space.VALUE, first))
+    found: Answer = certain(scope.find(Space.VALUE, first))
     for name in others:
         structure = found.type_symbol() if isinstance(found, Found) else None
         symbol = structure.symbol if isinstance(structure, Found) else None
@@ -199,4 +187,4 @@ def _members(looked: Looked, line: int, chain: str) -> Iterator[Candidate]:
     structure = found.type_symbol() if isinstance(found, Found) else None
     if isinstance(structure, Found) and isinstance(structure.symbol, TypeSymbol):
         for member in structure.symbol.members.values():
-            yield Candidate(member.name, Kind.MEMBER, _type(member))
+            yield Candidate(member.name, Kind.MEMBER, type_name(member))

@@ -1,11 +1,9 @@
-"""The language server itself: what an editor asks, translated for `krl.language_server` and back.
-
-Editors count lines and characters from 0, and characters in the units of UTF-16; the project counts
-both from 1, in characters. Nothing else happens here.
-"""
+"""The language server itself: what an editor asks, answered by `krl.language_server`."""
 
 from __future__ import annotations
 
+import asyncio
+import inspect
 import logging
 from collections.abc import Callable
 from importlib import metadata
@@ -17,47 +15,30 @@ from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
-from grammar.diagnostics.diagnostic import Diagnostic, Region
-from grammar.semantics.symbols import Kind
+from grammar.diagnostics.diagnostic import Region
 from grammar.syntax.formatter import FormatterDefect, formatter
-from grammar.syntax.source import Source
-from krl.language_server.hover import Outline, definition, hover, outline
-from krl.language_server.names import RenameError, completions, places, renaming
+from krl.language_server import protocol
+from krl.language_server.calls import argument_hints, signature_at
+from krl.language_server.hover import definition, found_at, hover
+from krl.language_server.names import RenameError, completions, highlights, places, renaming
+from krl.language_server.protocol import location, path_of, range_of
+from krl.language_server.semantic_tokens import MODIFIERS, TYPES, semantic_tokens
+from krl.language_server.symbols import folds, outline, wanted
 from krl.language_server.workspace import Looked, OpenProject
 from krl.program_loading import project_root
+from krl.project_settings import FILE_NAME
 
 __all__ = ["server"]
 
-_SEVERITIES = {
-    "error": lsp.DiagnosticSeverity.Error,
-    "warning": lsp.DiagnosticSeverity.Warning,
-    "note": lsp.DiagnosticSeverity.Information,
-}
-_KINDS = {
-    Kind.ROUTINE: lsp.SymbolKind.Function,
-    Kind.EXTERNAL: lsp.SymbolKind.Function,
-    Kind.CONSTANT: lsp.SymbolKind.Constant,
-    Kind.STRUCTURE: lsp.SymbolKind.Struct,
-    Kind.ENUMERATION: lsp.SymbolKind.Enum,
-    Kind.CHANNEL: lsp.SymbolKind.Interface,
-    Kind.SIGNAL: lsp.SymbolKind.Event,
-}
-
-_COMPLETED: dict[Kind | None, lsp.CompletionItemKind] = {
-    Kind.ROUTINE: lsp.CompletionItemKind.Function,
-    Kind.EXTERNAL: lsp.CompletionItemKind.Function,
-    Kind.CONSTANT: lsp.CompletionItemKind.Constant,
-    Kind.STRUCTURE: lsp.CompletionItemKind.Struct,
-    Kind.ENUMERATION: lsp.CompletionItemKind.Enum,
-    Kind.ENUM_CONSTANT: lsp.CompletionItemKind.EnumMember,
-    Kind.MEMBER: lsp.CompletionItemKind.Field,
-}
 _AtPlace = (
     lsp.HoverParams
     | lsp.DefinitionParams
     | lsp.CompletionParams
+    | lsp.DocumentHighlightParams
+    | lsp.PrepareRenameParams
     | lsp.ReferenceParams
     | lsp.RenameParams
+    | lsp.SignatureHelpParams
 )
 
 
@@ -75,6 +56,7 @@ class _Desk:
         self._server = server
         self._project = OpenProject()
         self._open: set[str] = set()
+        self._is_read = False
         answers: dict[str, Callable[[Any], Any]] = {
             lsp.INITIALIZED: self.initialised,
             lsp.TEXT_DOCUMENT_DID_OPEN: self.opened,
@@ -88,26 +70,52 @@ class _Desk:
             lsp.TEXT_DOCUMENT_FORMATTING: self.formatting,
             lsp.TEXT_DOCUMENT_CODE_ACTION: self.actions,
             lsp.TEXT_DOCUMENT_REFERENCES: self.references,
-            lsp.TEXT_DOCUMENT_RENAME: self.rename,
+            lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: self.highlight,
+            lsp.TEXT_DOCUMENT_INLAY_HINT: self.hints,
+            lsp.WORKSPACE_SYMBOL: self.workspace_symbols,
         }
         for method, answer in answers.items():
             server.feature(method)(_plain(answer))
-        signs = lsp.CompletionOptions(trigger_characters=["$", "#", "."])
-        server.feature(lsp.TEXT_DOCUMENT_COMPLETION, signs)(_plain(self.completion))
+        with_options: list[tuple[str, Any, Callable[[Any], Any]]] = [
+            (
+                lsp.TEXT_DOCUMENT_COMPLETION,
+                lsp.CompletionOptions(trigger_characters=["$", "#", "."]),
+                self.completion,
+            ),
+            (
+                lsp.TEXT_DOCUMENT_SIGNATURE_HELP,
+                lsp.SignatureHelpOptions(trigger_characters=["(", ","]),
+                self.signature,
+            ),
+            (
+                lsp.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL,
+                lsp.SemanticTokensLegend(list(TYPES), list(MODIFIERS)),
+                self.tokens,
+            ),
+            (lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True), self.rename),
+            (lsp.TEXT_DOCUMENT_PREPARE_RENAME, None, self.can_be_renamed),
+        ]
+        for method, options, answer in with_options:
+            server.feature(method, options)(_plain(answer))
 
     # -- what happens to files
 
-    def initialised(self, _given: lsp.InitializedParams) -> None:
-        """Take in the folders that the editor has open."""
-        for folder in self._server.workspace.folders.values():
+    async def initialised(self, _given: lsp.InitializedParams) -> None:
+        """Take in the folders that the editor has open; what is asked meanwhile is answered."""
+        for folder in list(self._server.workspace.folders.values()):
             path = to_fs_path(folder.uri)
             if path is not None:
-                count = self._project.add_folder(project_root(Path(path)))
+                count = 0
+                for _ in self._project.add_folder(project_root(Path(path))):
+                    count += 1
+                    await asyncio.sleep(0)
                 logging.getLogger(__name__).info("%d files below %s", count, path)
+        self._is_read = True
+        self._publish()
 
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:
         """A file is open in the editor: its text counts, not the disk's."""
-        path = _path(given.text_document.uri)
+        path = path_of(given.text_document.uri)
         self._open.add(path)
         self._project.change(path, given.text_document.text)
         self._publish()
@@ -115,12 +123,12 @@ class _Desk:
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:
         """Something was typed."""
         document = self._server.workspace.get_text_document(given.text_document.uri)
-        self._project.change(_path(document.uri), document.source)
+        self._project.change(path_of(document.uri), document.source)
         self._publish()
 
     def closed(self, given: lsp.DidCloseTextDocumentParams) -> None:
         """A file is closed: what is on the disk counts again."""
-        path = _path(given.text_document.uri)
+        path = path_of(given.text_document.uri)
         self._open.discard(path)
         self._project.reload(path)
         self._tell(given.text_document.uri, [])
@@ -129,18 +137,27 @@ class _Desk:
     def changed_on_disk(self, given: lsp.DidChangeWatchedFilesParams) -> None:
         """Files changed outside the editor."""
         for change in given.changes:
-            path = _path(change.uri)
-            if path not in self._open:
+            path = path_of(change.uri)
+            if Path(path).name == FILE_NAME:
+                self._project.changed()
+            elif path not in self._open:
                 self._project.reload(path)
         self._publish()
 
     def _publish(self) -> None:
-        """Findings of all open files: a declaration in one may be missed in another."""
+        """Findings of all open files: a declaration in one may be missed in another.
+
+        Not before the folder has been read, or names would be missed that are there.
+        """
+        if not self._is_read:
+            return
         for path in sorted(self._open):
             looked = self._project.look(path)
             uri = from_fs_path(path)
             if looked is not None and uri is not None:
-                self._tell(uri, [_diagnostic(looked.source, one) for one in looked.diagnostics])
+                self._tell(
+                    uri, [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
+                )
 
     def _tell(self, uri: str, found: list[lsp.Diagnostic]) -> None:
         self._server.text_document_publish_diagnostics(
@@ -160,7 +177,7 @@ class _Desk:
             return None
         text, region = said
         content = lsp.MarkupContent(kind=lsp.MarkupKind.Markdown, value=text)
-        return lsp.Hover(contents=content, range=_range(looked.source, region))
+        return lsp.Hover(contents=content, range=range_of(looked.source, region))
 
     def definition(self, given: lsp.DefinitionParams) -> lsp.Location | None:
         """Where the name under the cursor is declared."""
@@ -168,32 +185,32 @@ class _Desk:
         found = None if asked is None else definition(self._project, *asked)
         if found is None:
             return None
-        source, uri = self._project.source(found.path), from_fs_path(found.path)
-        if source is None or uri is None:
-            return None
-        return lsp.Location(uri=uri, range=_range(source, found.region))
+        source = self._project.source(found.path)
+        return None if source is None else location(source, found.region)
 
     def symbols(self, given: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         """Routines and data of a file."""
-        looked = self._project.look(_path(given.text_document.uri))
+        looked = self._project.look(path_of(given.text_document.uri))
         if looked is None:
             return []
-        return [_symbol(looked.source, one) for one in outline(looked)]
+        return [protocol.document_symbol(looked.source, one) for one in outline(looked)]
+
+    def workspace_symbols(self, given: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
+        """Routines and data of all files whose names fit what is typed."""
+        found = (protocol.workspace_symbol(*one) for one in wanted(self._project, given.query))
+        return [one for one in found if one is not None]
 
     def folds(self, given: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
-        """The ;FOLD … ;ENDFOLD of a file."""
-        source = self._project.source(_path(given.text_document.uri))
-        if source is None:
-            return []
+        """The ;FOLD … ;ENDFOLD of a file, its routines and blocks."""
+        looked = self._project.look(path_of(given.text_document.uri))
         return [
-            lsp.FoldingRange(start_line=fold.first - 1, end_line=fold.last - 1)
-            for fold in source.folds
-            if fold.last is not None
+            lsp.FoldingRange(start_line=first - 1, end_line=last - 1)
+            for first, last in (folds(looked) if looked is not None else ())
         ]
 
     def formatting(self, given: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
         """The file set out as `krl format` does; nothing for one that cannot be read."""
-        source = self._project.source(_path(given.text_document.uri))
+        source = self._project.source(path_of(given.text_document.uri))
         if source is None:
             return None
         try:
@@ -212,25 +229,72 @@ class _Desk:
         """The names that can be written where one types."""
         asked = self._asked(given)
         found = [] if asked is None else completions(*asked)
+        return [protocol.completion_item(one, place) for place, one in enumerate(found)]
+
+    def signature(self, given: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
+        """What the routine takes whose arguments one types."""
+        asked = self._asked(given)
+        found = None if asked is None else signature_at(*asked)
+        if found is None:
+            return None
+        parameters = [lsp.ParameterInformation(one) for one in found.parameters]
+        said = lsp.SignatureInformation(found.label, parameters=parameters)
+        return lsp.SignatureHelp([said], active_signature=0, active_parameter=found.active)
+
+    def hints(self, given: lsp.InlayHintParams) -> list[lsp.InlayHint]:
+        """The parameters that arguments are given to."""
+        looked = self._project.look(path_of(given.text_document.uri))
+        if looked is None:
+            return []
+        first, last = given.range.start.line + 1, given.range.end.line + 1
         return [
-            lsp.CompletionItem(
-                label=one.name,
-                kind=_COMPLETED.get(one.kind, lsp.CompletionItemKind.Variable),
-                detail=one.detail or None,
-                sort_text=f"{place:06}",  # those nearby first
+            lsp.InlayHint(
+                protocol.position_of(looked.source, one.offset),
+                f"{one.name}:",
+                kind=lsp.InlayHintKind.Parameter,
+                padding_right=True,
             )
-            for place, one in enumerate(found)
+            for one in argument_hints(looked, first, last)
         ]
+
+    def tokens(self, given: lsp.SemanticTokensParams) -> lsp.SemanticTokens:
+        """What each name is."""
+        looked = self._project.look(path_of(given.text_document.uri))
+        if looked is None:
+            return lsp.SemanticTokens([])
+        return lsp.SemanticTokens(protocol.encoded(looked.source, semantic_tokens(looked)))
+
+    def highlight(self, given: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
+        """The places in this file of the name under the cursor."""
+        asked = self._asked(given)
+        found = None if asked is None else found_at(*asked)
+        if asked is None or found is None:
+            return []
+        regions = sorted(highlights(asked[0], found))
+        return [lsp.DocumentHighlight(range_of(asked[0].source, one)) for one in regions]
 
     def references(self, given: lsp.ReferenceParams) -> list[lsp.Location]:
         """All places of a name."""
         asked = self._asked(given)
         found = [] if asked is None else places(self._project, *asked)
         return [
-            lsp.Location(uri=uri, range=_range(source, region))
+            one
             for path, region in found
-            if (source := self._project.source(path)) and (uri := from_fs_path(path))
+            if (source := self._project.source(path)) and (one := location(source, region))
         ]
+
+    def can_be_renamed(self, given: lsp.PrepareRenameParams) -> lsp.Range | None:
+        """The name to be renamed, if a file declares it; an editor says no otherwise."""
+        asked = self._asked(given)
+        found = None if asked is None else found_at(*asked)
+        if asked is None or found is None or found.module is None:
+            return None
+        looked, offset = asked
+        line, column = looked.source.place(offset)
+        for one in highlights(looked, found):
+            if one.line == line and one.column <= column <= one.end_column:
+                return range_of(looked.source, one)
+        return None
 
     def rename(self, given: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
         """Another name in all places of one; what is wrong with it is told the editor."""
@@ -245,14 +309,14 @@ class _Desk:
         for path, region in found:
             source, uri = self._project.source(path), from_fs_path(path)
             if source is not None and uri is not None:
-                edit = lsp.TextEdit(range=_range(source, region), new_text=given.new_name)
+                edit = lsp.TextEdit(range=range_of(source, region), new_text=given.new_name)
                 changes.setdefault(uri, []).append(edit)
         return lsp.WorkspaceEdit(changes=changes)
 
     def actions(self, given: lsp.CodeActionParams) -> list[lsp.CodeAction]:
         """The edits of findings in a range, and comments that silence these."""
         uri = given.text_document.uri
-        looked = self._project.look(_path(uri))
+        looked = self._project.look(path_of(uri))
         if looked is None:
             return []
         source, lines = looked.source, (given.range.start.line, given.range.end.line)
@@ -260,39 +324,27 @@ class _Desk:
         for one in looked.diagnostics:
             if not lines[0] <= one.region.line - 1 <= lines[1]:
                 continue
-            shown = _diagnostic(source, one)
+            shown = protocol.diagnostic(source, one)
             fix = one.fix
             if fix is not None and fix.region is not None and fix.replacement is not None:
-                edit = lsp.TextEdit(range=_range(source, fix.region), new_text=fix.replacement)
-                found.append(_action(fix.text, uri, edit, shown, is_preferred=True))
+                edit = lsp.TextEdit(range=range_of(source, fix.region), new_text=fix.replacement)
+                found.append(protocol.action(fix.text, uri, edit, shown, is_preferred=True))
             if source.comment(one.region.line) is None:
                 end = len(source.line(one.region.line)) + 1
                 place = Region(one.region.line, end, one.region.line, end)
                 text = f" ; krl: ignore[{one.code}]"
-                edit = lsp.TextEdit(range=_range(source, place), new_text=text)
-                found.append(_action(f"ignore {one.code} here", uri, edit, shown))
+                edit = lsp.TextEdit(range=range_of(source, place), new_text=text)
+                found.append(protocol.action(f"ignore {one.code} here", uri, edit, shown))
         return found
 
     def _asked(self, given: _AtPlace) -> tuple[Looked, int] | None:
         """The file that is asked about, and the offset in it; ``None`` for a place it has not."""
-        looked = self._project.look(_path(given.text_document.uri))
+        looked = self._project.look(path_of(given.text_document.uri))
         if looked is None or given.position.line >= len(looked.source.lines):
             return None
         line = looked.source.line(given.position.line + 1)
-        column = _characters(line, given.position.character)
+        column = protocol.characters(line, given.position.character)
         return looked, looked.source.offset(given.position.line + 1, column + 1)
-
-
-def _action(
-    title: str, uri: str, edit: lsp.TextEdit, of: lsp.Diagnostic, *, is_preferred: bool = False
-) -> lsp.CodeAction:
-    return lsp.CodeAction(
-        title=title,
-        kind=lsp.CodeActionKind.QuickFix,
-        diagnostics=[of],
-        edit=lsp.WorkspaceEdit(changes={uri: [edit]}),
-        is_preferred=is_preferred,
-    )
 
 
 def _plain(answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -301,60 +353,7 @@ def _plain(answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def ask(given: Any) -> Any:
         return answer(given)
 
-    return ask
+    async def ask_on(given: Any) -> Any:
+        return await answer(given)
 
-
-def _path(uri: str) -> str:
-    """The path of a file, or the address itself for what is no file."""
-    path = to_fs_path(uri)
-    return uri if path is None else Path(path).absolute().as_posix()
-
-
-def _characters(line: str, units: int) -> int:
-    """So many units of UTF-16, as characters of a line."""
-    count = 0
-    for place, character in enumerate(line):
-        if count >= units:
-            return place
-        count += 1 + (ord(character) > 0xFFFF)
-    return len(line)
-
-
-def _units(line: str, characters: int) -> int:
-    """So many characters of a line, as units of UTF-16."""
-    return sum(1 + (ord(character) > 0xFFFF) for character in line[:characters])
-
-
-def _position(source: Source, line: int, column: int) -> lsp.Position:
-    text = source.line(line) if line <= len(source.lines) else ""
-    return lsp.Position(line=line - 1, character=_units(text, column - 1))
-
-
-def _range(source: Source, region: Region) -> lsp.Range:
-    return lsp.Range(
-        start=_position(source, region.line, region.column),
-        end=_position(source, region.end_line, region.end_column),
-    )
-
-
-def _diagnostic(source: Source, found: Diagnostic) -> lsp.Diagnostic:
-    said = [found.message, found.reason, found.fix.text if found.fix else ""]
-    rules = f" [{', '.join(found.rules)}]" if found.rules else ""
-    return lsp.Diagnostic(
-        range=_range(source, found.region),
-        message="; ".join(part for part in said if part) + rules,
-        severity=_SEVERITIES[found.severity],
-        code=found.code,
-        source="krl",
-    )
-
-
-def _symbol(source: Source, found: Outline) -> lsp.DocumentSymbol:
-    return lsp.DocumentSymbol(
-        name=found.name,
-        kind=_KINDS.get(found.kind, lsp.SymbolKind.Variable),
-        detail=found.detail,
-        range=_range(source, found.whole),
-        selection_range=_range(source, found.region),
-        children=[_symbol(source, one) for one in found.inner],
-    )
+    return ask_on if inspect.iscoroutinefunction(answer) else ask

@@ -8,7 +8,8 @@ in the project; what editors count otherwise is translated at the door, in
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,19 +19,22 @@ from grammar.check.suppression_comments import apply_suppressions, suppression_c
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, link
-from grammar.semantics.scopes import Module
+from grammar.semantics.scopes import Answer, MaybeElsewhere, Module, Scope
 from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.source import Source
 from krl.errors import InputError
-from krl.project_settings import settings_of
+from krl.project_settings import Settings, baseline_place, read_baseline, settings_of
 from support.files import discovery
 from support.files.decode import decode
 from support.files.untrusted import read_bytes
+from support.parallel.gc_pause import gc_paused
 
-__all__ = ["MOST_FILES", "Looked", "OpenProject"]
+__all__ = ["MOST_FILES", "Looked", "OpenProject", "certain"]
 
 #: More files than the largest backup has; a folder with more is somebody's whole disk.
 MOST_FILES = 5_000
+_NONE = Settings(Path())
 #: Findings that are no faults: why the robot stops. `krl check` tells them when asked.
 _SOUGHT = ("KSS", *(f"KRL{digit}" for digit in "01234579"))
 
@@ -57,6 +61,22 @@ class Looked:
     project: Project | None = None
     checked: Checked | None = None
 
+    def scope(self, line: int) -> Scope | None:
+        """What is known at a line: in its routine, if it stands in one."""
+        if self.project is None or self.module is None or self.module.table is None:
+            return None
+        for routine in reversed(self.module.table.routines):
+            if self.source.place(routine.routine.span[0])[0] <= line:
+                return self.project.scope(self.module, routine)
+        return self.project.scope(self.module)
+
+
+def certain(answer: Answer) -> Answer:
+    """What is meant, also where the line that one types keeps that from being certain."""
+    if isinstance(answer, MaybeElsewhere) and len(answer.candidates) == 1:
+        return answer.candidates[0]
+    return answer
+
 
 class OpenProject:
     """Files by path, and what is known of them today."""
@@ -65,9 +85,10 @@ class OpenProject:
         self._files: dict[str, _Read] = {}
         self._linked: Mapping[str, tuple[Project, Module]] | None = None
         self._looked: dict[str, Looked] = {}
+        self._agreed: dict[Path, Settings] = {}
 
-    def add_folder(self, folder: Path) -> int:
-        """Take in the KRL files below a folder; how many there are. A missing folder has none.
+    def add_folder(self, folder: Path) -> Iterator[str]:
+        """Take in the KRL files below a folder, one a step; their paths. A missing folder has none.
 
         Files beyond `MOST_FILES` are left out, and so are files that are open already.
         """
@@ -76,12 +97,12 @@ class OpenProject:
                 one for one in discovery.discover([folder]) if isinstance(one, discovery.Found)
             ]
         except discovery.IngestError:
-            return 0
+            return
         for one in found[:MOST_FILES]:
             path = one.file.absolute().as_posix()
             if one.member is None and path not in self._files:
                 self.reload(path)
-        return len(found)
+                yield path
 
     def reload(self, path: str) -> None:
         """Take a file as it is on the disk; forget it where it is gone or no KRL."""
@@ -99,19 +120,31 @@ class OpenProject:
         known = self._files.get(path)
         if known is not None and known.source.text == text:
             return
-        self._files[path] = _read(path, text)
+        with gc_paused(len(text)):
+            self._files[path] = _read(path, text)
+        self.changed()
+
+    def changed(self) -> None:
+        """Something that files depend on is another now: a text, settings."""
         self._linked = None
         self._looked.clear()
+        self._agreed.clear()
 
     def forget(self, path: str) -> None:
         """A file is gone."""
         if self._files.pop(path, None) is not None:
-            self._linked = None
-            self._looked.clear()
+            self.changed()
 
     def paths(self) -> list[str]:
         """All files, in order."""
         return sorted(self._files)
+
+    def tables(self) -> Iterator[tuple[Source, ModuleTable]]:
+        """The texts and the tables of all files that can be read, in order."""
+        for path in self.paths():
+            known = self._files[path]
+            if known.file.table is not None:
+                yield known.source, known.file.table
 
     def source(self, path: str) -> Source | None:
         """The text of a file as it is known."""
@@ -129,19 +162,46 @@ class OpenProject:
 
     def _fresh(self, known: _Read) -> Looked:
         source, reading = known.source, known.reading
+        agreed = self._settings(source.path)
+        if _is_left_out(source.path, agreed):
+            return Looked(source, ())
         place = self._projects().get(source.path)
         if reading.syntax is None or place is None:
-            return Looked(source, _kept(source, reading.diagnostics))
+            return Looked(source, _kept(source, reading.diagnostics, agreed))
         project, module = place
         checked = check_module(project, module, source)
         found = check_project([reading.completed(checked.findings)], is_whole=False)
-        return Looked(source, _kept(source, found), module, project, checked)
+        return Looked(source, _kept(source, found, agreed), module, project, checked)
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:
         if self._linked is None:
-            workspace = link([one.file for one in self._files.values()], packages=frozenset())
-            self._linked = {module.path: (at, module) for at, module in workspace.modules()}
+            groups: dict[Settings, list[File]] = {}
+            for path, one in self._files.items():
+                agreed = self._settings(path)
+                if not _is_left_out(path, agreed):
+                    groups.setdefault(agreed, []).append(one.file)
+            linked: dict[str, tuple[Project, Module]] = {}
+            for agreed, files in groups.items():
+                packages = frozenset(agreed.packages)
+                workspace = link(files, is_complete=agreed.complete or None, packages=packages)
+                linked |= {module.path: (at, module) for at, module in workspace.modules()}
+            self._linked = linked
         return self._linked
+
+    def _settings(self, path: str) -> Settings:
+        """What was agreed on for a file.
+
+        Settings that cannot be read count as none: who checks on the command line is told of them.
+        """
+        folder = Path(path).parent
+        if folder not in self._agreed:
+            try:
+                read = settings_of([folder]) or _NONE
+            except InputError:
+                read = _NONE
+            # one object for each file of settings, by which files are grouped
+            self._agreed[folder] = next((one for one in self._agreed.values() if one == read), read)
+        return self._agreed[folder]
 
 
 def _read(path: str, text: str) -> _Read:
@@ -151,18 +211,20 @@ def _read(path: str, text: str) -> _Read:
     return _Read(source, reading, File(path, reading.syntax, table=table, words=reading.words))
 
 
-def _kept(source: Source, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Findings that are wanted, by the settings of the project too, and that no comment silences.
+def _is_left_out(path: str, agreed: Settings) -> bool:
+    return agreed.leaves_out(discovery.Found(path, "", 0, Path(path), None))
 
-    Settings that cannot be read count as none: who checks on the command line is told of them.
-    """
+
+def _kept(source: Source, found: Iterable[Diagnostic], agreed: Settings) -> tuple[Diagnostic, ...]:
+    """Findings that are wanted, that no comment silences, and that are not known already."""
     wanted = [one for one in found if one.code.startswith(_SOUGHT)]
     kept = apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT)
-    try:
-        agreed = settings_of([Path(source.path)])
-    except InputError:
-        agreed = None
-    if agreed is None:
-        return tuple(kept)
     selection = Selection(agreed.select, agreed.ignore)
-    return tuple(one for one in agreed.adjusted(kept) if selection.keeps(one.code))
+    kept = [one for one in agreed.adjusted(kept) if selection.keeps(one.code)]
+    if agreed.baseline is not None:
+        with suppress(InputError):
+            known = read_baseline(agreed.baseline)
+            kept, _ = known.new(
+                kept, lambda _, line: source.line(line), baseline_place(agreed.baseline)
+            )
+    return tuple(kept)

@@ -9,6 +9,8 @@ import pytest
 
 pytest.importorskip("lsprotocol")
 
+from krl.cli import main
+from krl.language_server.calls import signature_at
 from krl.language_server.hover import hover
 from krl.language_server.names import (
     RenameError,
@@ -146,6 +148,58 @@ def test_settings_count_in_an_editor(project: OpenProject, tmp_path: Path) -> No
     looked = project.look(path)
     assert looked is not None
     assert ["KRL001"] == [one.code for one in looked.diagnostics]
+
+
+def test_what_is_agreed_on_counts_as_in_a_check(project: OpenProject, tmp_path: Path) -> None:
+    """A file that is left out has no findings and declares nothing; known findings are not shown.
+
+    What is known is what `krl check --write-baseline` wrote.
+    """
+    (tmp_path / "A.src").write_text("DEF A()\n  FETCH(1)\n  LOST = 1\nEND\n", encoding="utf-8")
+    (tmp_path / "OTHER.src").write_text("DEF OTHER()\n  LOST = 2\nEND\n", encoding="utf-8")
+    project.reload((tmp_path / "A.src").as_posix())
+    assert [] != codes(project, "A.src")
+    main(["check", str(tmp_path / "A.src"), "--write-baseline", str(tmp_path / "known.json")])
+    settings = 'exclude = ["OTHER.src"]\nbaseline = "known.json"\n'
+    (tmp_path / "krl.toml").write_text(settings, encoding="utf-8")
+    project.changed()
+    assert [] == codes(project, "A.src")
+    assert [] == codes(project, "OTHER.src")
+    assert "OTHER" not in offered(project, "  O")
+
+
+def codes(project: OpenProject, file: str) -> list[str]:
+    looked = project.look(next(one for one in project.paths() if one.endswith(file)))
+    assert looked is not None
+    return [one.code for one in looked.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("line", "label", "active"),
+    [
+        ("  FETCH(", "DEF FETCH(COUNT:IN INT)", 0),
+        ("  FETCH(ABS(N), SPOT.X, ", "DEF FETCH(COUNT:IN INT)", 2),
+        ("  N = ABS(PARTS+(1", "ABS", 0),
+        ('  FETCH("a, b(", {X 1, Y', "DEF FETCH(COUNT:IN INT)", 1),
+        ("  SPOT = {X 1, Y ", None, 0),
+        ("  FETCH(1) ; FETCH(", None, 0),
+        ("  N = (", None, 0),
+        ("  NOWHERE(", None, 0),
+    ],
+)
+def test_a_routine_tells_what_it_takes(
+    project: OpenProject, line: str, label: str | None, active: int
+) -> None:
+    """Also in a line that cannot be read yet; signs in texts and comments are none."""
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    project.change(path, PROGRAM.replace("  INT N\n", f"  INT N\n{line}\n"))
+    looked = project.look(path)
+    assert looked is not None
+    found = signature_at(looked, looked.source.text.index(line) + len(line))
+    assert (label is None) == (found is None)
+    if found is not None and label is not None:
+        assert label in found.label
+        assert active == found.active
 
 
 def message(**fields: object) -> bytes:

@@ -16,6 +16,7 @@ pytest.importorskip("pygls")
 from pygls.lsp.client import LanguageClient  # noqa: E402 - only where it is installed
 
 from grammar.syntax.formatter import formatter  # noqa: E402 - behind the one above
+from krl.language_server.semantic_tokens import TYPES  # noqa: E402
 
 PROGRAM = """DEF Cell()
   ; »ä𝄞« before the name
@@ -65,6 +66,7 @@ class _Heard:
     places: dict[str, tuple[str, int, int]] = field(default_factory=dict)
     symbols: list[tuple[str, list[str]]] = field(default_factory=list)
     set_out: str = ""
+    more: dict[str, Any] = field(default_factory=dict)
 
 
 async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
@@ -116,9 +118,43 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
     )
     await editor.told("Cell.src", lambda found: all(one.code != "KRL101" for one in found))
     heard.after = [one for one in editor.found["Cell.src"] if one.code == "KRL101"]
+    heard.more = await _asked(editor, uri)
     await editor.shutdown_async(None)
     editor.exit(None)
     await editor.stop()
+
+
+async def _asked(editor: Any, uri: str) -> dict[str, Any]:
+    """The text with a declaration more, which moves lines down by one."""
+    document = lsp.TextDocumentIdentifier(uri=uri)
+    whole = lsp.Range(start=lsp.Position(0, 0), end=lsp.Position(99, 0))
+    fetch = lsp.Position(line=4, character=3)
+    hints = await editor.text_document_inlay_hint_async(lsp.InlayHintParams(document, whole))
+    marks = await editor.text_document_document_highlight_async(
+        lsp.DocumentHighlightParams(document, fetch)
+    )
+    tokens = await editor.text_document_semantic_tokens_full_async(
+        lsp.SemanticTokensParams(document)
+    )
+    found = await editor.workspace_symbol_async(lsp.WorkspaceSymbolParams("fth"))
+    help_ = await editor.text_document_signature_help_async(
+        lsp.SignatureHelpParams(document, lsp.Position(line=4, character=8))
+    )
+    name = await editor.text_document_prepare_rename_async(
+        lsp.PrepareRenameParams(position=fetch, text_document=document)
+    )
+    folds = await editor.text_document_folding_range_async(lsp.FoldingRangeParams(document))
+    return {
+        "hints": [(one.position.line, one.position.character, one.label) for one in hints],
+        "marks": [(one.range.start.line, one.range.start.character) for one in marks],
+        "tokens": [
+            (tokens.data[n + 2], TYPES[tokens.data[n + 3]]) for n in range(0, len(tokens.data), 5)
+        ],
+        "symbols": [(one.name, one.location.uri.rpartition("/")[2]) for one in found],
+        "help": (help_.signatures[0].label, help_.active_parameter),
+        "name": (name.start.character, name.end.character),
+        "folds": [(one.start_line, one.end_line) for one in folds],
+    }
 
 
 @pytest.fixture(scope="module")
@@ -162,6 +198,26 @@ def test_definitions_are_found_across_files(heard: _Heard) -> None:
 def test_symbols_are_listed(heard: _Heard) -> None:
     """Routines are listed with their data."""
     assert [("Cell", []), ("Fetch", ["n"])] == heard.symbols
+
+
+def test_calls_are_told(heard: _Heard) -> None:
+    """The parameter of each argument, and what the routine takes whose arguments one types."""
+    assert [(4, 8, "n:")] == heard.more["hints"]
+    assert ("DEF Fetch(n:IN INT)", 0) == heard.more["help"]
+
+
+def test_names_are_told_apart(heard: _Heard) -> None:
+    """Places in the file, kinds for colours, the region to be renamed, names that fit a query."""
+    assert [(4, 2), (10, 4)] == heard.more["marks"]
+    assert (4, "function") == heard.more["tokens"][0]
+    assert {(5, "function"), (6, "variable"), (1, "parameter")} < set(heard.more["tokens"])
+    assert (2, 7) == heard.more["name"]
+    assert [("Fetch", "Cell.src")] == heard.more["symbols"]
+
+
+def test_routines_are_folded(heard: _Heard) -> None:
+    """Down to the line before their end."""
+    assert [(0, 7), (10, 11)] == heard.more["folds"]
 
 
 def test_formatting_is_that_of_krl_format(heard: _Heard) -> None:

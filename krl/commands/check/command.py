@@ -1,6 +1,5 @@
 """The command: what is to be checked, under which settings, and what is done about it."""
 
-import json
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -16,11 +15,16 @@ from krl.extras import expected_extras
 from krl.options import JobsOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.project_settings import Settings, read_settings, settings_of
+from krl.project_settings import (
+    Settings,
+    baseline_place,
+    read_baseline,
+    read_settings,
+    settings_of,
+)
 
 if TYPE_CHECKING:
     from grammar.check.batch import CheckOptions, CheckReport
-    from grammar.diagnostics.baseline import Baseline
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
@@ -28,7 +32,6 @@ __all__ = ["check"]
 
 #: Findings that are no faults: why the robot stops.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
-_LARGEST_BASELINE = 64_000_000
 
 
 def check(
@@ -181,8 +184,8 @@ class _Check:
         report, kept = self._found()
         more = ""
         if self.baseline is not None:
-            known = _read_baseline(self.baseline)
-            new, gone = known.new(kept, _line_of(report), _place(self.baseline))
+            known = read_baseline(self.baseline)
+            new, gone = known.new(kept, _line_of(report), baseline_place(self.baseline))
             more = f"; {len(kept) - len(new):,} known ones left out"
             more += f", {gone:,} known ones are gone" if gone else ""
             kept = new
@@ -195,7 +198,7 @@ class _Check:
         from grammar.diagnostics.baseline import Baseline
 
         report, kept = self._found()
-        write_json(Baseline.of(kept, _line_of(report), _place(file)).record(), file, 1)
+        write_json(Baseline.of(kept, _line_of(report), baseline_place(file)).record(), file, 1)
         sum_up(kept, report, ", all known from now on")
         return FINE
 
@@ -243,32 +246,8 @@ def _asks_for_stops(selection: "Selection") -> bool:
     return bool(selection.select) and any(map(selection.keeps, _STOPS))
 
 
-# -- the baseline ----------------------------------------------------------------------------------
-
-
-def _read_baseline(file: Path) -> "Baseline":
-    from grammar.diagnostics.baseline import Baseline
-    from support.files.untrusted import open_file
-
-    try:
-        with open_file(file) as stream:
-            data = stream.read(_LARGEST_BASELINE)
-        return Baseline.read(json.loads(data))
-    except OSError as error:
-        hint = f": make it with --write-baseline {file}" if not file.exists() else ""
-        raise InputError(f"{file}: {error.strerror or error}{hint}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{file}: {error}") from None
-
-
 def _line_of(report: "CheckReport") -> Callable[[str, int], str]:
     return lambda path, number: report.lines.get((path, number), "")
-
-
-def _place(baseline: Path) -> Callable[[str], str]:
-    """Paths as they are seen from a baseline: the same from whatever folder one checks."""
-    home = baseline.absolute().parent
-    return lambda path: Path(os.path.relpath(Path(path).absolute(), home)).as_posix()
 
 
 # -- the cache -------------------------------------------------------------------------------------

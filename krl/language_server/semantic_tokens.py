@@ -1,0 +1,49 @@
+"""What each name of a file is, for the colours of an editor; words and signs are the grammar's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import Kind
+from krl.language_server.workspace import Looked
+
+__all__ = ["MODIFIERS", "TYPES", "semantic_tokens"]
+
+#: Types and modifiers of the protocol, in the order of their numbers there.
+TYPES: Final = (
+    "function", "variable", "parameter", "property", "enumMember", "type", "struct", "enum", "event"
+)  # fmt: skip
+MODIFIERS: Final = ("declaration", "readonly", "defaultLibrary")
+_TYPE_OF: Final = {
+    Kind.ROUTINE: "function",
+    Kind.EXTERNAL: "function",
+    Kind.PARAMETER: "parameter",
+    Kind.MEMBER: "property",
+    Kind.ENUM_CONSTANT: "enumMember",
+    Kind.PLAIN_TYPE: "type",
+    Kind.STRUCTURE: "struct",
+    Kind.ENUMERATION: "enum",
+    Kind.SIGNAL: "event",
+}
+
+
+def semantic_tokens(looked: Looked) -> Iterator[tuple[int, int, int, int]]:
+    """Offset, length, number of the type, and modifiers as bits, of each name that is known.
+
+    In the order of the file. Labels have no colour.
+    """
+    if looked.checked is None:
+        return
+    answers = looked.checked.resolution.answers.items()
+    for name, answer in sorted(answers, key=lambda one: one[0].span):
+        if not isinstance(answer, Found) or answer.symbol.kind is Kind.LABEL:
+            continue
+        symbol = answer.symbol
+        is_declared_here = answer.module is looked.module and symbol.span == name.span
+        flags = (is_declared_here, symbol.kind is Kind.CONSTANT, answer.module is None)
+        start, end = name.span
+        if end > start:
+            type_ = TYPES.index(_TYPE_OF.get(symbol.kind, "variable"))
+            yield start, end - start, type_, sum(flag << n for n, flag in enumerate(flags))
