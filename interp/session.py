@@ -10,13 +10,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
+from grammar.check.context import placed
+from grammar.syntax import ast
 from grammar.syntax.source import Source
 from interp.controller.controller import Controller
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
 from interp.controller.scheduler import HOUR, RunOutcome
-from interp.controller.trace import Trace, TraceEvent
+from interp.controller.trace import WORLD_KINDS, Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
+from interp.port.events import EVERY_KIND, Kind
 from interp.port.requests import Value
 from interp.program.load import CheckedProgram, Limits
 from interp.robot.api.batch import BatchCore
@@ -59,6 +62,8 @@ __all__ = [
 #: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
 #: forearm level.
 _UPRIGHT = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
+#: What depends on which routines are open: interrupts end with them, $ERR.UP_NAME is one.
+_NEED_CALLS = (ast.InterruptDeclaration, ast.OnErrorProceed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,14 +74,15 @@ class RunSetup:
     a submit program in the same project. ``machine`` is the arm, by default that of the project's
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
-    assignment told. ``motion`` is how motions are planned: as they become known, or in batches.
-    ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand before it
-    counts as over; ``limits`` are the most statements and calls. ``make_robot`` makes another
-    robot than ``robot`` names, of the machine and the cycle in µs. ``scene`` is what stands around
-    the arm, ``robot_file`` an arm in place of that of the project. ``is_tolerant``: where another
-    arm stands in for one whose machine data is not understood, or a declaration for one that the
-    project lacks, the controller skips motions that cannot be planned and predefined routines that
-    are not simulated.
+    assignment told; without ``is_told`` executors tell nothing that the run does not need, which
+    leaves calls and branches out of the trace. ``motion`` is how motions are planned: as they
+    become known, or in batches. ``until`` is the most virtual time in µs, ``patience`` how long the
+    arm may stand before it counts as over; ``limits`` are the most statements and calls.
+    ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
+    ``scene`` is what stands around the arm, ``robot_file`` an arm in place of that of the project.
+    ``is_tolerant``: where another arm stands in for one whose machine data is not understood, or a
+    declaration for one that the project lacks, the controller skips motions that cannot be planned
+    and predefined routines that are not simulated.
     """
 
     executor: str = "tree"
@@ -88,6 +94,7 @@ class RunSetup:
     machine: MachineData | None = None
     start: tuple[float, ...] | None = None
     is_full: bool = False
+    is_told: bool = True
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
     patience: int = HOUR
@@ -168,7 +175,7 @@ def run_program(
     else:
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
     tracking = Tracking(arm, robot, machine, profile.cycle, start, _observer(machine, setup))
-    trace = Trace(take, is_full=setup.is_full)
+    trace = Trace(take, kinds=_kinds(program, setup))
     sink, submit_sink = trace.sink(), trace.sink("submit")
     limits = setup.limits or Limits(per_slice=profile.statements)
     executor = prepared.executor(setup.executor, limits, sink)
@@ -210,6 +217,18 @@ def run_program(
     )
 
 
+def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
+    """What executors tell; at least the calls that interrupts and $ERR go by."""
+    if setup.is_full:
+        return EVERY_KIND
+    if setup.is_told:
+        return WORLD_KINDS
+    routines = (routine.node for routine in program.routines.values())
+    statements = (one.statement for routine in routines for one in placed(routine.body))
+    needs_calls = any(isinstance(one, _NEED_CALLS) for one in statements)
+    return frozenset({"call", "return"}) if needs_calls else frozenset()
+
+
 def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
     """Who looks for contacts, where there is something to touch."""
     if setup.scene is None and (setup.robot != "mujoco" or setup.make_robot is not None):
@@ -221,7 +240,7 @@ def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
 
 
 #: Virtual time in µs from one report of progress to the next.
-_REPORT = 1_000_000
+_REPORT = 5_000_000
 
 
 def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]) -> RunOutcome:

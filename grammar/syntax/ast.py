@@ -84,6 +84,8 @@ class TypeName(Node):
 class IntegerLiteral(Node):
     """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
 
+    Only the smallest INT has its sign here.
+
     A number of more than 1,000 digits is read as ten to the power of 1,000.
     """
 

@@ -125,7 +125,14 @@ def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 def _prefix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     if len(parts) == 1:
         return parts[0].value
-    return draft.over(ast.Unary, parts, _operator(parts[0]), parts[1].value)
+    return draft.over(_unary_of, parts, _operator(parts[0]), parts[1].value)
+
+
+def _unary_of(span: Span, operator: str, operand: ast.Expression) -> ast.Unary | ast.IntegerLiteral:
+    """The smallest INT is a literal with its sign: without it, it is none [TYP-01]."""
+    if operator == "-" and type(operand) is ast.IntegerLiteral and operand.value == 2**31:
+        return ast.IntegerLiteral(span, -(2**31))
+    return ast.Unary(span, operator, operand)
 
 
 def _primary(draft: Draft, parts: Sequence[DraftPart]) -> Value:

@@ -58,15 +58,20 @@ class QuietTime:
         end = min(time for time in times if time is not None)
         return end - end % clock.cycle
 
-    def is_endless(self, tasks: Sequence[Task]) -> bool:
-        """Whether a program that has used up one more slice will never do anything else."""
+    @property
+    def slices_left(self) -> int:
+        """How many slices may pass at once before the one that would be endless."""
+        return max(_MOST_SLICES - 1 - self.slices, 1)
+
+    def is_endless(self, tasks: Sequence[Task], count: int) -> bool:
+        """Whether a program that has used up ``count`` more slices never does anything else."""
         is_alone = (
             sum(not task.is_over for task in tasks) == 1
             and not any(task.interrupts.is_watched for task in tasks)
             and self.queue.next_time() is None
             and self.state.actions.next_time() is None
         )
-        self.slices = self.slices + 1 if is_alone else 0
+        self.slices = self.slices + count if is_alone else 0
         return self.slices >= _MOST_SLICES
 
     def _counts(self) -> tuple[int, int, int]:

@@ -84,6 +84,7 @@ class Scheduler:
     _outcome: RunOutcome | None = None
     _failed: RunOutcome | None = None
     _ticked: int = -1
+    _limit: int = 0
     _answered: int = 0
 
     def run(self, until: int) -> RunOutcome:
@@ -108,7 +109,7 @@ class Scheduler:
         clock, states = self.state.clock, self.state.program_states
         if self._outcome is not None and self._outcome.ending == "halt":
             self.panel.press("START")
-        self._outcome = None
+        self._outcome, self._limit = None, limit
         if states["robot"] == "P_RESET":
             states["robot"] = "P_ACTIVE"
         if len(self.tasks) > 1 and states["submit"] == "P_FREE":
@@ -213,6 +214,8 @@ class Scheduler:
                     task.blocked = None
                     self.state.trace.origin = task.name, blocked.request.at
                     answer = blocked.finish()
+                    if answer is None and isinstance(blocked.request, Slice):
+                        answer = self._free_slices(task)
                 else:
                     return
             except RuntimeFailure as error:  # of an interrupt, a trigger, a condition
@@ -221,6 +224,15 @@ class Scheduler:
             self._answered += 1
             task.blocked = answer if isinstance(answer, Blocked) else None
             task.reply = None if isinstance(answer, Blocked) else answer
+
+    def _free_slices(self, task: Task) -> int:
+        """The slices that may pass from now on: nothing can happen before the last one begins."""
+        clock = self.state.clock
+        if task is not self._robot or task.levels:
+            return 1
+        times = [self._limit + 1, self._next_time(), self.waits.idle_time(task)]
+        end = min(time for time in times if time is not None)
+        return min(max(-(-(end - clock.now) // clock.cycle), 1), self.quiet.slices_left)
 
     def _answer(self, task: Task, request: Request) -> Answer:
         """The answer to a request; one too many in a slice waits for the next slice."""
@@ -238,7 +250,7 @@ class Scheduler:
                 return None
         if not isinstance(request, Slice):
             self.quiet.slices = 0
-        elif self.quiet.is_endless(self.tasks):
+        elif self.quiet.is_endless(self.tasks, request.count):
             error = BudgetExhausted("an endless loop: it only computes, and nothing can end it")
             self._fail(task, Fail(request.at, error))
             return None

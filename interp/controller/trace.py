@@ -16,9 +16,12 @@ from interp.port.events import EVERY_KIND, Kind
 from interp.port.requests import At, Path, Value
 from interp.values.json_form import to_json
 
-__all__ = ["KINDS", "TaskName", "TaskSink", "Trace", "TraceEvent", "path_text"]
+__all__ = ["KINDS", "WORLD_KINDS", "TaskName", "TaskSink", "Trace", "TraceEvent", "path_text"]
 
 TaskName = Literal["robot", "submit"]
+
+#: What executors tell in a trace that is not full.
+WORLD_KINDS: Final = EVERY_KIND - {"line", "assign"}
 
 #: The kinds of events; ``line`` and ``assign`` are of the full level only.
 KINDS: Final = tuple(
@@ -73,19 +76,24 @@ def path_text(path: Path) -> str:
 class Trace:
     """Records events with the time that the controller's clock has.
 
-    ``take`` receives each event as it happens; by default they are kept in ``events``. With
-    ``is_full`` every line and assignment is recorded too. ``origin`` is the task and the line that
-    cause what changes now; the line is ``None`` for what comes from outside.
+    ``take`` receives each event as it happens; by default they are kept in ``events``. ``kinds``
+    are those that executors are to tell, by default all but lines and assignments, most of what a
+    program is made of; where nobody wants them they cost time for nothing. ``origin``
+    is the task and the line that cause what changes now; the line is ``None`` for what comes from
+    outside.
     """
 
     def __init__(
-        self, take: Callable[[TraceEvent], None] | None = None, *, is_full: bool = False
+        self,
+        take: Callable[[TraceEvent], None] | None = None,
+        *,
+        kinds: frozenset[Kind] = WORLD_KINDS,
     ) -> None:
         self.events: list[TraceEvent] = []
         self.now = 0
         #: How many events there were.
         self.count = 0
-        self.is_full = is_full
+        self.kinds = kinds
         self.origin: tuple[TaskName, At | None] = ("robot", None)
         self._take = take or self.events.append
 
@@ -127,8 +135,8 @@ class TaskSink:
 
     @property
     def kinds(self) -> frozenset[Kind]:
-        """Lines and assignments are for the full trace only; most of a program is made of them."""
-        return EVERY_KIND if self._trace.is_full else EVERY_KIND - {"line", "assign"}
+        """Those of the trace."""
+        return self._trace.kinds
 
     def routine(self, depth: int) -> str:
         """The name of the routine called last to this depth."""

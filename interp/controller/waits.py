@@ -111,7 +111,12 @@ class Waits:
 
     def slice(self, task: Task, request: Slice) -> Answer:
         """The program has used up its statements: it goes on in the next slice."""
-        return self.until(request, self.next_slice(task), lambda: None)
+        more = (request.count - 1) * self._state.clock.cycle
+        return self.until(request, self.next_slice(task) + more, lambda: None)
+
+    def idle_time(self, task: Task) -> int | None:
+        """The time in µs from which a program that only computes counts as idle, if any does."""
+        return task.busy_at + _IDLE_AFTER if self._automatic.is_on else None
 
     # ----------------------------------------------------------------------- the operator
 

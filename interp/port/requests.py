@@ -167,7 +167,13 @@ class Continue(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Slice(Asking):
-    """So many statements were executed without any other request: time has to pass."""
+    """So many statements were executed without any other request: time has to pass.
+
+    Where the reply is a number, as many slices may pass before the executor asks again, or makes
+    another request; it may ask sooner. ``count`` are those that have passed since the last one.
+    """
+
+    count: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,10 +80,7 @@ class TreeExecutor:
         if beside is not None:
             self._run.data, self._run.cells = beside._run.data, beside._data_cells
         else:
-            try:
-                fill_data(self._run)
-            except Fault as error:
-                raise LinkError(f"the data lists cannot be filled: {error}") from None
+            fill_data(self._run)
         self._data_cells: int = self._run.cells
         start = program.start(routine)
         is_large = self._run.cells + self._run.size_of(start) > MOST_CELLS

@@ -18,7 +18,7 @@ from interp.program.variables import MOST_CELLS, cells, data_lists, data_variabl
 from interp.tree.calls import Calls
 from interp.tree.places import LocalPlace, Place, fresh
 from interp.tree.run import Frame, ProgramState, at_once
-from interp.values.faults import LinkError
+from interp.values.faults import Fault, LinkError
 from interp.values.values import Value, copied
 
 __all__ = ["fill_data", "system_values"]
@@ -39,7 +39,7 @@ _FILLED: WeakKeyDictionary[Project, _Data] = WeakKeyDictionary()
 def fill_data(run: ProgramState) -> None:
     """Make the variables of all data lists.
 
-    Raises `LinkError` and `Fault` where an initial value cannot be had. Those whose names begin
+    Raises `LinkError` where an initial value cannot be had. Those whose names begin
     with a dollar sign are made as well, but it is the world that has them when the program runs.
     """
     filled = _filled(run.program)
@@ -91,7 +91,7 @@ def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
     for line, target, value in first_values(unit, content):
         try:
             inside.give(target, value)
-        except LinkError as error:
+        except (Fault, LinkError) as error:
             if run.program.is_strict:
                 raise LinkError(f"{unit.module.path}:{line}: {error}") from None
 

@@ -187,6 +187,7 @@ def run(
         program, left = load_program(file, strict=strict, stands_in=not strict)
         if is_auto and submit is None:
             submit = submit_of(program)
+        is_watched = trace is not None or html is not None
         setup = RunSetup(
             executor=chosen,
             robot=robot.value,
@@ -194,7 +195,8 @@ def run(
             script=script,
             routine=routine,
             submit=submit,
-            is_full=trace_level is Level.FULL,
+            is_full=is_watched and trace_level is Level.FULL,
+            is_told=is_watched,
             motion=motion.value,
             until=round((max_time or (_AUTO_SECONDS if is_auto else _SECONDS)) * 1e6),
             is_tolerant=not strict,

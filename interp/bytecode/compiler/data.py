@@ -11,7 +11,7 @@ from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import word_of
 from interp.bytecode.compiler.calls import Calls
-from interp.bytecode.compiler.code_writer import Writer
+from interp.bytecode.compiler.code_writer import Label, Writer
 from interp.bytecode.compiler.context import Context, Shared
 from interp.bytecode.compiler.emitter import Emitter, Ended
 from interp.bytecode.compiler.locations import SystemVariable
@@ -20,10 +20,10 @@ from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.executor import Machine
-from interp.port.requests import Fail
+from interp.port.requests import End, Fail
 from interp.program.load import CheckedProgram
 from interp.program.variables import data_lists, data_variables, first_values
-from interp.values.faults import Fault, LinkError, fault
+from interp.values.faults import LinkError, fault
 
 __all__ = ["declare_data", "initial_values"]
 
@@ -57,8 +57,8 @@ class _DataListEmitter(Emitter):
         return Ended()
 
     def fail(self, slug: str) -> Ended:
-        """The program cannot begin."""
-        raise LinkError(f"the data lists cannot be filled: {fault(slug)}")
+        """The same."""
+        return self.unlinked(str(fault(slug)))
 
 
 class _DataList:
@@ -70,11 +70,17 @@ class _DataList:
         self._writer = context.writer
         self._expressions = Calls(self._emitter).expressions
 
-    def fill(self, content: ast.DataList) -> None:
-        """All initial values of the list."""
+    def fill(self, content: ast.DataList, places: list[str]) -> None:
+        """All initial values of the list, each a statement: its line is its place in ``places``."""
         for line, target, value in first_values(self._context.unit, content):
             self._context.line = line
+            end = Label()
+            if not self._context.program.is_strict:  # what faults has no value
+                self._writer.emit(Op.PROCEED)
+            self._writer.emit(Op.LINE, len(places), end)
+            places.append(f"{self._context.unit.module.path}:{line}")
             self._give(target, value)
+            self._writer.place(end)
 
     def _give(self, target: ast.Expression, value: ast.Expression) -> None:
         start = self._writer.here
@@ -94,9 +100,10 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
     """What is in the cells of the data lists at first; raises `LinkError`."""
     tables = shared.tables
     writer = Writer(tables, "DATA", CodeKind.ROUTINE, "", 0)
+    places: list[str] = []
     for unit, content in data_lists(shared.program):
         scope = shared.program.project.scope(unit.module)
-        _DataList(Context(shared, unit, scope, writer, is_data_list=True)).fill(content)
+        _DataList(Context(shared, unit, scope, writer, is_data_list=True)).fill(content, places)
     writer.emit(Op.RETURN)
     code = writer.code(shared.sizes)
     program = Program(
@@ -110,8 +117,10 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
     )
     machine = Machine(Verified(program, ()), "DATA")  # made here, and run here and now
     end = machine.advance()
-    if isinstance(end, Fail) and isinstance(end.fault, Fault):
-        raise LinkError(f"the data lists cannot be filled: {end.fault}")
+    while not isinstance(end, End | Fail):
+        end = machine.advance()
+    if isinstance(end, Fail):
+        raise LinkError(f"{places[end.at.line]}: {end.fault}")
     return tuple(
         (address, word_of(raw)) for address, raw in enumerate(machine.data()) if raw is not None
     )

@@ -27,7 +27,7 @@ from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
 from interp.port.inspection import Seen, StackFrame
-from interp.port.requests import At, CodeHandle, Crash, End, Fail, Request, Value, Write
+from interp.port.requests import At, CodeHandle, Crash, End, Fail, Request, Slice, Value, Write
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
@@ -146,11 +146,12 @@ class Machine:
             state.request = Crash(self._services.at(), f"{type(error).__name__}: {error}")
         request = state.request
         assert request is not None, "a machine stops for a request"
+        passed = self._services.counter.passed()
         if state.completion is not None:
-            self._open = _Open(None, request, state.completion, is_asked=True)
+            self._open = _Open(None, request, state.completion, is_asked=not passed)
         elif isinstance(request, Fail | Crash):
             self._final = request
-        return request
+        return Slice(request.at, passed) if passed else request
 
     def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program goes on.

@@ -52,6 +52,7 @@ class Services:
         self._lines, self._assignments = wanting(sink, "line"), wanting(sink, "assign")
         self._calls, self._returns = wanting(sink, "call"), wanting(sink, "return")
         self._branches = wanting(sink, "branch")
+        self._tells_nothing = sink is None or not sink.kinds
         self._names = Names(program, state)
         self._makers = RequestBuilder(program, self._handed_over)
         self._surroundings = Surroundings(random, self._names.find)
@@ -103,8 +104,9 @@ class Services:
         """Do what has to be done before a statement begins."""
         counter, state = self.counter, self._state
 
-        def completion(_reply: object) -> Operation:
-            counter.begin()
+        def completion(reply: object) -> Operation:
+            slices = reply if isinstance(reply, int) else None
+            counter.begin(slices if self._tells_nothing else None)  # else events come too early
             return begin
 
         match counter.pause():
@@ -112,7 +114,8 @@ class Services:
                 raise BudgetExhausted("the program does not end")
             case Pause.SLICE if state.reader is None:
                 counter.asked()
-                state.request, state.completion = Slice(self.at()), completion
+                state.request = Slice(self.at(), counter.passed() + 1)
+                state.completion = completion
                 return None
         return completion(None)
 

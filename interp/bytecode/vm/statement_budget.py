@@ -3,9 +3,9 @@
 It is the same for all executors:
 
 - a statement begins with its LINE. Once so many have begun as `interp.program.load.Limits` allow,
-the
-  next one fails with `interp.values.faults.BudgetExhausted`; where as many as a slice has have
-  begun since the last request, `interp.port.requests.Slice` is asked before the next one begins;
+  the next one fails with `interp.values.faults.BudgetExhausted`; where as many as the slice
+  has, or all slices that may pass at once, have begun since the last request,
+  `interp.port.requests.Slice` is asked before the next one begins;
 - ON_ERROR_PROCEED holds for the statement that begins next, wherever that is, until another one
   begins.
 
@@ -47,6 +47,8 @@ class Counter:
         self._guard = Guard.OFF
         self._begun = 0
         self._due = limits.per_slice
+        self._slices = 1
+        self._passed = 0
         self._quota = 0
         self._refill()
 
@@ -72,9 +74,20 @@ class Counter:
 
     def ask_at(self, count: int) -> None:
         """The slice that has begun ends once so many statements have begun altogether."""
-        self._settle(self._quota - self._state.left)
+        self._passed += self._whole_slices()
         self._due = count
         self._refill()
+
+    def passed(self) -> int:
+        """The slices that have passed before the last request, or the end, though not asked for.
+
+        They are told once.
+        """
+        if self._slices == 1 and not self._passed:
+            return 0
+        count = self._passed + self._whole_slices()
+        self._passed = 0
+        return count
 
     def pause(self) -> Pause:
         """What comes before the statement that has used up ``State.left``."""
@@ -85,13 +98,28 @@ class Counter:
             return Pause.EXHAUSTED
         return Pause.SLICE if self._begun >= self._due else Pause.NOTHING
 
-    def begin(self) -> None:
-        """The statement begins, after whatever came before it."""
+    def begin(self, slices: int | None = None) -> None:
+        """The statement begins, after whatever came before it; so many slices may pass from it."""
+        if slices is not None:
+            self._due += (slices - 1) * self._limits.per_slice
+            self._slices = slices
         self._begun += 1
         self._refill()
 
     def _settle(self, begun: int) -> None:
         self._begun += begun
+
+    def _whole_slices(self) -> int:
+        """Those used up before the one that runs, which is the only one from now on."""
+        self._settle(self._quota - self._state.left)
+        count = 0
+        if self._slices > 1:
+            size = self._limits.per_slice
+            count = max(self._begun - 1 - self._due + self._slices * size, 0) // size
+            self._due -= (self._slices - 1 - count) * size
+            self._slices = 1
+        self._refill()
+        return count
 
     def _refill(self) -> None:
         free = min(self._due, self._limits.statements) - self._begun

@@ -13,6 +13,7 @@ import pytest
 from grammar.syntax.source import Source
 from interp.controller import Controller, Profile, RunOutcome, Script, Trace, TraceEvent
 from interp.executors import Prepared
+from interp.port.events import EVERY_KIND
 from interp.program.load import Limits, load
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
@@ -286,7 +287,7 @@ def made(
     profile = profile or Profile.load()
     sources = {"main.src": text, **(files or {})}
     program = load([Source(one, name) for name, one in sources.items()], "main.src", strict=False)
-    trace = Trace(is_full=True)
+    trace = Trace(kinds=EVERY_KIND)
     sink = trace.sink("robot")
     limits = limits or Limits(per_slice=profile.statements)
     runs = Prepared(program).executor(executor, limits, sink)

@@ -8,6 +8,7 @@ import pytest
 
 from grammar.syntax.source import Source
 from interp.controller import Controller, Profile, Script, Trace
+from interp.port.events import EVERY_KIND
 from interp.program.load import load
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Motion, Position
@@ -35,7 +36,7 @@ class Ran:
     ) -> None:
         machine = default_machine()
         self.arm = PlannedArm(machine, START)
-        trace = Trace(is_full=True)
+        trace = Trace(kinds=EVERY_KIND)
         sink = trace.sink()
         program = load([Source(text, "main.src")], "main.src", strict=False)
         self.controller = Controller(

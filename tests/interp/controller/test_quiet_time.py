@@ -1,5 +1,6 @@
 """Waiting costs nothing and changes nothing; loops that nothing can end are found."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,7 +10,8 @@ from interp.controller import quiet_time, scheduler
 from interp.controller.automatic_inputs import OPERATOR
 from interp.controller.input_script import Script
 from interp.controller.quiet_time import QuietTime
-from interp.program.load import load
+from interp.controller.waits import Waits
+from interp.program.load import Limits, load
 from interp.session import EXECUTORS, RunResult, RunSetup, available, run_program
 
 WAITS = """DEF main ( )
@@ -115,3 +117,68 @@ def test_a_loop_that_polls_sees_a_change() -> None:
     text = "DEF main ( )\nREPEAT\nUNTIL $IN[5]\n$OUT[1]=TRUE\nEND\n"
     run = _run(text, script="t=5.006 IN[5]=TRUE\n")
     assert [5_016_000] == [event.time for event in run.events if event.kind == "out"]
+
+
+COMPUTES = """DEF main ( )
+DECL INT I,N
+N=0
+SPTP {A1 10,A2 -90,A3 90,A4 0,A5 0,A6 0}
+PULSE ($OUT[9],TRUE,0.7 )
+FOR I=1 TO 9000
+  N=N+F(I)
+  IF (I==3000) OR (I==7001) THEN
+    $OUT[1]=NOT $OUT[1]
+    N=N+F(I)+F(I)
+  ENDIF
+ENDFOR
+WAIT FOR $IN[3]
+FOR I=1 TO 900
+  N=N-1
+ENDFOR
+$OUT[2]=N==0
+N=N/0
+END
+DEFFCT INT F(X:IN )
+INT X
+IF X<5000 THEN
+  RETURN 1
+ENDIF
+RETURN 2
+ENDFCT
+"""
+
+
+@pytest.mark.parametrize("executor", [name for name in available() if name != "tree"])
+@pytest.mark.parametrize("io", ["", "t=0.5 IN[3]=TRUE\nt=1.1 IN[4]=TRUE\n", OPERATOR])
+def test_slices_at_once(executor: str, io: str) -> None:
+    """A run that tells no calls gives programs many slices at once; all else comes as it did."""
+    program = load([Source(COMPUTES, "main.src")], "main.src", strict=False)
+    setup = RunSetup(executor=executor, script=Script.read(io), until=5_000_000)
+    told, quick = run_program(program, setup), run_program(program, replace(setup, is_told=False))
+    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
+    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
+
+
+@pytest.mark.parametrize("executor", available())
+def test_endless_at_the_same_time(executor: str) -> None:
+    """It does not matter for the end of an endless loop how many slices it got at once."""
+    program = load([Source("DEF main ( )\nLOOP\nENDLOOP\nEND\n", "main.src")], "main.src")
+    setup = RunSetup(executor=executor, is_told=False, limits=Limits(per_slice=6))
+    outcome = run_program(program, setup).outcome
+    assert ("budget", 5_988_000) == (outcome.ending, outcome.time)
+
+
+def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hundred slices in which nothing can happen are not asked for one by one."""
+    asked: list[int] = []
+    slice_ = Waits.slice
+
+    def counted(self: Waits, task: Any, request: Any) -> Any:
+        asked.append(request.count)
+        return slice_(self, task, request)
+
+    monkeypatch.setattr(Waits, "slice", counted)
+    text = "DEF main ( )\nINT I\nFOR I=1 TO 100000\nENDFOR\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    run_program(program, RunSetup(executor=available()[-1], is_told=False))
+    assert (100, True) == (sum(asked), len(asked) < 5)

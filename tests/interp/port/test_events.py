@@ -103,4 +103,4 @@ def test_only_what_is_wanted_is_told(
 def test_a_trace_wants_what_its_level_has() -> None:
     """Lines and assignments are for the full trace only, for each task."""
     assert {"call", "return", "branch"} == Trace().sink().kinds
-    assert EVERY_KIND == Trace(is_full=True).sink("submit").kinds
+    assert EVERY_KIND == Trace(kinds=EVERY_KIND).sink("submit").kinds
