@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile test check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism test check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -23,6 +23,7 @@ help:
 	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
+	@echo 'make determinism  run each command ten times in different ways and compare its records'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
@@ -67,6 +68,9 @@ real-code: $(DEV)
 
 killed hostile: $(DEV)
 	@$(BIN)/python -m pytest -q -s -m soak tests/soak/test_$@.py $(ARGS)
+
+determinism: $(DEV)
+	@$(BIN)/python -m pytest -q -m soak tests/soak/test_$@.py $(ARGS)
 
 bench: $(DEV)
 	@$(BIN)/krl bench recover --json reports/out/bench/recover.json $(ARGS)

@@ -29,7 +29,7 @@ line on stderr.
 
 def reference() -> str:
     """The page, from the commands as they are."""
-    from krl.cli import app
+    from krl.commands.app import app
 
     command = typer.main.get_command(app())
     return _HEAD + "".join(_command("krl", command))

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import typer
 
-from krl.cli import app
+from krl.commands.app import app
 
 ROOT = Path(__file__).parents[1]
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))

@@ -57,3 +57,21 @@ def test_a_corpus_is_needed(
     assert 2 == main(["bench", "recover"])
     said = capsys.readouterr().err
     assert "krl: there is no corpus/ here: name files, folders or .zip archives\n" == said
+
+
+def test_growth_names_shapes_with_their_slopes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Only what was asked for is measured, and the record has its costs."""
+    target = tmp_path / "growth.json"
+    words = "bench growth --entry format --largest 32 --jobs 1 --shape".split()
+    assert 0 == main([*words, "blank lines", "--json", str(target)])
+    assert "format    blank lines" in capsys.readouterr().out
+    (row,) = json.loads(target.read_text(encoding="utf-8"))["rows"]
+    assert ["format", "blank lines", 3] == [row["entry"], row["shape"], len(row["costs"])]
+
+
+def test_growth_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
+    """One line names the commands."""
+    assert 2 == main(["bench", "growth", "--entry", "brew"])
+    assert "--entry brew: not one of check, format," in capsys.readouterr().err

@@ -2,33 +2,39 @@
 
     python -m tests.soak.hostile_page [COUNTS.json]...
 
-reads the counts that `make hostile` left, all slices of them, and the limits from the code.
+reads the counts that `make hostile` left, all slices of them, the record that `krl bench growth`
+left in reports/out/bench/growth.json, and the limits from the code. What is not there stays.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from support.files import archives, untrusted
 from tests.soak.entries import ENTRIES
 from tests.soak.pieces import KINDS
 
-__all__ = ["page", "told"]
+__all__ = ["growth_section", "page", "told"]
 
 REPOSITORY = Path(__file__).parents[2]
 PAGE = REPOSITORY / "docs" / "hostile.md"
 MB = 1 << 20
+_LINEAR = 1.15
 
 _HEAD = """\
 # Hostile input
 
-This page is made by `python -m tests.soak.hostile_page` from the counts of `make hostile`; do not
-edit it.
+This page is made by `python -m tests.soak.hostile_page` from the counts of `make hostile` and the
+record of `krl bench growth`; do not edit it.
 
 KRL comes from other people: backups in archives, files of forums, a survey that somebody sends.
 Nothing of it is trusted. `make hostile` makes inputs by chance from a seed, gives each to the
@@ -102,8 +108,36 @@ def told(counts: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def page(counts: Mapping[str, Any]) -> str:
-    """The whole page."""
+def growth_section(rows: Sequence[Mapping[str, Any]]) -> str:
+    """How the cost of each command grows, by the shape of its input."""
+    lines = [
+        "## Growth",
+        "",
+        "`krl bench growth` gives each command inputs of one shape and sizes n, 2n, 4n, where n",
+        "takes a fifth of a second. A slope is the exponent of CPU time over size: 1 is linear, 2",
+        "quadratic. Above 1.15 memory grows faster than its input, by the same measure.",
+        "",
+        "| command | shapes | median slope | steepest | its shape | memory above 1.15 |",
+        "| --- | ---: | ---: | ---: | --- | ---: |",
+    ]
+    for entry, of_entry in groupby(rows, key=itemgetter("entry")):
+        several = list(of_entry)
+        slopes = [_slope(row) for row in several]
+        steepest = max(several, key=_slope)
+        wide = sum((row["memory_slope"] or 0) > _LINEAR for row in several)
+        lines.append(
+            f"| {entry} | {len(several)} | {median(slopes):.2f} | {_slope(steepest):.2f} "
+            f"| {steepest['shape']} | {wide} |"
+        )
+    return "\n".join([*lines, ""])
+
+
+def _slope(row: Mapping[str, Any]) -> float:
+    return float("inf") if row["time_slope"] is None else float(row["time_slope"])
+
+
+def page(counts: Mapping[str, Any], growth: str = "") -> str:
+    """The whole page, with a section about growth."""
     *rows, last = _rows(counts)
     return "\n".join(
         [
@@ -127,6 +161,7 @@ def page(counts: Mapping[str, Any]) -> str:
             "",
             "krl reads no YAML at all, and of archives only `.zip`.",
             "",
+            growth,
             "## Limits",
             "",
             "Beyond a limit a file is left out with its reason, or the command refuses it.",
@@ -156,10 +191,17 @@ def _limits() -> Iterator[tuple[str, str]]:
 
 def main() -> None:
     """Write the page."""
+    out = REPOSITORY / "reports" / "out"
+    record = out / "bench" / "growth.json"
+    present = PAGE.read_text(encoding="utf-8")
+    tried, growth, limits = re.split(r"^(?=## Growth|## Limits)", present, flags=re.MULTILINE)
+    if record.exists():
+        growth = growth_section(json.loads(record.read_text(encoding="utf-8"))["rows"])
     given = [Path(name) for name in sys.argv[1:]]
-    files = given or sorted((REPOSITORY / "reports" / "out" / "hostile").glob("*.json"))
+    files = given or sorted((out / "hostile").glob("*.json"))
     several = [json.loads(file.read_text(encoding="utf-8")) for file in files]
-    PAGE.write_text(page(added(several)), encoding="utf-8", newline="\n")
+    text = page(added(several), growth) if several else f"{tried}{growth}\n{limits}"
+    PAGE.write_text(text, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

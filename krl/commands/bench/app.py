@@ -7,6 +7,7 @@ from krl.commands.bench.blends import blends
 from krl.commands.bench.check import check
 from krl.commands.bench.conform import conform
 from krl.commands.bench.fuzz import fuzz
+from krl.commands.bench.growth import growth
 from krl.commands.bench.mutation import mutation
 from krl.commands.bench.programs import programs
 from krl.commands.bench.real_code import real_code
@@ -26,6 +27,7 @@ app.command("fuzz")(fuzz)
 app.command("real-code")(real_code)
 app.command("recover")(recover)
 app.command("check")(check)
+app.command("growth")(growth)
 
 
 @app.callback()

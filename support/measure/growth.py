@@ -1,0 +1,98 @@
+"""How the cost of a call grows with the size of its input."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+from support.measure.peak_memory import peak_memory
+
+__all__ = ["Cost", "Growth", "measure_growth"]
+
+_T = TypeVar("_T")
+
+_NOTICEABLE_S: Final = 0.2
+"""The first size costs so much at least: less cannot be told from the noise of a machine."""
+_NOTICEABLE_BYTES: Final = 16 << 20
+"""Less memory than this is not counted as growth: allocators take it in steps."""
+_REPEATED_ABOVE: Final = 1.1
+_LONGEST_S: Final = 10.0
+"""No greater size is tried after one that took longer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What a call of one size took: CPU seconds, and bytes of memory at most so far."""
+
+    size: int
+    seconds: float
+    peak: int
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """The costs at sizes that double, and of next to nothing (``base``).
+
+    There are three sizes, or fewer where one took so long that the next was left out.
+    """
+
+    base: Cost
+    costs: tuple[Cost, ...]
+
+    @property
+    def time_slope(self) -> float | None:
+        """The exponent of CPU time over size, from the first size to the last."""
+        first, last = (
+            max(cost.seconds - self.base.seconds, 1e-3) for cost in (self.costs[0], self.costs[-1])
+        )
+        return self._slope(last / first)
+
+    @property
+    def memory_slope(self) -> float | None:
+        """The exponent of peak memory over size, in the same way; 0 where it hardly grows."""
+        first, last = (cost.peak - self.base.peak for cost in (self.costs[0], self.costs[-1]))
+        if last < _NOTICEABLE_BYTES:
+            return 0.0
+        return self._slope(last / max(first, _NOTICEABLE_BYTES // 4))
+
+    def _slope(self, ratio: float) -> float | None:
+        sizes = self.costs[-1].size / self.costs[0].size
+        return math.log(ratio) / math.log(sizes) if sizes > 1 else None
+
+
+def measure_growth(
+    prepare: Callable[[int], _T], call: Callable[[_T], object], smallest: int, largest: int
+) -> Growth:
+    """The growth of ``call``, in this process, with what ``prepare`` makes for a size.
+
+    The first size is found by doubling ``smallest`` until its cost can be measured; the last is
+    never above ``largest``. Costs that seem to grow too fast are measured once more.
+    """
+
+    def cost(size: int) -> Cost:
+        given = prepare(size)
+        begun = time.process_time()
+        call(given)
+        return Cost(size, time.process_time() - begun, peak_memory() or 0)
+
+    cost(1)  # imports, and tables that are made once
+    base = cost(1)
+    costs = [cost(smallest)]
+    while costs[0].seconds - base.seconds < _NOTICEABLE_S and costs[0].size * 8 <= largest:
+        costs = [cost(costs[0].size * 2)]
+    while len(costs) < 3 and costs[-1].seconds < _LONGEST_S:
+        costs.append(cost(costs[-1].size * 2))
+    found = Growth(base, tuple(costs))
+    if (found.time_slope or 0.0) <= _REPEATED_ABOVE:
+        return found
+    again = [cost(one.size).seconds for one in costs]
+    return Growth(
+        base,
+        tuple(
+            Cost(one.size, min(one.seconds, seconds), one.peak)
+            for one, seconds in zip(costs, again, strict=True)
+        ),
+    )
