@@ -60,8 +60,10 @@ __all__ = [
 ]
 
 #: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
-#: forearm level.
+#: forearm level. Where something stands in its hand is bent, so that a line may lead away from
+#: there: a program may have lost the PTP that it begins with.
 _UPRIGHT = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
+_BENT = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
 #: What depends on which routines are open: interrupts end with them, $ERR.UP_NAME is one.
 _NEED_CALLS = (ast.InterruptDeclaration, ast.OnErrorProceed)
 
@@ -165,7 +167,7 @@ def run_program(
     torque_note = ""
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
         machine, torque_note = _with_torques(machine, program)
-    start = setup.start or _home(values, machine)
+    start = setup.start or _home(values, machine, _BENT if profile.is_tolerant else _UPRIGHT)
     try:
         arm = PlannedArm(machine, start, is_selected=not profile.is_tolerant)
     except Fault as fault:
@@ -310,10 +312,12 @@ def _machine_of(profile: Profile) -> MachineData:
         raise LinkError(str(error)) from error
 
 
-def _home(values: Mapping[str, Value], machine: MachineData) -> tuple[float, ...]:
-    """$H_POS where the project has it and the arm can stand there, else upright."""
+def _home(
+    values: Mapping[str, Value], machine: MachineData, upright: tuple[float, ...]
+) -> tuple[float, ...]:
+    """$H_POS where the project has it and the arm can stand there, else ``upright``."""
     home: Any = values.get("$H_POS")
-    axes: tuple[float, ...] = _UPRIGHT
+    axes = upright
     if isinstance(home, StructureValue):
         found = [home.get(f"A{number}") for number in range(1, ROBOT_AXES + 1)]
         known = [float(value) for value in found if isinstance(value, int | float)]
@@ -325,5 +329,5 @@ def _home(values: Mapping[str, Value], machine: MachineData) -> tuple[float, ...
         return axes
     return tuple(
         min(max(value, axis.lower), axis.upper)
-        for axis, value in zip(machine.axes, _UPRIGHT, strict=True)
+        for axis, value in zip(machine.axes, upright, strict=True)
     )

@@ -15,7 +15,7 @@ from typing import Final, Literal
 from grammar.check.framework import Checked, typed_module
 from grammar.semantics.link import File, Project, extended
 from grammar.semantics.packages import load_packages
-from grammar.semantics.resolve import Resolution, resolve
+from grammar.semantics.resolve import resolve
 from grammar.semantics.scopes import Found, Module, SystemScope
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import UNKNOWN, Enumeration, Scalar, Structure, Type
@@ -23,6 +23,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
 from interp.robot.models.stand_in import Places
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
@@ -86,8 +87,10 @@ class _Wanted:
         """Whether nothing is wanted."""
         return not (self.data or self.routines or self.types or self.defaults)
 
-    def take(self, module: Module, resolution: Resolution) -> None:
+    def take(self, project: Project, module: Module, syntax: ast.Module) -> None:
         """What one file wants."""
+        resolution = resolve(project, module)
+        scalars = _scalars(syntax)
         names = {
             Space.VALUE: self.data,
             Space.ROUTINE: self.routines,
@@ -104,12 +107,34 @@ class _Wanted:
                 continue
             if _is_of_config(answer):
                 known = name.key in load_library().data
-                (self.data if known else self.defaults).setdefault(name.key, (module, name))
+                is_other = name.key in scalars and not isinstance(project.types.of(answer), Scalar)
+                is_wanting = is_wanting or is_other
+                (self.data if known or is_other else self.defaults).setdefault(
+                    name.key, (module, name)
+                )
             elif answer.symbol.kind is Kind.ROUTINE and answer.symbol.given == UNKNOWN:
                 self.routines.setdefault(name.key, (module, name))
                 is_wanting = True
         if is_wanting:
             self.modules.append(module)
+
+
+def _scalars(syntax: ast.Module) -> set[str]:
+    """Names that count a loop or are given a number: they are no arrays or structures.
+
+    A $config.dat has such with names that programs like to use themselves, I and J for instance.
+    """
+    found = set()
+    for node in walk(syntax):
+        if isinstance(node, ast.For):
+            found.add(node.counter.key)
+        elif (
+            isinstance(node, ast.Assignment)
+            and isinstance(node.target, ast.Variable)
+            and isinstance(node.value, ast.IntegerLiteral | ast.RealLiteral | ast.BoolLiteral)
+        ):
+            found.add(node.target.name.key)
+    return found
 
 
 def _is_of_config(found: Found) -> bool:
@@ -128,7 +153,7 @@ def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
     wanted = _Wanted()
     for module in project.modules:
         if module.syntax is not None:
-            wanted.take(module, resolve(project, module))
+            wanted.take(project, module, module.syntax)
     if not (wanted.data or wanted.routines or wanted.types):
         return Completed(project, (), _listed(wanted, sources))
     listed = _listed(wanted, sources)
@@ -291,7 +316,7 @@ class _Making:
             inner = _Wanted()
             for module in project.modules:
                 if module.folder == FOLDER and module.syntax is not None:
-                    inner.take(module, resolve(project, module))
+                    inner.take(project, module, module.syntax)
             for mine, more in (
                 (wanted.routines, inner.routines),
                 (wanted.data, inner.data),

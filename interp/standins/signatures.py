@@ -269,10 +269,11 @@ class Signatures:
         lines = [f"GLOBAL DEF {name} ({','.join(heads)} )", *declared, *body, "END"]
         if use.is_function or (known is not None and known.result):
             kind = self._kind(f"{name}_R", use.result) or self._number(DataUse(is_assigned=True))
-            if known is not None and self._has_type(known.result):
+            is_met = kind.name not in ("INT", "REAL", "BOOL")
+            if known is not None and self._has_type(known.result) and not is_met:
                 kind = self._result(name, known)
             value = kind.value
-            if known is not None and known.default:
+            if known is not None and known.default and kind.name == known.result:
                 value = known.default
             elif kind.name == "BOOL":
                 value = "FALSE" if use.result.is_left_by_false else "TRUE"

@@ -162,6 +162,9 @@ class Uses:
         self._expect(node.duration, REAL)
 
     def _for(self, node: ast.For) -> None:
+        counter = self._use_of(node.counter)
+        if counter is not None:
+            counter.types.append(INT)
         for number in (node.first, node.last, node.step):
             if number is not None:
                 self._expect(number, INT)

@@ -82,6 +82,35 @@ def test_inline_forms(executor: str) -> None:
     assert (("end", ""), ["PTP", "PTP", "LIN"]) == (_outcome(run), moved)
 
 
+def test_limits_of_bas() -> None:
+    """BAS replaces a percentage above 100 by the default and keeps $VEL_MA.CP [MOT-03, MOT-04]."""
+    body = "BAS (#INITMOV,0 )\nBAS (#VEL_PTP,140 )\nBAS (#ACC_PTP,101 )\nBAS (#VEL_CP,9 )\n"
+    body += "$OUT[1]=$VEL_AXIS[3]==DEF_VEL_PTP\n$OUT[2]=$ACC_AXIS[3]==DEF_ACC_PTP\n"
+    run = _run(_main(f"{body}$OUT[3]=$VEL.CP==$VEL_MA.CP\n"))
+    assert [True] * 3 == [event.fields["value"] for event in run.events if event.kind == "out"]
+
+
+@pytest.mark.parametrize("name", ["I", "J"])
+def test_names_of_the_controller(name: str) -> None:
+    """A counter is one, though a $config.dat has an array or a structure of its name."""
+    run = _run(_main(f"FOR {name}=1 TO 2\n$OUT[{name}]=TRUE\nENDFOR\n"))
+    outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
+    assert (("end", ""), [1, 2]) == (_outcome(run), outputs)
+
+
+def test_result_of_another_release() -> None:
+    """A routine of a package gives back what the program declares, not what its table has."""
+    body = "OK=ST_ETHERNET(N)\nIF OK<>#RSIOK THEN\nHALT\nENDIF\n"
+    program = _main(body, declared="DECL RSIERR OK\nINT N\n")
+    assert ("end", "") == _outcome(_run(program))
+
+
+def test_line_at_the_beginning() -> None:
+    """A program that has lost its first PTP begins with a hand that is bent: a LIN is possible."""
+    run = _run(_main("LIN XP1\n"))
+    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+
+
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_trace_of_a_signature(executor: str) -> None:
     """A call of a routine that nothing declares is in the trace like any other call."""
