@@ -48,6 +48,7 @@ check: $(DEV)
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-logo
 	@$(BIN)/python -m grammar.notation.generate --check
+	@$(BIN)/python -m krl.highlighting --check
 	@$(BIN)/krl construct replay --check
 
 grammar: $(DEV)

@@ -32,7 +32,7 @@ from grammar.parser.dfa import (
     pattern_of,
 )
 
-__all__ = ["EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of"]
+__all__ = ["EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of", "regex_of"]
 
 #: Kinds below zero are not tokens of the grammar.
 SKIPPED = -1
@@ -110,7 +110,7 @@ class Lexer:
         }
         names_of_literals = set(grammar.literal_tokens.values())
         others = [r for r in rules if r.name not in names_of_literals]
-        classify = re.compile("|".join(f"({_translate(grammar, r)})" for r in others) or "(?!)")
+        classify = re.compile("|".join(f"({regex_of(grammar, r)})" for r in others) or "(?!)")
         ranks = [self._ranked(rule) for rule in others]
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
         self.kinds = _Kinds(literals, classify, ranks, fold)
@@ -215,8 +215,8 @@ def _only_literal(rule: Rule) -> str:
     return element.text
 
 
-def _translate(grammar: Grammar, rule: Rule) -> str:
-    """A pattern for ``re`` with the language of a lexer rule; used only to match whole lexemes."""
+def regex_of(grammar: Grammar, rule: Rule) -> str:
+    """A pattern for ``re`` with the language of a lexer rule; of whole lexemes."""
 
     def sequence(elements: tuple[Element, ...]) -> str:
         return "".join(map(element, elements))

@@ -1,0 +1,77 @@
+"""Colours of what the grammar names, in Pygments, VS Code and Vim; snippets that can be read."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pygments import token
+
+from grammar.check.project_check import read_source
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from grammar.syntax.source import Source
+from krl.highlighting import FILES, words
+from krl.pygments_lexer import KrlLexer
+from support.files.decode import decode
+
+ROOT = Path(__file__).parents[2]
+SNIPPETS = json.loads((ROOT / "editors/vscode/snippets.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+def test_files_of_editors_are_up_to_date(file: Path) -> None:
+    """They are what `python -m krl.highlighting --write` makes."""
+    assert FILES[file]() == file.read_text(encoding="utf-8")
+
+
+def test_every_word_of_the_grammar_has_one_colour() -> None:
+    """A keyword that is added has one without being named anywhere else."""
+    known = words()
+    rows = (known.keywords, known.contextual, known.motions, known.types, known.constants)
+    listed = [word for row in (*rows, known.operators) for word in row]
+    assert sorted(listed) == sorted(
+        text for text in read_file(GRAMMAR).literal_tokens if text[0].isalpha()
+    )
+
+
+def test_programs_have_colours_throughout() -> None:
+    """Of our own programs every character is coloured, and none is an error."""
+    for file in sorted((ROOT / "corpus/programs/palletiser").rglob("*.src")):
+        decoded = decode(file.read_bytes())
+        assert not isinstance(decoded, str)
+        text = decoded.text.replace("\r\n", "\n")
+        found = list(KrlLexer(ensurenl=False, stripnl=False).get_tokens(text))
+        assert text == "".join(part for _, part in found)
+        assert [] == [part for kind, part in found if kind is token.Error and part.isascii()]
+
+
+@given(st.text(alphabet="aA$#\"'; .[]()=10\n&{}é", max_size=60))
+def test_no_text_stops_the_colours(text: str) -> None:
+    """Whatever is written, nothing of it is lost."""
+    found = KrlLexer(ensurenl=False, stripnl=False).get_tokens(text)
+    assert text == "".join(part for _, part in found)
+
+
+def test_a_word_that_can_be_a_name_is_one_where_it_is() -> None:
+    """PART is a name before `=`, and SEC a keyword behind WAIT."""
+    found = {part: kind for kind, part in KrlLexer().get_tokens("PART=1\nWAIT SEC 0.5\n")}
+    assert (token.Name, token.Keyword) == (found["PART"], found["SEC"])
+
+
+@pytest.mark.parametrize("name", SNIPPETS)
+def test_snippets_can_be_read(name: str) -> None:
+    """With the words that stand in them at first, each is a piece of a program."""
+    text = "\n".join(SNIPPETS[name]["body"])
+    given: dict[str, str] = {}
+    for number, chosen, shown in re.findall(r"(?<!\\)\$\{(\d+)(?:\|([^|]*)\||:([^}]*))\}", text):
+        given[number] = chosen.partition(",")[0] if chosen else shown.replace("\\$", "$")
+    text = text.replace("${TM_FILENAME_BASE:${1:name}}", "Cell")
+    text = re.sub(r"(?<!\\)\$\{(\d+)(?:\|[^|]*\||:[^}]*)\}", lambda one: given[one[1]], text)
+    text = re.sub(r"(?<!\\)\$(\d+)", lambda one: given.get(one[1], ""), text).replace("\\$", "$")
+    program = text if text.startswith(("DEF ", "DEFFCT ")) else f"DEF Cell( )\n{text}\nEND"
+    found = read_source(Source(f"{program}\n", "Cell.src"))
+    assert ((), False) == (found.diagnostics, found.syntax is None)
+    assert text.count(";FOLD") == text.count(";ENDFOLD")
