@@ -6,7 +6,7 @@ do later is passed on, as nobody knows when it happens.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -40,55 +40,68 @@ class Access:
     place: ast.Expression | None = None
 
 
-def accesses(context: Context, node: ast.Node) -> Iterator[Access]:
+def accesses(context: Context, node: ast.Node) -> Sequence[Access]:
     """The accesses of a statement, in the order in which they happen as far as that matters."""
+    known: Sequence[Access] | None = context.accesses.get(node)
+    if known is None:
+        found: list[Access] = []
+        _add(context, node, found)
+        known = context.accesses[node] = found
+    return known
+
+
+def _add(context: Context, node: ast.Node, found: list[Access]) -> None:
     rule = _RULES.get(type(node))
     if rule is not None:
-        yield from rule(context, node)
+        rule(context, node, found)
         return
     for part in own_parts(node):
-        yield from accesses(context, part)
+        _add(context, part, found)
 
 
-def _assignment(context: Context, node: ast.Assignment) -> Iterator[Access]:
-    yield from accesses(context, node.value)
-    yield from _place(context, node.target, Use.WRITTEN)
+def _assignment(context: Context, node: ast.Assignment, found: list[Access]) -> None:
+    _add(context, node.value, found)
+    _add_place(context, node.target, Use.WRITTEN, found)
 
 
-def _loop(context: Context, node: ast.For) -> Iterator[Access]:
+def _loop(context: Context, node: ast.For, found: list[Access]) -> None:
     for bound in (node.first, node.last, node.step):
         if bound is not None:
-            yield from accesses(context, bound)
-    yield Access(node.counter, Use.WRITTEN)
+            _add(context, bound, found)
+    found.append(Access(node.counter, Use.WRITTEN))
 
 
-def _later(context: Context, node: ast.InterruptDeclaration | ast.Trigger) -> Iterator[Access]:
+def _later(
+    context: Context, node: ast.InterruptDeclaration | ast.Trigger, found: list[Access]
+) -> None:
+    inner: list[Access] = []
     for part in children(node):
-        for access in accesses(context, part):
-            yield Access(access.name, Use.PASSED, access.place)
+        _add(context, part, inner)
+    found += [Access(access.name, Use.PASSED, access.place) for access in inner]
 
 
-def own_parts(node: ast.Node) -> Iterator[ast.Node]:
+def own_parts(node: ast.Node) -> Sequence[ast.Node]:
     """The nodes directly below one, without the statements of a block; the values of each CASE."""
+    below = children(node)
     inner = BODIES.get(type(node))
     if inner is None:
-        yield from children(node)
-        return
+        return below
     held = {id(one) for name in inner for one in getattr(node, name) or ()}
-    for child in children(node):
+    found: list[ast.Node] = []
+    for child in below:
         if id(child) not in held:
-            yield child
+            found.append(child)
         elif isinstance(child, ast.CaseBranch):
-            yield from child.values
+            found += child.values
+    return found
 
 
-def parts_of(node: ast.Node) -> Iterator[ast.Node]:
+def parts_of(node: ast.Node) -> Sequence[ast.Node]:
     """A statement and all below it, without the statements in a block."""
-    todo = [node]
-    while todo:
-        here = todo.pop()
-        yield here
-        todo.extend(own_parts(here))
+    found: list[ast.Node] = [node]
+    for here in found:  # grows while it is walked
+        found += own_parts(here)
+    return found
 
 
 def calls_of(node: ast.Node) -> Iterator[ast.Call]:
@@ -96,39 +109,37 @@ def calls_of(node: ast.Node) -> Iterator[ast.Call]:
     return (part for part in parts_of(node) if isinstance(part, ast.Call))
 
 
-def _place(context: Context, node: ast.Expression, use: Use) -> Iterator[Access]:
+def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Access]) -> None:
     """The variable that something is part of, behind what its indices read."""
     whole = node
     while isinstance(node, ast.Subscript | ast.Member):
         if isinstance(node, ast.Subscript):
             for index in node.indices:
                 if index is not None:
-                    yield from accesses(context, index)
+                    _add(context, index, found)
         node = node.base
     if isinstance(node, ast.Variable):
-        yield Access(node.name, use, whole)
+        found.append(Access(node.name, use, whole))
     else:
-        yield from accesses(context, node)
+        _add(context, node, found)
 
 
-def _call(context: Context, node: ast.Call) -> Iterator[Access]:
+def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
     """The arguments: those passed :IN are read, of all others nobody knows."""
-    found = context.found(node.name)
-    symbol = found.symbol if found else None
+    called = context.found(node.name)
+    symbol = called.symbol if called else None
     known = symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
     for index, argument in enumerate(node.arguments):
         if argument is None:
             continue
+        _add(context, argument, found)
         is_read = index < len(known) and known[index].mode == "IN"
-        if is_read or not isinstance(argument, ast.Variable | ast.Subscript | ast.Member):
-            yield from accesses(context, argument)
-        else:
-            for access in accesses(context, argument):
-                is_it = access.place is argument
-                yield Access(access.name, Use.PASSED, argument) if is_it else access
+        is_place = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
+        if is_place and not is_read and found[-1].place is argument:
+            found[-1] = Access(found[-1].name, Use.PASSED, argument)
 
 
-_RULES: Mapping[type[Any], Callable[[Context, Any], Iterable[Access]]] = {
+_RULES: Mapping[type[Any], Callable[[Context, Any, list[Access]], object]] = {
     ast.Assignment: _assignment,
     ast.Call: _call,
     ast.For: _loop,
@@ -136,10 +147,10 @@ _RULES: Mapping[type[Any], Callable[[Context, Any], Iterable[Access]]] = {
     ast.Trigger: _later,
     **dict.fromkeys(
         (ast.Variable, ast.Subscript, ast.Member),
-        lambda context, node: _place(context, node, Use.READ),
+        lambda context, node, found: _add_place(context, node, Use.READ, found),
     ),
     **dict.fromkeys(
         (ast.VariableDeclaration, ast.Signal, ast.Structure, ast.Enumeration),
-        lambda *_: (),
+        lambda *_: None,
     ),
 }

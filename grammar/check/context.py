@@ -54,7 +54,8 @@ class Context:
     ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
     the first check, `grammar.check.statements`: the type of each expression but literals, the
     enumeration of each constant, the values of expressions that have to be constant, and the
-    ``constants`` that names without a declaration would be with a #.
+    ``constants`` that names without a declaration would be with a #. ``accesses`` are those that
+    `grammar.check.accesses` has worked out.
     """
 
     project: Project
@@ -66,6 +67,7 @@ class Context:
     enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
     values: dict[Node, Any] = field(default_factory=dict)
     constants: dict[ast.Name, str] = field(default_factory=dict)
+    accesses: dict[Node, Any] = field(default_factory=dict)
     suggestions: NameSuggestions = field(default_factory=NameSuggestions)
 
     # ----------------------------------------------------------------------- the file

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grammar.check.accesses import Access, Use, accesses, calls_of
 from grammar.check.constant_folding import constant
@@ -44,7 +44,8 @@ def check(context: Context) -> Iterator[Diagnostic]:
             elif isinstance(placed.statement, ast.WaitFor):
                 yield from _waiting(context, placed.statement)
             before = placed.statement
-        yield from _real_equality(context, routine)
+    if context.routines:
+        yield from _real_equality(context)
 
 
 def needed_parameters(context: Context, routine: RoutineBody) -> tuple[int, ...]:
@@ -80,16 +81,16 @@ class _DataFlow:
             key for key, one in followed.items() if one.kind is Kind.VARIABLE
         )
         self._graph = flow_graph(routine.node)
-        self._accesses: dict[FlowNode, list[Access]] = {}
+        self._accesses: dict[FlowNode, Sequence[Access]] = {}
 
-    def _of(self, node: FlowNode) -> list[Access]:
+    def _of(self, node: FlowNode) -> Sequence[Access]:
         """The accesses at a place: of REPEAT, the condition stands at its end."""
         found = self._accesses.get(node)
         if found is None:
             statement: ast.Node | None = node.statement
             if isinstance(statement, ast.Repeat):
                 statement = statement.condition if node.is_test else None
-            found = [] if statement is None else list(accesses(self._context, statement))
+            found = () if statement is None else accesses(self._context, statement)
             self._accesses[node] = found
         return found
 
@@ -251,9 +252,9 @@ def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
         yield context.finding("self-assignment", node, f"{root.name.text} is assigned to itself")
 
 
-def _real_equality(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+def _real_equality(context: Context) -> Iterator[Diagnostic]:
     """``==`` and ``<>`` of numbers that are rounded [ARI-10]."""
-    for node in walk(routine.node):
+    for node in context.types:
         if isinstance(node, ast.Binary) and node.operator in ("==", "<>"):
             types = context.types.get(node.left), context.types.get(node.right)
             if REAL in types:
@@ -263,7 +264,7 @@ def _real_equality(context: Context, routine: RoutineBody) -> Iterator[Diagnosti
 
 def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
     """WAIT FOR on what nothing can change while the routine waits: FALSE, its own variables."""
-    used = list(accesses(context, node))
+    used = accesses(context, node)
     found = [context.found(access.name) for access in used]
     has_call = any(isinstance(inner, ast.Call) for inner in walk(node))
     is_own = bool(found) and all(

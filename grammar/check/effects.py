@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from grammar.check.accesses import Use, accesses, calls_of, parts_of
+from grammar.check.accesses import Use, accesses, parts_of
 from grammar.check.constant_folding import constant, integer_of
 from grammar.check.context import Context
 from grammar.check.data_flow import needed_parameters
@@ -162,17 +162,19 @@ class _Collector:
                 self._changed.add(key)
                 if access.use is Use.PASSED:
                     self._reset.add(key)
-        for call in calls_of(node):
-            self._call(call)
         for part in parts_of(node):
-            match part:
-                case ast.Assignment(target=ast.Variable(name=name), value=value):
-                    self._literal(name, value)
-                case ast.Binary(operator="==" | "<>", left=ast.Variable(name=name), right=value):
-                    self._literal(name, value)
+            if isinstance(part, ast.Call):
+                self._call(part)
+            elif isinstance(part, ast.Assignment):
+                self._literal(part.target, part.value)
+            elif isinstance(part, ast.Binary) and part.operator in ("==", "<>"):
+                self._literal(part.left, part.right)
 
-    def _literal(self, name: ast.Name, value: ast.Expression) -> None:
+    def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
         """Note what an undeclared variable stands beside."""
+        if not isinstance(variable, ast.Variable):
+            return
+        name = variable.name
         value = without_parentheses(value)
         if isinstance(value, ast.Unary) and value.operator in "+-":
             value = value.operand

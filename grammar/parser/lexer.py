@@ -197,6 +197,8 @@ class Lexer:
 
     def offsets_of_tokens(self, text: str) -> list[int]:
         """Where each token begins in ``text``."""
+        if self._leaves_out_skipped:
+            return list(self.offsets(text))
         pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
         return [offset for lexeme, offset in pairs if self.kinds[lexeme] != SKIPPED]
 

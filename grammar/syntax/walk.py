@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 
 from grammar.syntax import ast
@@ -22,21 +22,25 @@ def _names(node: Node) -> tuple[str, ...]:
     return _NAMES[kind]
 
 
-def children(node: Node) -> Iterator[Node]:
+def children(node: Node) -> Sequence[Node]:
     """The nodes directly below a node, in the order of the text where that has a meaning."""
     kind = type(node)
     names = _INNER.get(kind)
     if names is None:
         plain = ("span", *(one.name for one in fields(node) if one.type in _PLAIN))
         names = _INNER[kind] = tuple(name for name in _names(node) if name not in plain)
+    if not names:
+        return ()
     found: list[Node] = []
     for name in names:
         value = getattr(node, name)
-        if isinstance(value, tuple):
+        if value is None:
+            continue
+        if type(value) is tuple:
             found += [item for item in value if isinstance(item, Node)]
         elif isinstance(value, Node):
             found.append(value)
-    return iter(found)
+    return found
 
 
 #: The fields of each kind of node that may hold nodes, and the types of those that cannot.
@@ -69,7 +73,7 @@ def walk(node: Node) -> Iterator[Node]:
     while todo:
         here = todo.pop()
         yield here
-        todo += [*children(here)][::-1]
+        todo += children(here)[::-1]
 
 
 def same(left: Node, right: Node) -> bool:
