@@ -283,7 +283,7 @@ _WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)", re.IGNORECASE)
 
 def words_of(text: str) -> frozenset[str]:
     """The names that occur in a text outside comments, in upper case: it declares no other."""
-    return frozenset(word.upper() for word in _WORD.findall(text) if word)
+    return frozenset([word.upper() for word in set(_WORD.findall(text)) if word])
 
 
 def _module(file: File) -> Module:

@@ -25,6 +25,8 @@ class Space(Enum):
     CHANNEL = "channel"
     LABEL = "label"
 
+    __hash__ = object.__hash__  # that of `Enum` is a call in Python, for each name looked up
+
 
 _NAMES: dict[type[ast.Node], tuple[str, Space]] = {
     ast.Call: ("name", Space.ROUTINE),

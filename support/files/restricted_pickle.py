@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections.abc import Sequence
-from dataclasses import is_dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import fields, is_dataclass
 from enum import Enum
+from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
 
@@ -20,7 +21,9 @@ __all__ = ["dumps", "loads"]
 
 def dumps(value: object) -> bytes:
     """The value as bytes."""
-    return pickle.dumps(value, protocol=5)
+    stream = io.BytesIO()
+    _Writer(stream, protocol=5).dump(value)
+    return stream.getvalue()
 
 
 def loads(data: bytes, packages: Sequence[str]) -> Any:
@@ -34,6 +37,30 @@ def loads(data: bytes, packages: Sequence[str]) -> Any:
         raise ValueError(f"not readable: {type(error).__name__}: {error}") from error
 
 
+class _Writer(pickle.Pickler):
+    """Writes data classes as calls with the values of their fields.
+
+    As `dataclasses` has it, the fields would be looked up again for each value that is read, which
+    is most of the time that reading takes.
+    """
+
+    def reducer_override(self, value: Any) -> Any:
+        """How a value is made anew; `NotImplemented` for what pickle knows how to."""
+        kind: Callable[..., Any] = type(value)
+        names = _fields(kind)
+        if names is None:
+            return NotImplemented
+        return type(value), tuple([getattr(value, name) for name in names])
+
+
+@cache
+def _fields(kind: Callable[..., Any]) -> tuple[str, ...] | None:
+    """The arguments that a data class takes, if it takes all its fields in their order."""
+    if not is_dataclass(kind) or any(not one.init or one.kw_only for one in fields(kind)):
+        return None
+    return tuple(one.name for one in fields(kind))
+
+
 class _Reader(pickle.Unpickler):
     """Finds no classes but those that are allowed."""
 
@@ -43,8 +70,14 @@ class _Reader(pickle.Unpickler):
 
     def find_class(self, module: str, name: str) -> Any:
         """A data class or an enumeration of an allowed package."""
-        if module.partition(".")[0] in self._packages:
-            found = getattr(import_module(module), name, None)
-            if isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum)):
-                return found
-        raise pickle.UnpicklingError(f"{module}.{name} is not to be read")
+        found = _class(module, name) if module.partition(".")[0] in self._packages else None
+        if found is None:
+            raise pickle.UnpicklingError(f"{module}.{name} is not to be read")
+        return found
+
+
+@lru_cache(maxsize=1024)
+def _class(module: str, name: str) -> type | None:
+    found = getattr(import_module(module), name, None)
+    is_class = isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum))
+    return found if is_class else None
