@@ -25,6 +25,7 @@ __all__ = [
     "StepCommand",
     "Stop",
     "Watch",
+    "Way",
 ]
 
 #: A moment of a run: how many statements of all programs have begun, and how many times a statement
@@ -94,6 +95,8 @@ class Stop:
 
 # ------------------------------------------------------------------------------------- commands
 
+Way = Literal["into", "over", "out", "motion"]
+
 
 @dataclass(frozen=True, slots=True)
 class Go:
@@ -102,13 +105,16 @@ class Go:
 
 @dataclass(frozen=True, slots=True)
 class StepCommand:
-    """Go on by a statement of this program: into calls, over them, out of the routine.
+    """Go on by a statement of a program, by default the one that has stopped.
+
+    That is into calls, over them, or out of the routine.
 
     Actions of interrupts and triggers that come up meanwhile are stepped into only with ``into``.
-    ``motion`` goes on until a motion has ended, and to the next statement of this program then.
+    ``motion`` goes on until a motion has ended, and to the next statement of the program then.
     """
 
-    way: Literal["into", "over", "out", "motion"] = "over"
+    way: Way = "over"
+    task: TaskName | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +125,8 @@ class Back:
     there is no such place, it is the first statement.
     """
 
-    way: Literal["into", "over", "out", "motion", "go"] = "over"
+    way: Way | Literal["go"] = "over"
+    task: TaskName | None = None
 
 
 @dataclass(frozen=True, slots=True)

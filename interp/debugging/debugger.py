@@ -32,6 +32,7 @@ from interp.debugging.client import (
 from interp.debugging.conditions import evaluated, parsed, place_of, root_of
 from interp.debugging.executor import DebuggedExecutor
 from interp.debugging.history import START, Assigned, History, Selected
+from interp.debugging.hits import is_hit
 from interp.debugging.names import Names, names_in, signal_in
 from interp.debugging.selection import reason_against
 from interp.debugging.value_text import value_text
@@ -190,7 +191,7 @@ class Debugger:
         """These in place of all there were; raises `LinkError` for hits that cannot be read."""
         by_line: dict[int, list[Breakpoint]] = {}
         for one in breakpoints:
-            _is_hit(one.hits, 1)
+            is_hit(one.hits, 1)
             by_line.setdefault(one.line, []).append(one)
         self._breakpoints = by_line
         self._hits = {one: self._hits.get(one, array("q")) for one in breakpoints if one.hits}
@@ -421,7 +422,7 @@ class Debugger:
         hits, count = self._hits[one], self._history.here[0]
         if not self._history.is_repeating:
             hits.append(count)
-        return _is_hit(one.hits, bisect_right(hits, count))
+        return is_hit(one.hits, bisect_right(hits, count))
 
     def _told(self, text: str, task: TaskName) -> str:
         """The text of a breakpoint with the values of what stands in braces."""
@@ -469,12 +470,13 @@ class Debugger:
             match self._told_by_client(stop):
                 case Go():
                     return None
-                case StepCommand(way=way):
-                    self._stepping = self._step(way, executor)
+                case StepCommand(way=way, task=task):
+                    self._stepping = self._step(way, self._tasks.get(task or stop.task, executor))
                     return None
-                case Back(way=way):
+                case Back(way=way, task=task):
                     if self._history.here > START:
-                        self._history.look_back(self._fitting(way, executor))
+                        stepped = self._tasks.get(task or stop.task, executor)
+                        self._history.look_back(self._fitting(way, stepped))
                         raise _Again
                     text = "this is the first statement"
                 case Restart():
@@ -528,28 +530,6 @@ def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame
         return frame
     kind, priority = levels.pop()
     return replace(frame, name=f"{kind} {priority or ''}".rstrip() + f" in {frame.name}")
-
-
-def _is_hit(hits: str | None, count: int) -> bool:
-    """Whether the hit of a number counts; raises `LinkError` for what says nothing about hits."""
-    text = (hits or ">=1").replace(" ", "")
-    for sign in (">=", ">", "<=", "<", "==", "=", "%", ""):
-        if text.startswith(sign) and text[len(sign) :].isdigit():
-            number = int(text[len(sign) :])
-            match sign:
-                case ">=":
-                    return count >= number
-                case ">":
-                    return count > number
-                case "<=":
-                    return count <= number
-                case "<":
-                    return count < number
-                case "%" if number > 0:
-                    return count % number == 0
-                case "" | "=" | "==":
-                    return count == number
-    raise LinkError(f"{hits}: hits are a number such as 3, >=3 or %3")
 
 
 def _is_of(wanted: str, file: str) -> bool:

@@ -63,6 +63,8 @@ class DebuggedExecutor:
         if self._again is not None:  # behind an action, as it was asked before
             self._open, self._again = self._again, None
             return inside.advance(None)
+        if isinstance(self._open, Slice):
+            reply = None  # it may ask sooner than the controller would have it
         while True:
             inside.ask_at(min(self._due, inside.begun + debugger.unseen))
             request = inside.advance(reply)

@@ -26,6 +26,7 @@ _COMMANDS: Final = {
     "robot": "krl.commands.robot:app",
     "run": "krl.commands.run:run",
     "demo": "krl.commands.demo:demo",
+    "debug": "krl.commands.debug:debug",
     "lsp": "krl.commands.lsp:lsp",
     "nightly": "krl.commands.nightly:nightly",
 }

@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from krl.commands.run import Robot, run
+from krl.commands.run import run
 from krl.errors import InputError, one_line
+from krl.run_options import Robot
 
 __all__ = ["demo"]
 

@@ -13,12 +13,29 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.extras import ARM, expected_extras
 from krl.output_files import check_files
-from krl.program_loading import load_program
 from krl.progress import progress_bar
-from krl.project_settings import settings_of
-from krl.robot_options import robot_options
+from krl.run_options import (
+    ExecutorOption,
+    FileArgument,
+    IoOption,
+    MachineOption,
+    MaxTimeOption,
+    MjcfOption,
+    Motion,
+    MotionOption,
+    ProfileOption,
+    Robot,
+    RobotOption,
+    RoutineOption,
+    RunOptions,
+    SceneOption,
+    StrictOption,
+    SubmitOption,
+    UrdfOption,
+    expected_errors,
+    prepared_run,
+)
 from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
@@ -26,35 +43,9 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 
-__all__ = ["run"]
+__all__ = ["run", "run_notes"]
 
 _MOST_TOLD = 3
-_AUTO = "auto"
-#: Virtual seconds that a run lasts at most, without and with automatic inputs.
-_SECONDS, _AUTO_SECONDS = 3600.0, 600.0
-
-
-class Executor(StrEnum):
-    """Who executes the program."""
-
-    TREE = "tree"
-    VM = "vm"
-    NATIVE = "native"
-
-
-class Robot(StrEnum):
-    """What moves."""
-
-    NONE = "none"
-    KINEMATIC = "kinematic"
-    MUJOCO = "mujoco"
-
-
-class Motion(StrEnum):
-    """How motions are planned."""
-
-    LOOKAHEAD = "lookahead"
-    BATCH = "batch"
 
 
 class Level(StrEnum):
@@ -65,42 +56,13 @@ class Level(StrEnum):
 
 
 def run(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE", help="The program; archive.zip/path/name.src in an archive."
-        ),
-    ],
-    routine: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
-    ] = None,
-    executor: Annotated[
-        Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
-    ] = None,
-    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE,
-    profile: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
-        ),
-    ] = None,
-    io_script: Annotated[
-        Path | None,
-        typer.Option(
-            "--io",
-            metavar="SCRIPT",
-            help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
-            "Default: auto in a terminal, else nothing.",
-        ),
-    ] = None,
-    submit: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="A routine of the project for the submit; with --io auto its SPS by default.",
-        ),
-    ] = None,
+    file: FileArgument,
+    routine: RoutineOption = None,
+    executor: ExecutorOption = None,
+    robot: RobotOption = Robot.NONE,
+    profile: ProfileOption = None,
+    io_script: IoOption = None,
+    submit: SubmitOption = None,
     trace: Annotated[
         Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace here.")
     ] = None,
@@ -117,45 +79,17 @@ def run(
     video: Annotated[
         Path | None, typer.Option(metavar="FILE.gif", help="Film the MuJoCo arm; .webp goes too.")
     ] = None,
-    machine: Annotated[
-        Path | None,
-        typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
-    ] = None,
-    urdf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
-    ] = None,
-    mjcf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
-    ] = None,
-    scene: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
-    ] = None,
+    machine: MachineOption = None,
+    urdf: UrdfOption = None,
+    mjcf: MjcfOption = None,
+    scene: SceneOption = None,
     observations: Annotated[
         Path | None,
         typer.Option(metavar="FILE.jsonl", help="Write contacts and excessive torques here."),
     ] = None,
-    motion: Annotated[
-        Motion,
-        typer.Option(help="Plan motions as they come, or as the paper did in batches."),
-    ] = Motion.LOOKAHEAD,
-    max_time: Annotated[
-        float | None,
-        typer.Option(
-            "--max-time",
-            "--until",
-            min=0.0,
-            metavar="S",
-            help="Stop after so much virtual time; default: 3600, with --io auto 600.",
-        ),
-    ] = None,
-    strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict",
-            help="Run nothing while the checker finds an error; nothing stands in.",
-        ),
-    ] = False,
+    motion: MotionOption = Motion.LOOKAHEAD,
+    max_time: MaxTimeOption = None,
+    strict: StrictOption = False,
 ) -> int:
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
@@ -165,54 +99,34 @@ def run(
     a routine behind an inline form for instance, stands in and is listed; motions that cannot
     be planned for want of it are skipped.
     """
-    with _expected_errors():
-        from interp.controller.automatic_inputs import OPERATOR
-        from interp.controller.input_script import Script
-        from interp.controller.profile import Profile
-        from interp.session import RunSetup, available, submit_of
-
-        chosen = executor.value if executor is not None else available()[-1]
-        is_auto = str(io_script) == _AUTO or (io_script is None and sys.stdout.isatty())
-        if is_auto:
-            script = Script.read(OPERATOR, _AUTO)
-        else:
-            script = (
-                Script() if io_script is None else Script.read(_text(io_script), str(io_script))
-            )
-        if is_auto and io_script is None:
-            typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
+    with expected_errors():
         _check_targets(trace, path, html, video, robot)
         check_files(observations)
-        own = robot_options(machine, urdf, mjcf, scene, has_robot=robot is not Robot.NONE)
-        program, left = load_program(file, strict=strict, stands_in=not strict)
-        if is_auto and submit is None:
-            submit = submit_of(program)
         is_watched = trace is not None or html is not None
-        setup = RunSetup(
-            executor=chosen,
-            robot=robot.value,
-            profile=Profile.load(profile or _agreed_profile(file)),
-            script=script,
+        options = RunOptions(
+            file=file,
             routine=routine,
+            executor=executor,
+            robot=robot,
+            profile=profile,
+            io_script=io_script,
             submit=submit,
+            machine=machine,
+            urdf=urdf,
+            mjcf=mjcf,
+            scene=scene,
+            motion=motion,
+            max_time=max_time,
+            strict=strict,
             is_full=is_watched and trace_level is Level.FULL,
             is_told=is_watched,
-            motion=motion.value,
-            until=round((max_time or (_AUTO_SECONDS if is_auto else _SECONDS)) * 1e6),
-            is_tolerant=not strict,
-            machine=own.machine,
-            robot_file=own.file,
-            scene=own.scene,
         )
-        for why in left[:_MOST_TOLD]:
-            typer.echo(one_line(f"left out: {why}"), err=True)
-        if len(left) > _MOST_TOLD:
-            typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
+        program, setup = prepared_run(options, is_terminal=sys.stdout.isatty())
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html, video)
         if observations is not None:
             _write_observations(done, observations)
-    for line in _notes(done, program, setup):
+    for line in run_notes(done, program, setup):
         typer.echo(one_line(line), err=True)
     typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
     if html is not None:
@@ -222,7 +136,7 @@ def run(
     return FINE if is_fine else FINDINGS
 
 
-def _notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
+def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
     """What stood in, which motions were skipped, and what a program that never ends waited for."""
     from interp.standins.completion import summary
 
@@ -256,36 +170,6 @@ def _seen(done: "RunResult") -> Iterator[str]:
         yield f"torque, by masses that are assumed: {worst}{more}"
     if done.torque_note:
         yield f"left out: {done.torque_note}"
-
-
-@contextmanager
-def _expected_errors() -> Iterator[None]:
-    """Turn what the rooms raise about input into what the door prints."""
-    from interp.robot.simulation.scene import SceneError
-    from interp.values.faults import RuntimeFailure
-
-    try:
-        with expected_extras(*ARM):
-            yield
-    except (RuntimeFailure, SceneError) as error:
-        raise InputError(str(error)) from error
-
-
-def _text(file: Path) -> str:
-    from support.files.untrusted import read_text
-
-    if file.is_dir():
-        raise InputError(f"{file}: a folder, not a file")
-    try:
-        return read_text(file, "utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: not a text in UTF-8") from None
-
-
-def _agreed_profile(file: Path) -> str:
-    """The profile that the settings of a project name, or the one of today's controllers."""
-    agreed = settings_of([file])
-    return (agreed and agreed.profile) or "kss8"
 
 
 def _check_targets(

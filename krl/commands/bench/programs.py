@@ -10,7 +10,6 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.commands.run import Executor, Robot
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import (
     JobsOption,
@@ -22,6 +21,7 @@ from krl.options import (
 from krl.output_files import check_files, write_json
 from krl.program_loading import sources_below
 from krl.progress import progress_bar
+from krl.run_options import Executor, Robot
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source

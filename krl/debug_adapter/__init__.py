@@ -1,0 +1,1 @@
+"""The debug adapter: a debugger for editors, by the Debug Adapter Protocol."""

@@ -1,0 +1,81 @@
+"""Messages of the Debug Adapter Protocol: JSON behind a header that says how long it is."""
+
+import json
+from collections.abc import Iterator
+from threading import Lock
+from typing import Any, BinaryIO, Final
+
+from krl.errors import InputError
+
+__all__ = ["Connection", "Json"]
+
+#: An object of JSON.
+Json = dict[str, Any]
+_LARGEST: Final = 64_000_000
+_LONGEST_LINE: Final = 1_000
+
+
+class Connection:
+    """A client at the other end of two streams. Messages may be sent from several threads."""
+
+    def __init__(self, source: BinaryIO, target: BinaryIO) -> None:
+        self._source = source
+        self._target = target
+        self._lock = Lock()
+        self._sent = 0
+
+    def requests(self) -> Iterator[Json]:
+        """The requests of the client until it goes; raises `InputError` for what is no message."""
+        while True:
+            length = self._length()
+            if length is None:
+                return
+            data = self._source.read(length)
+            if len(data) < length:
+                return
+            try:
+                message = json.loads(data)
+            except (ValueError, RecursionError) as error:
+                raise InputError(f"a message that is no JSON: {error}") from None
+            if not isinstance(message, dict) or not isinstance(message.get("command"), str):
+                raise InputError("a message that is no request")
+            yield message
+
+    def respond(self, request: Json, body: Json | None, refusal: str = "") -> None:
+        """Answer a request: with what was asked for, or why not."""
+        message: Json = {"type": "response", "request_seq": request.get("seq", 0)}
+        message |= {"command": request["command"], "success": not refusal}
+        if body is not None:
+            message["body"] = body
+        if refusal:
+            message["message"] = refusal
+            message["body"] = {"error": {"id": 1, "format": refusal, "showUser": True}}
+        self._send(message)
+
+    def event(self, name: str, **body: Any) -> None:
+        """Report that something has happened."""
+        self._send({"type": "event", "event": name, "body": body})
+
+    def _length(self) -> int | None:
+        """The length of the next message, from its header; ``None`` where the client has gone."""
+        length: int | None = None
+        while True:
+            line = self._source.readline(_LONGEST_LINE)
+            if not line:
+                return None
+            if not line.strip():
+                break
+            name, _, value = line.partition(b":")
+            if name.strip().lower() == b"content-length":
+                digits = value.strip()
+                length = int(digits) if digits.isdigit() and len(digits) < 10 else -1
+        if length is None or not 0 <= length <= _LARGEST:
+            raise InputError("a message without a length, or with one that cannot be")
+        return length
+
+    def _send(self, message: Json) -> None:
+        with self._lock:
+            self._sent += 1
+            data = json.dumps({"seq": self._sent, **message}).encode()
+            self._target.write(b"Content-Length: %d\r\n\r\n%s" % (len(data), data))
+            self._target.flush()

@@ -1,0 +1,243 @@
+"""What a program is run with: the options that commands have in common, and what comes of them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from krl.errors import InputError, one_line
+from krl.extras import ARM, expected_extras
+from krl.program_loading import load_program
+from krl.project_settings import settings_of
+from krl.robot_options import robot_options
+
+if TYPE_CHECKING:
+    from interp.program.load import CheckedProgram
+    from interp.session import RunSetup
+
+__all__ = [
+    "Executor",
+    "ExecutorOption",
+    "FileArgument",
+    "IoOption",
+    "MachineOption",
+    "MaxTimeOption",
+    "MjcfOption",
+    "Motion",
+    "MotionOption",
+    "ProfileOption",
+    "Robot",
+    "RobotOption",
+    "RoutineOption",
+    "RunOptions",
+    "SceneOption",
+    "StrictOption",
+    "SubmitOption",
+    "UrdfOption",
+    "expected_errors",
+    "prepared_run",
+]
+
+_AUTO = "auto"
+_MOST_TOLD = 3
+#: Virtual seconds that a run lasts at most, without and with automatic inputs.
+_SECONDS, _AUTO_SECONDS = 3600.0, 600.0
+
+
+class Executor(StrEnum):
+    """Who executes the program."""
+
+    TREE = "tree"
+    VM = "vm"
+    NATIVE = "native"
+
+
+class Robot(StrEnum):
+    """What moves."""
+
+    NONE = "none"
+    KINEMATIC = "kinematic"
+    MUJOCO = "mujoco"
+
+
+class Motion(StrEnum):
+    """How motions are planned."""
+
+    LOOKAHEAD = "lookahead"
+    BATCH = "batch"
+
+
+FileArgument = Annotated[
+    Path,
+    typer.Argument(metavar="FILE", help="The program; archive.zip/path/name.src in an archive."),
+]
+RoutineOption = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
+]
+ExecutorOption = Annotated[
+    Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
+]
+RobotOption = Annotated[Robot, typer.Option(help="What moves.")]
+ProfileOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
+    ),
+]
+IoOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--io",
+        metavar="SCRIPT",
+        help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
+        "Default: auto in a terminal, else nothing.",
+    ),
+]
+SubmitOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        help="A routine of the project for the submit; with --io auto its SPS by default.",
+    ),
+]
+MachineOption = Annotated[
+    Path | None,
+    typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
+]
+UrdfOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
+]
+MjcfOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
+]
+SceneOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
+]
+MotionOption = Annotated[
+    Motion,
+    typer.Option(help="Plan motions as they come, or as the paper did in batches."),
+]
+MaxTimeOption = Annotated[
+    float | None,
+    typer.Option(
+        "--max-time",
+        "--until",
+        min=0.0,
+        metavar="S",
+        help="Stop after so much virtual time; default: 3600, with --io auto 600.",
+    ),
+]
+StrictOption = Annotated[
+    bool,
+    typer.Option(
+        "--strict",
+        help="Run nothing while the checker finds an error; nothing stands in.",
+    ),
+]
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """The options, as the command line or a client has given them."""
+
+    file: Path
+    routine: str | None = None
+    executor: Executor | None = None
+    robot: Robot = Robot.NONE
+    profile: str | None = None
+    io_script: Path | None = None
+    submit: str | None = None
+    machine: Path | None = None
+    urdf: Path | None = None
+    mjcf: Path | None = None
+    scene: Path | None = None
+    motion: Motion = Motion.LOOKAHEAD
+    max_time: float | None = None
+    strict: bool = False
+    is_full: bool = False
+    is_told: bool = False
+
+
+def prepared_run(options: RunOptions, *, is_terminal: bool) -> "tuple[CheckedProgram, RunSetup]":
+    """The program and its setup; says on stderr what was left out and what was assumed.
+
+    In a terminal inputs are automatic by default. Raises `InputError`, and within `expected_errors`
+    what it turns into that.
+    """
+    from interp.controller.automatic_inputs import OPERATOR
+    from interp.controller.input_script import Script
+    from interp.controller.profile import Profile
+    from interp.session import RunSetup, available, submit_of
+
+    chosen, file = options.io_script, options.file
+    is_auto = str(chosen) == _AUTO or (chosen is None and is_terminal)
+    if is_auto:
+        script = Script.read(OPERATOR, _AUTO)
+    else:
+        script = Script() if chosen is None else Script.read(_text(chosen), str(chosen))
+    if is_auto and chosen is None:
+        typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
+    own = robot_options(
+        *(options.machine, options.urdf, options.mjcf, options.scene),
+        has_robot=options.robot is not Robot.NONE,
+    )
+    program, left = load_program(file, strict=options.strict, stands_in=not options.strict)
+    submit = submit_of(program) if is_auto and options.submit is None else options.submit
+    seconds = options.max_time or (_AUTO_SECONDS if is_auto else _SECONDS)
+    setup = RunSetup(
+        executor=options.executor.value if options.executor is not None else available()[-1],
+        robot=options.robot.value,
+        profile=Profile.load(options.profile or _agreed_profile(file)),
+        script=script,
+        routine=options.routine,
+        submit=submit,
+        is_full=options.is_full,
+        is_told=options.is_told,
+        motion=options.motion.value,
+        until=round(seconds * 1e6),
+        is_tolerant=not options.strict,
+        machine=own.machine,
+        robot_file=own.file,
+        scene=own.scene,
+    )
+    for why in left[:_MOST_TOLD]:
+        typer.echo(one_line(f"left out: {why}"), err=True)
+    if len(left) > _MOST_TOLD:
+        typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
+    return program, setup
+
+
+@contextmanager
+def expected_errors() -> Iterator[None]:
+    """Raise what packages say about input as `InputError`."""
+    from interp.robot.simulation.scene import SceneError
+    from interp.values.faults import RuntimeFailure
+
+    try:
+        with expected_extras(*ARM):
+            yield
+    except (RuntimeFailure, SceneError) as error:
+        raise InputError(str(error)) from error
+
+
+def _text(file: Path) -> str:
+    from support.files.untrusted import read_text
+
+    if file.is_dir():
+        raise InputError(f"{file}: a folder, not a file")
+    try:
+        return read_text(file, "utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not a text in UTF-8") from None
+
+
+def _agreed_profile(file: Path) -> str:
+    """The profile that the settings of a project name, or the one of today's controllers."""
+    agreed = settings_of([file])
+    return (agreed and agreed.profile) or "kss8"
