@@ -109,8 +109,8 @@ def _at_prompt(options: RunOptions) -> int:
         from interp.debugging.debugger import Debugger
         from interp.executors import Prepared
         from interp.session import run_program
-        from krl.commands.run import run_notes
         from krl.debug_prompt import Prompt
+        from krl.run_notes import run_notes
 
         is_terminal = sys.stdin.isatty() and sys.stdout.isatty()
         program, setup = prepared_run(options, is_terminal=is_terminal)

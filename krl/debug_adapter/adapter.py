@@ -35,12 +35,12 @@ from interp.port.requests import At
 from interp.program.load import CheckedProgram
 from interp.session import RunResult, RunSetup, run_program
 from interp.values.faults import RuntimeFailure
-from krl.commands.run import run_notes
 from krl.debug_adapter.arguments import Arguments, Refused
 from krl.debug_adapter.connection import Connection, Json
 from krl.debug_adapter.variables import Variables
 from krl.errors import InputError, one_line
 from krl.program_loading import project_root
+from krl.run_notes import run_notes
 from krl.run_options import Executor, Motion, Robot, RunOptions, expected_errors, prepared_run
 
 __all__ = ["Adapter"]

@@ -1,0 +1,48 @@
+"""What is said of a run behind it: what stood in, what was skipped, what was touched."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from interp.program.load import CheckedProgram
+    from interp.session import RunResult, RunSetup
+
+__all__ = ["run_notes"]
+
+_MOST_TOLD = 3
+
+
+def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
+    """What stood in, which motions were skipped, and what a program that never ends waited for."""
+    from interp.standins.completion import summary
+
+    starts = [program.start(name) for name in (setup.routine, setup.submit) if name is not None]
+    used = program.used_stand_ins(*(starts or [program.start()]))
+    if used:
+        yield f"stood in: {summary(used)}"
+    if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
+        yield f"stood in: {done.machine_note}"
+    skipped = done.controller.skipped_motions
+    for at, error in skipped[:_MOST_TOLD]:
+        yield f"motion skipped: {at.file}:{at.line}: {error}"
+    if len(skipped) > _MOST_TOLD:
+        yield f"motion skipped: {len(skipped) - _MOST_TOLD} more"
+    yield from _seen(done)
+    for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
+        yield f"waited for: {line}"
+
+
+def _seen(done: "RunResult") -> Iterator[str]:
+    """What was touched, and torques that are too great; estimates in one line."""
+    certain = [seen for seen in done.observations if not seen.is_estimate]
+    for seen in certain[:_MOST_TOLD]:
+        yield f"{seen.kind}: {seen}"
+    if len(certain) > _MOST_TOLD:
+        yield f"seen: {len(certain) - _MOST_TOLD} more"
+    estimates = [seen for seen in done.observations if seen.is_estimate]
+    if estimates:
+        worst = max(estimates, key=lambda seen: seen.value / seen.limit)
+        more = f"; {len(estimates) - 1} more" if len(estimates) > 1 else ""
+        yield f"torque, by masses that are assumed: {worst}{more}"
+    if done.torque_note:
+        yield f"left out: {done.torque_note}"
