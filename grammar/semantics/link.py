@@ -264,8 +264,10 @@ def link(
 
 
 def extended(project: Project, files: Iterable[File]) -> Project:
-    """A project with more files, wherever these lie."""
-    modules = [*project.modules, *map(_module, files)]
+    """A project with more files, wherever these lie; one of the same path takes another's place."""
+    by_path = {module.path: module for module in project.modules}
+    by_path |= {file.path: _module(file) for file in files}
+    modules = list(by_path.values())
     return Project(
         project.root,
         project.is_controller,

@@ -28,6 +28,7 @@ from interp.robot.models.stand_in import Places
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import STOP
+from interp.standins.unset_data import unset_data, with_values
 from interp.standins.uses import FOLDER, DataUse, Uses
 
 __all__ = ["Completed", "StandIn", "complete", "summary"]
@@ -43,11 +44,12 @@ _ORIGINS: Final = {
     "signature": "by its uses only",
     "place": "at a place that the arm reaches",
     "default": "with the controller's default",
+    "unset": "with a value that nothing in the project sets",
 }
 #: Where a stand-in comes from: our own version of it, the signature that its option package has,
 #: that which its uses tell, also of points, which get places of their own, or the controller's
-#: default for data that $config.dat would declare.
-Origin = Literal["library", "package", "signature", "place", "default"]
+#: default for data that $config.dat would declare; ``unset`` is declared and has no value.
+Origin = Literal["library", "package", "signature", "place", "default", "unset"]
 _Kind = Literal["routine", "variable", "type"]
 _Places = dict[str, tuple[Module, ast.Name]]
 
@@ -150,21 +152,31 @@ def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
 
     A project that lacks nothing comes back as it is.
     """
+    unset = unset_data(project, sources)
     wanted = _Wanted()
     for module in project.modules:
         if module.syntax is not None:
             wanted.take(project, module, module.syntax)
-    if not (wanted.data or wanted.routines or wanted.types):
-        return Completed(project, (), _listed(wanted, sources))
     listed = _listed(wanted, sources)
-    made = _Making(project, wanted, Places([sources[one.path] for one in project.modules]))
+    listed += tuple(_stand_in(one.name, "variable", "unset", one.module, sources) for one in unset)
+    if not (unset or wanted.data or wanted.routines or wanted.types):
+        return Completed(project, (), listed)
+    places = Places([sources[one.path] for one in project.modules])
+    texts: tuple[Source, ...] = ()
+    if unset:
+        values = Signatures((), lambda _name: None, {}, places)
+        project, texts = with_values(project, sources, unset, values.value)
+        sources = {**sources, **{one.path: one for one in texts}}
+    if not (wanted.data or wanted.routines or wanted.types):
+        return Completed(project, texts, listed)
+    made = _Making(project, wanted, places)
     for number in range(_ROUNDS):
         if not made.improve(sources, is_last=number == _ROUNDS - 1):
             break
     stand_ins = tuple(
         replace(one, origin="place") if one.name.upper() in made.placed else one for one in listed
     )
-    return Completed(made.project, tuple(made.sources()), stand_ins)
+    return Completed(made.project, (*texts, *made.sources()), stand_ins)
 
 
 def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ...]:

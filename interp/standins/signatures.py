@@ -209,6 +209,12 @@ class Signatures:
             sizes[-1] = _TEXT_LENGTH
         return sizes
 
+    def value(self, type_: Type, name: str) -> str:
+        """A value for data that is set outside; numbers are 1, which divides and is an index."""
+        if type_ in (INT, REAL):
+            return "1" if type_ == INT else "1.0"
+        return self._default(type_, name)
+
     def _default(self, type_: Type, name: str, *, is_target: bool = False) -> str:
         """A value of a type, as it is written in a data list; ``name`` is what has it.
 

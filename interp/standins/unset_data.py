@@ -1,0 +1,141 @@
+"""Values for data that a project declares, reads and never sets: panel, PLC or a lost file set it.
+
+A data list may declare a variable without a value. Where a file of the project gives it one, in any
+way, nothing is done: when it is read too early is for the run to tell. Else every run would end
+there, on a controller too, but for what somebody outside has written into it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice, product
+from typing import Final
+
+from grammar.semantics.link import File, Project, extended, words_of
+from grammar.semantics.scopes import Found, Module
+from grammar.semantics.types import BOOL, UNKNOWN, Array, Type
+from grammar.syntax import ast
+from grammar.syntax.build import read_module
+from grammar.syntax.references import Space
+from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
+
+__all__ = ["Unset", "unset_data", "with_values"]
+
+#: Makes a value, as it is written, of a type and for a name.
+MakeValue = Callable[[Type, str], str]
+
+_END: Final = re.compile(r"^[ \t]*ENDDAT\b", re.IGNORECASE | re.MULTILINE)
+_MOST_ELEMENTS: Final = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Unset:
+    """A variable of a data list: its type, and whether a WAIT FOR waits until it is TRUE."""
+
+    module: Module
+    name: ast.Name
+    type: Type
+    is_waited_for: bool
+
+    def lines(self, value: MakeValue) -> Iterator[str]:
+        """The lines of a data list that give it values; none for what has no known size."""
+        name = self.name.text
+        if not isinstance(self.type, Array):
+            yield f"{name}={'TRUE' if self.is_waited_for else value(self.type, name)}"
+            return
+        sizes = [range(1, size + 1) for size in self.type.sizes if size is not None]
+        if len(sizes) == len(self.type.sizes):
+            for indices in islice(product(*sizes), _MOST_ELEMENTS):
+                element = f"{name}[{','.join(map(str, indices))}]"
+                yield f"{element}={value(self.type.element, element)}"
+
+
+def unset_data(project: Project, sources: Mapping[str, Source]) -> tuple[Unset, ...]:
+    """The variables of the data lists of a project that its programs read and nothing sets."""
+    open_: dict[str, list[tuple[Module, ast.Name]]] = {}
+    for module in project.modules:
+        for name in _without_value(module):
+            open_.setdefault(name.key, []).append((module, name))
+    set_: set[str] = set()
+    read: set[str] = set()
+    waited_for: set[str] = set()
+    for module in project.modules:
+        if module.syntax is None or isinstance(module.syntax.content, ast.DataList):
+            continue
+        if open_.keys().isdisjoint(words_of(sources[module.path].text)):
+            continue
+        for node in walk(module.syntax):
+            set_ |= _set_by(node)
+            if isinstance(node, ast.Variable):
+                read.add(node.name.key)
+            elif isinstance(node, ast.WaitFor) and isinstance(node.condition, ast.Variable):
+                waited_for.add(node.condition.name.key)
+    found = []
+    for key, places in open_.items():
+        for module, name in places if key in read - set_ else ():
+            answer = project.scope(module).find(Space.VALUE, key)
+            type_ = project.types.of(answer) if isinstance(answer, Found) else UNKNOWN
+            if type_ != UNKNOWN:
+                found.append(Unset(module, name, type_, type_ == BOOL and key in waited_for))
+    return tuple(found)
+
+
+def _without_value(module: Module) -> Iterator[ast.Name]:
+    """The variables of a data list that have no value there."""
+    if module.syntax is None or not isinstance(module.syntax.content, ast.DataList):
+        return
+    items = module.syntax.content.items
+    set_ = {_root(one.target) for one in items if isinstance(one, ast.Assignment)}
+    for item in items:
+        if isinstance(item, ast.VariableDeclaration) and not item.is_constant:
+            for one in item.declarators:
+                if one.value is None and one.name.key not in set_ and one.name.text[0] != "$":
+                    yield one.name
+
+
+def _set_by(node: ast.Node) -> set[str]:
+    """The variables that a statement may set: a call all that it is passed.
+
+    What only counts on from what it is has been set by somebody else.
+    """
+    match node:
+        case ast.Assignment(target=target, value=value):
+            root = _root(target)
+            names = {one.name.key for one in walk(value) if isinstance(one, ast.Variable)}
+            return {root} - names
+        case ast.For(counter=counter):
+            return {counter.key}
+        case ast.Call(arguments=arguments):
+            return {_root(one) for one in arguments if one is not None}
+    return set()
+
+
+def _root(node: ast.Expression) -> str:
+    while isinstance(node, ast.Subscript | ast.Member):
+        node = node.base
+    return node.name.key if isinstance(node, ast.Variable) else ""
+
+
+def with_values(
+    project: Project, sources: Mapping[str, Source], unset: tuple[Unset, ...], value: MakeValue
+) -> tuple[Project, tuple[Source, ...]]:
+    """A project whose data lists have such values at their ends, and the texts of these lists."""
+    changed: dict[str, Source] = {}
+    for one in unset:
+        path = one.module.path
+        text = changed.get(path, sources[path]).text
+        ends = list(_END.finditer(text))
+        place = ends[-1].start() if ends else len(text)
+        more = "".join(f"{line}\n" for line in one.lines(value))
+        changed[path] = Source(f"{text[:place]}{more}{text[place:]}", path)
+    files = []
+    for path, source in list(changed.items()):
+        syntax = read_module(source.text, path)
+        if isinstance(syntax, ast.Module):
+            files.append(File(path, syntax))
+        else:
+            del changed[path]
+    return extended(project, files), tuple(changed.values())
