@@ -1,18 +1,18 @@
-"""Reading a ``.g4`` file into data (`grammar.notation.model`).
+"""Reading a ``.g4`` file into data (`grammar.notation.model`), with Lark.
 
-The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, imports, rule arguments or
-left recursion. Read by recursive descent: every command reads the grammar when it starts, and
-a general parser would take longer to be made than the file takes to be read.
+The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, imports or left recursion.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import lru_cache
+from functools import cache, lru_cache
+from importlib import resources
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from grammar.notation.model import (
     MAX_CODE_POINT,
@@ -39,21 +39,11 @@ __all__ = [
     "read_rule",
 ]
 
-_MOST_DEPTH = 100  # groups in groups; what works on grammars recurses
 
-_TOKEN = re.compile(
-    r"""
-    (?: \s | //[^\r\n]* | /\*(?:[^*]|\*(?!/))*+\*/ )*+
-    (?: (?P<name>    [A-Za-z][A-Za-z0-9_]* )
-      | (?P<literal> '(?:[^'\\\r\n]|\\u[0-9A-Fa-f]{4}|\\[^upP\r\n])+' )
-      | (?P<set>     \[(?:[^\]\\\r\n]|\\u[0-9A-Fa-f]{4}|\\[^upP\r\n])+\] )
-      | (?P<suffix>  [?*+]\?? )
-      | (?P<sign>    -> | \.\. | [:;,=(){}|\#.~] )
-      | (?P<end>     \Z )
-      | (?P<wrong>   [\s\S] )
-    )""",
-    re.VERBOSE,
-)
+@cache
+def _reader(start: str) -> Lark:
+    text = resources.files(__package__).joinpath("g4.lark").read_text(encoding="utf-8")
+    return Lark(text, parser="lalr", start=start, propagate_positions=True, maybe_placeholders=True)
 
 
 def read(text: str, *, source: str = "grammar") -> Grammar:
@@ -62,18 +52,25 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
     Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
     rule is defined twice, refers to what does not exist, or is left-recursive.
     """
-    reader = _Reader(text, source)
-    name, options = reader.prologue()
+    tree = _parse(text, "start", source)
+    header, *rest = tree.children
+    options: tuple[tuple[str, str], ...] = ()
     rules: list[Rule] = []
     gaps: list[str] = []
     end = 0
-    while not reader.is_at("end"):
-        start = reader.here.start
-        rules.append(reader.rule())
+    for node in rest:
+        assert isinstance(node, Tree)
+        if node.data == "options":
+            given = [o.children for o in node.children if isinstance(o, Tree)]
+            options = tuple((str(name), str(value)) for name, value in given)
+            continue
+        start = node.meta.start_pos
         gaps.append(text[end:start])
-        end = reader.end
+        end = node.meta.end_pos
+        rules.append(_rule(node, text[start:end], start, source))
     gaps.append(text[end:])
-    grammar = Grammar(name, options, tuple(rules), tuple(gaps))
+    assert isinstance(header, Tree)
+    grammar = Grammar(str(header.children[0]), options, tuple(rules), tuple(gaps))
     wrong = problem(grammar)
     if wrong:
         raise GrammarError(f"{source}:{wrong}")
@@ -94,208 +91,90 @@ def read_file(path: Path) -> Grammar:
 @lru_cache(maxsize=1 << 14)
 def read_rule(text: str) -> Rule:
     """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
-    reader = _Reader(text, "rule")
-    rule = reader.rule()
-    reader.take("end")
-    return rule
+    return _rule(_parse(text, "rule", "rule"), text, 0, "rule")
 
 
-class _Token(NamedTuple):
-    """``kind`` is a group of `_TOKEN`, or a sign itself."""
-
-    kind: str
-    text: str
-    start: int
-    end: int
-
-
-def _tokens(text: str) -> list[_Token]:
-    found = []
-    for match in _TOKEN.finditer(text):
-        kind = str(match.lastgroup)
-        written = match[kind]
-        kind = written if kind == "sign" else kind
-        found.append(_Token(kind, written, *match.span(str(match.lastgroup))))
-        if kind == "end":
-            break
-    return found
-
-
-class _Reader:
-    """Reads the tokens of a text one after the other."""
-
-    def __init__(self, text: str, source: str) -> None:
-        self._text = text
-        self._source = source
-        self._tokens = _tokens(text)
-        self._at = 0
-        self._offset = 0  # where the rule begins that is being read
-        self._depth = 0
-
-    @property
-    def here(self) -> _Token:
-        """The token that comes next."""
-        return self._tokens[self._at]
-
-    @property
-    def end(self) -> int:
-        """Where the last token read ends."""
-        return self._tokens[self._at - 1].end
-
-    def is_at(self, *kinds: str) -> bool:
-        """Whether a token of these kinds comes next."""
-        return self.here.kind in kinds
-
-    def take(self, kind: str, text: str | None = None) -> str:
-        """Read a token of this kind, and text where one is given; returns its text."""
-        token = self.here
-        if token.kind != kind or text not in (None, token.text):
-            raise self._refusal(token)
-        self._at += 1
-        return token.text
-
-    def _has(self, sign: str) -> bool:
-        """Read this sign where it comes next; says whether it did."""
-        found = self.is_at(sign)
-        self._at += found
-        return found
-
-    def _refusal(self, token: _Token) -> GrammarError:
-        is_end = token.kind == "end"
-        known = self._tokens[max(self._at - 1, 0)] if is_end else token
-        place = len(self._text) if is_end else token.start
-        found = self._text[place : place + 12].splitlines()
+def _parse(text: str, start: str, source: str) -> Tree[Token]:
+    try:
+        return _reader(start).parse(text)
+    except UnexpectedInput as error:
+        ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
+        place = len(text) if ended else int(getattr(error, "pos_in_stream", None) or 0)
+        found = text[place : place + 12].splitlines()
         what = f"unexpected {found[0]!r}" if found else "unexpected end"
-        line = self._line(0 if known.kind == "end" else known.start)
-        return GrammarError(f"{self._source}:{line}: not a grammar of our style: {what}")
+        raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
 
-    def _line(self, offset: int) -> int:
-        return self._text.count("\n", 0, offset) + 1
 
-    def prologue(self) -> tuple[str, tuple[tuple[str, str], ...]]:
-        """The name of the grammar and its options."""
-        self.take("name", "grammar")
-        name = self.take("name")
-        self.take(";")
-        options: list[tuple[str, str]] = []
-        if self.here.text == "options":
-            self.take("name")
-            self.take("{")
-            while not self._has("}"):
-                option = self.take("name")
-                self.take("=")
-                options.append((option, self.take("name")))
-                self.take(";")
-        return name, tuple(options)
+# --------------------------------------------------------------------------- tree to data
 
-    def rule(self) -> Rule:
-        """The rule that comes next."""
-        start = self._offset = self.here.start
-        is_fragment = self.here.text == "fragment"
-        if is_fragment:
-            self.take("name")
-        name = self.take("name")
-        self.take(":")
-        commands: list[str] = []
-        try:
-            alternatives = self._alternatives()
-            if self._has("->"):
-                commands.append(self._command())
-                while self._has(","):
-                    commands.append(self._command())
-        except ValueError as error:
-            line = self._line(start)
-            raise GrammarError(f"{self._source}:{line}: rule {name}: {error}") from None
-        self.take(";")
+
+def _rule(node: Tree[Token], text: str, offset: int, source: str) -> Rule:
+    parts: list[Any] = list(node.children)
+    fragment, name, alternatives, *commands = parts
+    assert isinstance(alternatives, Tree)
+    try:
         return Rule(
-            name=name,
-            alternatives=alternatives,
-            is_fragment=is_fragment,
-            commands=tuple(commands),
-            text=self._text[start : self.end],
+            name=str(name),
+            alternatives=_alternatives(alternatives, offset),
+            is_fragment=fragment is not None,
+            commands=tuple(_command(c) for c in commands if isinstance(c, Tree)),
+            text=text,
         )
-
-    def _command(self) -> str:
-        name = self.take("name")
-        argument = None
-        if self._has("("):
-            argument = self.take("name")
-            self.take(")")
-        if (name, argument is None) not in (("skip", True), ("channel", False)):
-            raise ValueError(f"the command {name} is not of our style")
-        return name if argument is None else f"{name}({argument})"
-
-    def _alternatives(self) -> tuple[Alternative, ...]:
-        found = [self._alternative()]
-        while self._has("|"):
-            found.append(self._alternative())
-        return tuple(found)
-
-    def _alternative(self) -> Alternative:
-        elements: list[Element] = []
-        while self.is_at("name", "literal", "set", ".", "~", "("):
-            elements.append(self._suffixed())
-        label = self.take("name") if self._has("#") else None
-        span = (elements[0].span[0], elements[-1].span[1]) if elements else (0, 0)
-        return Alternative(tuple(elements), label, span)
-
-    def _suffixed(self) -> Element:
-        start = self.here.start
-        element = self._atom()
-        if not self.is_at("suffix"):
-            return element
-        match self.take("suffix"):
-            case "?" | "*" | "+" as operator:
-                return Repeat(element, operator, self._span(start))
-            case other:
-                raise ValueError(f"non-greedy {other!r} is not of our style")
-
-    def _atom(self) -> Element:
-        """The element that comes next, without what may repeat it."""
-        token = self.here
-        self._at += 1
-        match token.kind:
-            case "name":
-                return Reference(token.text, self._span(token.start))
-            case "literal":
-                text = _unescape(token.text[1:-1])
-                if not self._has(".."):
-                    return Literal(text, self._span(token.start))
-                last = _unescape(self.take("literal")[1:-1])
-                if len(text) > 1 or len(last) > 1 or text > last:
-                    raise ValueError(f"{text!r}..{last!r} is no range of characters")
-                return CharSet(((ord(text), ord(last)),), self._span(token.start))
-            case "set":
-                return CharSet(_ranges(token.text[1:-1]), self._span(token.start))
-            case ".":
-                return CharSet(((0, MAX_CODE_POINT),), self._span(token.start))
-            case "~":
-                with self._nested():
-                    inner = self._atom()
-                return CharSet(_complement(inner), self._span(token.start))
-            case "(":
-                with self._nested():
-                    alternatives = self._alternatives()
-                self.take(")")
-                return Group(alternatives, self._span(token.start))
-            case _:
-                self._at -= 1
-                raise self._refusal(token)
-
-    @contextmanager
-    def _nested(self) -> Iterator[None]:
-        self._depth += 1
-        if self._depth > _MOST_DEPTH:
-            raise ValueError(f"nested more than {_MOST_DEPTH} deep")
-        yield
-        self._depth -= 1
-
-    def _span(self, start: int) -> tuple[int, int]:
-        """From ``start`` to behind the last token, as offsets into the rule."""
-        return start - self._offset, self.end - self._offset
+    except GrammarError as error:
+        raise GrammarError(f"{source}:{node.meta.line}: rule {name}: {error}") from None
 
 
-# --------------------------------------------------------------------------- characters
+def _command(node: Tree[Token]) -> str:
+    parts: list[Any] = list(node.children)
+    name, argument = parts
+    if (name, argument is None) not in (("skip", True), ("channel", False)):
+        raise GrammarError(f"the command {name} is not of our style")
+    return str(name) if argument is None else f"{name}({argument})"
+
+
+def _alternatives(node: Tree[Token], offset: int) -> tuple[Alternative, ...]:
+    out: list[Alternative] = []
+    for child in node.children:
+        assert isinstance(child, Tree)
+        parts: list[Any] = list(child.children)
+        *elements, label = parts
+        converted = tuple(_element(e, offset) for e in elements if isinstance(e, Tree))
+        span = (converted[0].span[0], converted[-1].span[1]) if converted else (0, 0)
+        out.append(Alternative(converted, None if label is None else str(label), span))
+    return tuple(out)
+
+
+def _element(node: Tree[Token], offset: int) -> Element:
+    span = (node.meta.start_pos - offset, node.meta.end_pos - offset)
+    first = node.children[0] if node.children else None
+    match node.data:
+        case "reference":
+            return Reference(str(first), span)
+        case "literal":
+            return Literal(_unescape(str(first)[1:-1]), span)
+        case "charset":
+            return CharSet(_ranges(str(first)[1:-1]), span)
+        case "range":
+            low, high = (_unescape(str(c)[1:-1]) for c in node.children)
+            if len(low) > 1 or len(high) > 1 or low > high:
+                raise GrammarError(f"{low!r}..{high!r} is no range of characters")
+            return CharSet(((ord(low), ord(high)),), span)
+        case "wildcard":
+            return CharSet(((0, MAX_CODE_POINT),), span)
+        case "complement":
+            assert isinstance(first, Tree)
+            return CharSet(_complement(_element(first, offset)), span)
+        case "group":
+            assert isinstance(first, Tree)
+            return Group(_alternatives(first, offset), span)
+        case _:
+            item, suffix = node.children
+            assert isinstance(item, Tree)
+            match str(suffix):
+                case "?" | "*" | "+" as operator:
+                    return Repeat(_element(item, offset), operator, span)
+                case other:
+                    raise GrammarError(f"non-greedy {other!r} is not of our style")
 
 
 _ESCAPES = {"n": "\n", "r": "\r", "t": "\t", "b": "\b", "f": "\f"}
@@ -329,7 +208,7 @@ def _ranges(body: str) -> tuple[CharRange, ...]:
         if i + 2 < len(items) and items[i + 1] == ("-", False):
             high = ord(items[i + 2][0])
             if low > high:
-                raise ValueError(f"[{body}] has a range that runs backwards")
+                raise GrammarError(f"[{body}] has a range that runs backwards")
             found.append((low, high))
             i += 3
         else:
@@ -344,5 +223,5 @@ def _complement(element: Element) -> tuple[CharRange, ...]:
     elif isinstance(element, CharSet):
         inner = element.ranges
     else:
-        raise ValueError("only a set of characters can be negated")
+        raise GrammarError("only a set of characters can be negated")
     return complement(inner)

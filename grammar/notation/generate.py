@@ -1,8 +1,8 @@
 """Generate the ANTLR parser: ``python -m grammar.notation.generate [--check | --verify]``.
 
-Without an option, runs ANTLR (Java) on ``KRL.g4`` and writes ``_generated/`` with a manifest of
-digests. ``--check`` needs no Java: it compares the digests with the files. ``--verify`` generates
-afresh and compares byte for byte.
+Without an option, runs ANTLR (Java) on ``KRL.g4`` and writes ``_generated/``: the parser, the
+grammar as data, and a manifest of digests. ``--check`` needs no Java: it compares the digests with
+the files. ``--verify`` generates afresh and compares byte for byte.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ ANTLR_VERSION = "4.13.2"
 HERE = Path(__file__).resolve().parents[1]
 GRAMMAR = HERE / "KRL.g4"
 GENERATED = HERE / "_generated"
+DATA = "krl_grammar.py"
 MANIFEST = "MANIFEST"
 MARK = '"""Generated from grammar/KRL.g4 by ANTLR; do not edit (make grammar)."""\n'
 
@@ -60,6 +61,7 @@ def generate(grammar: Path, folder: Path) -> None:
             text = (Path(scratch) / name).read_text(encoding="utf-8")
             (folder / name).write_text(text, encoding="utf-8", newline="\n")
     (folder / "__init__.py").write_text(MARK, encoding="utf-8", newline="\n")
+    (folder / DATA).write_text(_data(grammar), encoding="utf-8", newline="\n")
     manifest = "".join(f"{digest}  {name}\n" for name, digest in _digests(grammar, folder))
     (folder / MANIFEST).write_text(manifest, encoding="utf-8", newline="\n")
 
@@ -73,9 +75,24 @@ def check(grammar: Path = GRAMMAR, folder: Path = GENERATED) -> str | None:
         for name, digest in _digests(grammar, folder):
             if recorded.get(name) != digest:
                 return f"{name} is not what the generated parser was made from; run 'make grammar'"
+        if (folder / DATA).read_text(encoding="utf-8") != _data(grammar):
+            return f"{DATA} is not what KRL.g4 is read as; run 'make grammar'"
     except (OSError, ValueError) as error:
         return f"the generated parser is incomplete ({error}); run 'make grammar'"
     return None
+
+
+def _data(grammar: Path) -> str:
+    """A module that makes what the grammar is read as."""
+    from grammar.notation.g4 import read  # brings Lark
+
+    source = grammar.read_bytes().replace(b"\r\n", b"\n")
+    found = read(source.decode(), source=grammar.name)
+    digest = hashlib.sha256(source).hexdigest()
+    return (
+        f"{MARK}\nfrom grammar.notation.model import *\n\nSHA256 = {digest!r}\n\n\n"
+        f"def grammar() -> Grammar:\n    return {found!r}\n"
+    )
 
 
 def _digests(grammar: Path, folder: Path) -> list[tuple[str, str]]:

@@ -16,8 +16,7 @@ from functools import cache
 from operator import add
 from typing import Any, NamedTuple
 
-from grammar.notation.g4 import read_file
-from grammar.notation.generate import GRAMMAR
+from grammar.notation.krl_grammar import krl_grammar
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
@@ -67,7 +66,7 @@ def read_module(text: str, path: str = "") -> ast.Module | list[SyntaxFailure]:
 @cache
 def builder() -> Builder:
     """The builder for the grammar in force; loaded once a process."""
-    return Builder(Recognizer(read_file(GRAMMAR)))
+    return Builder(Recognizer(krl_grammar()))
 
 
 class Builder:

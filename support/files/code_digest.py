@@ -11,7 +11,7 @@ from typing import Final
 
 __all__ = ["code_digest"]
 
-_SUFFIXES: Final = (".py", ".g4", ".tsv", ".toml", ".dat", ".src", ".xml")
+_SUFFIXES: Final = (".py", ".g4", ".lark", ".tsv", ".toml", ".dat", ".src", ".xml")
 # Cases are input: they travel with the work and are not what it is done with.
 _INPUT: Final = "cases"
 

@@ -71,7 +71,7 @@ def test_start_is_quick() -> None:
     """Asking for help loads none of the rooms nor their parsers."""
     program = (
         "import sys; from krl.cli import main; main(['--help']);"
-        "print([room for room in ('antlr4', 'pandas', 'jinja2', 'recovery.survey.survey')"
+        "print([room for room in ('antlr4', 'lark', 'pandas', 'jinja2', 'recovery.survey.survey')"
         " if room in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run(

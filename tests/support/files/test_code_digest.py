@@ -47,7 +47,7 @@ def _move(package: Path) -> None:
                 "parser/lexer.py",
                 "system/variables.tsv",
                 "constructs/0038-for-step.toml",
-                "diagnostics/examples.toml",
+                "notation/g4.lark",
                 "KRL.g4",
                 "generation/cells/texts/config.dat",
             )
