@@ -39,6 +39,7 @@ SUITES: Final = (
     "io",
     "submit",
     "message",
+    "interaction",
     "program",
 )
 _ROBOTS: Final = ("none", "kinematic", "mujoco")

@@ -1,0 +1,297 @@
+"""Cases of what meets: each pair of features stands in one of ``cases/interaction/``.
+
+A case has one value of each feature: the path under way, what an interrupt or the operator does to
+it, when, what is triggered on it, what stands behind it, and what else there is. What it expects
+follows from these values, each from the rule that is named with it. The rows are a covering array
+of strength two, chosen greedily. Run ``python -m conformance.suite.interactions`` after a change; a
+test fails when the cases are stale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations, product
+from typing import Final
+
+from conformance.suite.case import CASES
+
+__all__ = ["FEATURES", "FOLDER", "cases", "covering"]
+
+FOLDER: Final = CASES / "interaction"
+Row = Mapping[str, str]
+
+FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
+    "path": ("lin", "lin_blend", "circ", "circ_blend", "spline", "ptp", "ptp_blend", "rel"),
+    "act": (
+        "run",
+        "brake",
+        "brake_hard",
+        "halt",
+        "nested",
+        "pulse",
+        "override",
+        "proceed",
+        "resume",
+        "resume_nested",
+        "operator",
+    ),
+    "when": ("0.15", "0.42"),
+    "trigger": ("none", "end", "path", "call"),
+    "behind": ("none", "position", "output", "continue", "wait_for", "wait_sec", "pulse"),
+    "beside": ("none", "submit"),
+    "override": ("100", "70"),
+    "advance": ("1", "3", "5"),
+}
+
+_CP: Final = ("lin", "spline", "rel")
+#: Statements of the path with what they show, and where it ends.
+_PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
+    "lin": (("LIN {X 545} ;> path line 445 0 810 to 545 0 810 [MOT-04]",), "545 0 810"),
+    "lin_blend": (
+        ("LIN {X 545} C_DIS ;> misses 545 0 810 by 20 within 19.9 [BLD-08]", "LIN {Y 100}"),
+        "545 100 810",
+    ),
+    "circ": (
+        (
+            "CIRC {X 495, Y 50}, {X 545, Y 0}",
+            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-12]",
+        ),
+        "545 0 810",
+    ),
+    "circ_blend": (
+        (
+            "CIRC {X 495, Y 50}, {X 545, Y 0} C_DIS",
+            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-12]",
+            ";> misses 545 0 810 by 20 within 19.9 [BLD-08]",
+            "LIN {X 645}",
+        ),
+        "645 0 810",
+    ),
+    "spline": (
+        (
+            "SPLINE ;> passes 500 20 810 within 0.3 [SPL-03]",
+            "  SPL {X 500, Y 20, Z 810}",
+            "  SPL {X 545, Y 0, Z 810}",
+            "ENDSPLINE",
+        ),
+        "545 0 810",
+    ),
+    "ptp": (("PTP {A1 40} ;> axes 40 -90 90 0 90 0 [MOT-02]",), ""),
+    "ptp_blend": (
+        (
+            "PTP {A1 40} C_PTP ;> limits [MOT-06]",
+            "PTP {A1 60, A2 -80} ;> axes 60 -80 90 0 90 0 [MOT-02]",
+        ),
+        "",
+    ),
+    "rel": (("LIN_REL {X 100} ;> path line 445 0 810 to 545 0 810 [MOT-04]",), "545 0 810"),
+}
+_ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
+    "run": ("$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-01]",),
+    "brake": ("BRAKE ;> brake at in 1 [INT-09]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
+    "brake_hard": ("BRAKE F ;> brake at in 1 [INT-09]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
+    "halt": ("HALT ;> halt [INT-16]", "$OUT[3] = TRUE ;> out 3 TRUE after in 1 + 0.4 [INT-16]"),
+    "nested": (
+        "INTERRUPT ON 4",
+        "$FLAG[1] = TRUE",
+        "WAIT SEC 0.2",
+        "$OUT[3] = TRUE ;> out 3 TRUE at in 1 + 0.22 within 0.04 [INT-05]",
+        "INTERRUPT OFF 4",
+    ),
+    "pulse": (
+        "PULSE($OUT[3], TRUE, 0.2)",
+        ";> out 3 TRUE at in 1 [IOT-08] ;> out 3 FALSE at out 3 + 0.2 [IOT-07]",
+    ),
+    "override": ("$OV_PRO = 25", "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-01]"),
+    "proceed": (
+        "A[1] = 0",
+        "ON_ERROR_PROCEED",
+        "A[1] = A[A[1]]",
+        "A[2] = $ERR.NUMBER ;> value A[2] 1444 [TYP-13]",
+        "ERR_CLEAR($ERR)",
+        "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [TYP-13]",
+    ),
+    "resume": ("BRAKE", "RESUME ;> resume after in 1 [INT-10]"),
+    "resume_nested": (
+        "INTERRUPT ON 4",
+        "$FLAG[1] = TRUE",
+        "WAIT SEC 1",
+        "$OUT[3] = TRUE ;> out 3 never [INT-10]",
+    ),
+}
+#: What stands behind the motions; ``LAST`` is the number of the last of them.
+_BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
+    "none": (),
+    "position": ("R = $POS_ACT.X", "R = 1 ;> line at end LAST [ADV-07]"),
+    "output": ("$OUT[6] = TRUE ;> out 6 TRUE at end LAST [ADV-05]",),
+    "continue": (
+        "CONTINUE",
+        "$OUT[7] = TRUE ;> runs-ahead [ADV-08] ;> out 7 TRUE before end LAST [ADV-09]",
+    ),
+    "wait_for": ("WAIT FOR $OUT[1]", "R = 1 ;> line at end LAST [ADV-04]"),
+    "wait_sec": ("WAIT SEC 0.2", "R = 1 ;> line at end LAST + 0.2 [ADV-04]"),
+    "pulse": ("PULSE($OUT[8], TRUE, 0.5) ;> out 8 TRUE at end LAST [ADV-04] ;> out 8 FALSE",),
+}
+
+
+def covering(features: Mapping[str, tuple[str, ...]]) -> list[dict[str, str]]:
+    """Rows in which each pair of values of two features stands together at least once."""
+    names = list(features)
+    missing = {
+        frozenset(((one, left), (other, right)))
+        for one, other in combinations(names, 2)
+        for left, right in product(features[one], features[other])
+    }
+    rows = []
+    while missing:
+        row = dict(min(missing, key=sorted))  # a pair that is missing, and what adds most to it
+        for name in names:
+            if name not in row:
+                row[name] = max(
+                    features[name],
+                    key=lambda value, name=name: sum(  # type: ignore[misc]
+                        frozenset(((name, value), each)) in missing for each in row.items()
+                    ),
+                )
+        missing -= {frozenset(pair) for pair in combinations(row.items(), 2)}
+        rows.append({name: row[name] for name in names})
+    return rows
+
+
+def cases() -> Iterator[tuple[str, str]]:
+    """The names and texts of all files."""
+    for number, row in enumerate(covering(FEATURES), 1):
+        name = f"pair_{number:03}"
+        yield f"{name}.src", "\n".join([*_front(row), *_main(name, row), ""])
+    yield (
+        "beside.sub",
+        "DEF BESIDE()\n  LOOP\n    IF $OUT[1] THEN\n"
+        "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-01]\n    ENDIF\n"
+        "    WAIT SEC 0.024\n  ENDLOOP\nEND\n",
+    )
+
+
+def _front(row: Row) -> Iterator[str]:
+    lines = [*_main("", row), *(["[SUB-01]"] if row["beside"] == "submit" else [])]
+    cited = sorted({text[at + 1 : at + 7] for text in lines for at in _places(text)})
+    first = "INT-01" if row["act"] != "operator" else cited[0]
+    others = [one for one in cited if one != first]
+    yield f";@ rule: {', '.join([first, *others])}"
+    parts = (row["trigger"], "trigger"), (row["behind"], "behind"), (row["beside"], "too")
+    words = ", ".join(f"{value} {what}" for value, what in parts if value != "none")
+    words = f"{row['path']}, {row['act']} after {row['when']} s; {words or 'nothing else'}; "
+    words += f"{row['override']} %, {row['advance']} ahead"
+    yield f";@ title: {words}".replace("_", " ")
+    yield ";@ phase: run"
+    yield ";@ robot: kinematic"
+    act = "press STOP" if row["act"] == "operator" else "IN[1]=TRUE"
+    yield f";@ io: on OUT[1]=TRUE after {row['when']} {act}"
+    if row["act"] == "operator":
+        yield f";@ io: on OUT[1]=TRUE after {float(row['when']) + 1:g} press START"
+    if row["act"] == "halt":
+        yield ";@ io: on HALT after 0.5 press START"
+    if row["beside"] == "submit":
+        yield ";@ with: beside.sub"
+
+
+def _places(text: str) -> Iterator[int]:
+    return (at for at in range(len(text)) if text[at] == "[" and text[at + 4 : at + 5] == "-")
+
+
+def _main(name: str, row: Row) -> Iterator[str]:
+    is_left = row["act"].startswith("resume")
+    yield f"DEF {name}()"
+    if row["act"] != "operator":
+        yield "  INTERRUPT DECL 5 WHEN $IN[1] DO act()"
+    if "nested" in row["act"]:
+        yield "  INTERRUPT DECL 4 WHEN $FLAG[1] DO higher()"
+    yield "  $TOOL = $NULLFRAME"
+    yield "  $BASE = $NULLFRAME"
+    yield "  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}"
+    for text in ("$VEL.CP = 0.25", "$APO.CDIS = 20", "$VEL_AXIS[1] = 20"):
+        yield f"  {text}"
+    yield f"  $ADVANCE = {row['advance']}"
+    yield f"  $OV_PRO = {row['override']}"
+    if row["act"] != "operator":
+        yield "  INTERRUPT ON 5"
+    yield "  way()"
+    yield "  $OUT[5] = TRUE ;> out 5 TRUE after start 2"
+    yield "  LIN {X 445, Y 0, Z 790, A 180, B 0, C 180} ;> pose 445 0 790 [ARI-09]"
+    yield "END"
+    yield from _way(row, is_left=is_left)
+    if row["act"] in _ROUTINES:
+        yield "DEF act()"
+        if row["act"] == "proceed":
+            yield "  DECL INT A[2]"
+        yield from (f"  {text}" for text in _ROUTINES[row["act"]])
+        if not is_left and row["act"] != "halt":
+            yield "  $FLAG[2] = TRUE ;> interrupt 5 times 1 [INT-01]"
+        yield "END"
+    if "nested" in row["act"]:
+        yield "DEF higher()"
+        if is_left:
+            yield "  BRAKE"
+            yield "  RESUME ;> resume after in 1 [INT-10]"
+        else:
+            yield "  $OUT[9] = TRUE ;> out 9 TRUE at in 1 within 0.03 [INT-05]"
+        yield "END"
+    if row["trigger"] == "call":
+        yield "DEF called()"
+        yield "  $OUT[10] = TRUE"
+        yield "END"
+
+
+def _way(row: Row, *, is_left: bool) -> Iterator[str]:
+    statements, _ = _PATHS[row["path"]]
+    blends = row["path"].endswith("_blend")
+    yield "DEF way()"
+    yield "  DECL REAL R"
+    yield "  R = 0"
+    yield "  TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE ;> out 1 TRUE at start 2 [TRG-01]"
+    yield from _trigger(row, is_left=is_left, moment=f"{'apex' if blends else 'end'} 2")
+    if is_left:
+        yield from (
+            f"  {text.partition(';>')[0].rstrip()}" for text in statements if text[0] != ";"
+        )
+    else:
+        yield from (f"  {text}" for text in statements)
+    last = "3" if blends else "2"
+    for text in _BEHIND[row["behind"]]:
+        shown = text.replace("LAST", last)
+        if row["act"] == "halt":  # it stands for half a second, and the arm goes on
+            shown = shown.replace(" at end", " after end")
+        yield f"  {text.partition(' ;>')[0] if is_left else shown}"
+    if is_left:
+        yield "  WAIT SEC 0"
+        yield "  R = 2 ;> never [INT-10]"
+    else:
+        yield "  R = 2 ;> runs 1 [INT-01]" if row["act"] != "operator" else "  R = 2"
+    yield "END"
+
+
+def _trigger(row: Row, *, is_left: bool, moment: str) -> Iterator[str]:
+    if row["trigger"] == "none" or (row["trigger"] == "path" and row["path"] not in _CP):
+        return
+    if row["trigger"] == "call":
+        seen = ";> trigger never [INT-10]" if is_left else ";> trigger times 1 [TRG-06]"
+        yield f"  TRIGGER WHEN DISTANCE=1 DELAY=0 DO called() PRIO=-1 {seen}"
+        return
+    rule = "TRG-02" if moment.startswith("apex") else "TRG-01"
+    seen = f"TRUE at {moment} [{rule}]"
+    word = "DISTANCE=1"
+    if row["trigger"] == "path":
+        word, seen = "PATH=-1", f"TRUE between {moment} - 1 and {moment} [TRG-04]"
+    yield f"  TRIGGER WHEN {word} DELAY=0 DO $OUT[2]=TRUE"
+    yield f"  ;> out 2 {'never [INT-10]' if is_left else seen}"
+
+
+def _write() -> None:
+    FOLDER.mkdir(exist_ok=True)
+    for old in FOLDER.glob("*.s*"):
+        old.unlink()
+    for name, text in cases():
+        (FOLDER / name).write_text(text, encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    _write()
