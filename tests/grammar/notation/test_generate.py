@@ -108,7 +108,7 @@ def antlr(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 def test_what_is_generated_passes_the_check(antlr: list[dict[str, Any]], tmp_path: Path) -> None:
     """Lexer, parser, package and manifest are written, by the pinned ANTLR, and belong together."""
     grammar, folder = tmp_path / "some.g4", tmp_path / "new" / "folder"
-    grammar.write_text("grammar KRL;\na : 'A' ;\n", encoding="utf-8", newline="\n")
+    grammar.write_text("grammar KRL;\na : A ;\nA : 'A' ;\n", encoding="utf-8", newline="\n")
     generate.generate(grammar, folder)
     assert {*FILES, generate.MANIFEST} == {path.name for path in folder.iterdir()}
     assert all(b"\r" not in path.read_bytes() for path in folder.iterdir())
