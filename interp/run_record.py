@@ -24,7 +24,7 @@ from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
 
-__all__ = ["RunRecord", "record_of"]
+__all__ = ["RunRecord", "record_of", "tip_of"]
 
 #: How often a line may take one way until the record tells no more of it.
 _MOST_BRANCHES: Final = 1000
@@ -213,7 +213,7 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
                 "motion": point.number,
                 "kind": point.kind,
                 "at": f"{point.at.file}:{point.at.line}",
-                "place": _tip(point, run.machine),
+                "place": tip_of(point, run.machine),
                 "blended": point.number in blended,
             }
             for point in run.controller.points
@@ -250,8 +250,8 @@ def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:
     ]
 
 
-def _tip(point: PlannedPoint, machine: MachineData) -> list[float]:
-    """The end point of the tool; empty where it is unknown."""
+def tip_of(point: PlannedPoint, machine: MachineData) -> list[float]:
+    """X, Y and Z of the tool in $WORLD where a motion ends, mm; empty where it is unknown."""
     if point.position is None:
         return []
     foot = machine.foot(point.position.axes[len(machine.axes) :])

@@ -20,6 +20,7 @@ from interp.controller.scheduler import HOUR, RunOutcome
 from interp.controller.trace import WORLD_KINDS, Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
 from interp.port.events import EVERY_KIND, Kind
+from interp.port.executor import Executor
 from interp.port.requests import Value
 from interp.program.load import CheckedProgram, Limits
 from interp.robot.api.batch import BatchCore
@@ -111,6 +112,8 @@ class RunSetup:
 class RunResult:
     """What came of a run: how it ended, the trace, and where the arm went.
 
+    ``executor`` is the one that has run, over whose data lists a companion can still look around.
+
     ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
     ``start`` are those that were used; ``observations`` what the arm touched, with a scene or
     MuJoCo, and where it was asked for more torque than it bears; ``torque_note`` says
@@ -124,6 +127,7 @@ class RunResult:
     machine: MachineData
     start: tuple[float, ...]
     controller: Controller
+    executor: Executor
     machine_note: str = ""
     observations: tuple[Observation, ...] = ()
     torque_note: str = ""
@@ -213,6 +217,7 @@ def run_program(
         machine,
         tuple(start),
         controller,
+        executor,
         note,
         tracking.observations(),
         torque_note,

@@ -18,6 +18,7 @@ _EXTRA_OF = {
     "py_opw_kinematics": "arm",
     "pyarrow": "records",
     "pygls": "lsp",
+    "pytest": "test",
     "ruckig": "arm",
     "scipy": "arm",
     "watchfiles": "watch",

@@ -8,7 +8,7 @@ change changes only as it says, that the program ends.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Literal
@@ -17,9 +17,9 @@ from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
-from conformance.suite.expectations import Expectation
+from conformance.suite.expectations import KINDS, Expectation
 
-__all__ = ["Check", "evaluate"]
+__all__ = ["Check", "evaluate", "evaluate_ending", "evaluate_run"]
 
 State = Literal["met", "unmet", "open"]
 
@@ -45,13 +45,14 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 
 def evaluate(case: Case, seen: Observation) -> list[Check]:
     """All checks of a case, in the order of its lines; what every case expects comes last."""
-    found = _said_run(case, seen) if case.phase == "run" else _said_all(case, seen)
+    is_run = case.phase == "run"
+    found = evaluate_run(case.expectations, seen) if is_run else _said_all(case, seen)
     said = [
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
-    unsaid = (_unsaid_outputs(case, seen), _ended(case, seen))
-    every = chain(*unsaid) if case.phase == "run" else _unsaid(case, seen)
+    ended = evaluate_ending(case.expectations, seen, case.main)
+    every = chain(_unsaid_outputs(case, seen), ended) if is_run else _unsaid(case, seen)
     return [*said, *(replace(one, is_sure=case.may_fail) for one in every)]
 
 
@@ -59,10 +60,11 @@ def _said_all(case: Case, seen: Observation) -> list[Check]:
     return [_said(one, seen) for one in case.expectations]
 
 
-def _said_run(case: Case, seen: Observation) -> list[Check]:
-    marks = _marks(case)
+def evaluate_run(expectations: Sequence[Expectation], seen: Observation) -> list[Check]:
+    """A check for each expectation about a run."""
+    marks = _marks(expectations)
     found = []
-    for one in case.expectations:
+    for one in expectations:
         if _ROBOTS.index(one.needs) > _ROBOTS.index(seen.robot):
             found.append(_check(one, "open", f"needs the robot {one.needs}"))
             continue
@@ -70,13 +72,14 @@ def _said_run(case: Case, seen: Observation) -> list[Check]:
         if lacking:
             found.append(_check(one, "open", f"{lacking} was not watched"))
             continue
-        evaluated = evaluate_on_trace if one.needs == "none" else evaluate_on_path
+        is_of_path = KINDS[one.kind].robot != "none"
+        evaluated = evaluate_on_path if is_of_path else evaluate_on_trace
         found.append(_check(one, *evaluated(one, seen, marks)))
     return found
 
 
-def _marks(case: Case) -> Marks:
-    places = {one: (one.file, one.line) for one in case.expectations}
+def _marks(expectations: Sequence[Expectation]) -> Marks:
+    places = {one: (one.file, one.line) for one in expectations}
     return Marks(
         {one.arguments[0]: at for one, at in places.items() if one.kind == "mark"},
         frozenset(at for one, at in places.items() if one.kind == "order"),
@@ -154,17 +157,19 @@ def _unsaid_outputs(case: Case, seen: Observation) -> Iterator[Check]:
             yield Check(event.file, event.line, text, "unmet", f"{value} at {event.time} us")
 
 
-def _ended(case: Case, seen: Observation) -> Iterator[Check]:
-    """A program ends by itself, where nothing else is expected of it."""
+def evaluate_ending(
+    expectations: Sequence[Expectation], seen: Observation, main: str
+) -> Iterator[Check]:
+    """A check where the program did not end by itself, though nothing else is expected of it."""
     if not seen.ending:  # the ending was not recorded
         return
-    kinds = {one.kind: one for one in case.expectations}
+    kinds = {one.kind: one for one in expectations}
     last = seen.events[-1] if seen.events else None
-    file, line = (last.file, last.line) if last else (case.main, 0)
+    file, line = (last.file, last.line) if last else (main, 0)
     if seen.ending == "crash":
         yield Check(file, line, "no crash", "unmet", seen.note)
         return
-    runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in case.expectations)
+    runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in expectations)
     faults = [event for event in seen.events if event.kind == "fault"]
     is_robot = not faults or any(event.task == "robot" for event in faults)
     wanted = "fault" if "fault" in kinds and is_robot else "running" if runs_on else "end"

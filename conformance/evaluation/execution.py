@@ -47,6 +47,7 @@ __all__ = [
     "missing",
     "observe",
     "observe_with",
+    "observed",
     "prepared",
 ]
 
@@ -181,7 +182,7 @@ def _run(
         limits=Limits(statements=_STATEMENTS, per_slice=profile.statements),
     )
     try:
-        return _observed(session.run_program(program, wanted), wanted)
+        return observed(session.run_program(program, wanted), wanted)
     except LinkError as error:
         return _refused(error)
     except ScriptError as error:
@@ -224,7 +225,8 @@ def _submit(case: Case) -> str | None:
     return names[0][: -len(".sub")] if names else None
 
 
-def _observed(done: session.RunResult, wanted: session.RunSetup) -> Observation:
+def observed(done: session.RunResult, wanted: session.RunSetup) -> Observation:
+    """What was seen of a run, for expectations to be evaluated on."""
     outcome = done.outcome
     return Observation(
         events=tuple(

@@ -76,7 +76,8 @@ class Observation:
     ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
     ``cycle`` is the interpolation cycle in µs; ``is_exact``: times are known to the µs.
     ``watched`` are the kinds of events that a recording says it has, ``None`` where all are there.
-    ``machine`` is the arm whose limits the path has to keep, where it is known.
+    ``machine`` is the arm whose limits the path has to keep, where it is known. ``values`` are
+    those of variables when the run was over, by name in upper case, where they were asked for.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -89,15 +90,16 @@ class Observation:
     robot: str = "none"
     machine: MachineData | None = None
     watched: frozenset[str] | None = None
+    values: Mapping[str, Any] = field(default_factory=dict)
 
     def of_kind(self, *kinds: str) -> Iterable[Event]:
         """The events of some kinds, in their order."""
         return (event for event in self.events if event.kind in kinds)
 
     def on_line(self, file: str, line: int, *kinds: str) -> list[Event]:
-        """The events of some kinds that a line caused."""
+        """The events of some kinds that a line caused; all of them where ``file`` is empty."""
         return [
             event
             for event in self.events
-            if event.kind in kinds and event.line == line and event.file == file
+            if event.kind in kinds and (not file or (event.line == line and event.file == file))
         ]

@@ -8,18 +8,29 @@ stands in the case; the path is that of the set-points, in each interpolation cy
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise, starmap
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from conformance.evaluation.observation import Observation
-from conformance.evaluation.path_geometry import between, from_arc, from_circle, from_line, refined
+from conformance.evaluation.path_geometry import (
+    between,
+    crosses_box,
+    from_arc,
+    from_circle,
+    from_line,
+    nearest,
+    refined,
+)
 from conformance.evaluation.trace_expectations import Evaluated, Marks, time_of
 from conformance.suite.expectations import Expectation
+from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
+from interp.values.poses import Pose
 
 __all__ = ["evaluate_on_path"]
 
@@ -37,7 +48,10 @@ _TRACKING: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The motion of a line, times in µs; ``leave`` and ``join`` are the ends of its blend."""
+    """The motion of a line, times in µs; ``leave`` and ``join`` are the ends of its blend.
+
+    ``is_whole``: it is the path of the whole run.
+    """
 
     path: PathRecord
     start: int
@@ -45,6 +59,7 @@ class _Part:
     entered: int
     leave: int | None
     join: int | None
+    is_whole: bool = False
 
     @property
     def points(self) -> Array:
@@ -60,6 +75,20 @@ class _Part:
         last = self.end if self.leave is None else self.leave
         kept = (self.path.times >= self.entered) & (self.path.times <= last)
         return self.points[kept]
+
+    def stretches(self) -> Iterator[slice]:
+        """Rows during which frames and tool stayed: between them points do not belong together."""
+        if not self.is_whole:
+            kept = np.flatnonzero(
+                self.within(self.start, self.end if self.join is None else self.join)
+            )
+            yield slice(int(kept[0]), int(kept[-1]) + 1) if len(kept) else slice(0)
+            return
+        times = [time for time, _ in self.path.placements]
+        bounds = sorted(
+            {0, *np.searchsorted(self.path.times, times).tolist(), len(self.path.times)}
+        )
+        yield from starmap(slice, pairwise(bounds))
 
     def within(self, start: int, end: int) -> npt.NDArray[np.bool_]:
         """Which samples lie between two times."""
@@ -80,6 +109,9 @@ def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evalu
 
 
 def _part(one: Expectation, seen: Observation, path: PathRecord) -> _Part | None:
+    if not one.file:
+        first, last = int(path.times[0]), int(path.times[-1])
+        return _Part(path, first, last, first, None, None, is_whole=True)
     starts = seen.on_line(one.file, one.line, "motion_start")
     if not starts:
         return None
@@ -151,9 +183,38 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
 
 def _distance(part: _Part, point: Array) -> float:
     """How near the tool comes to a point while the motion, and the blend behind it, goes on."""
+    if part.is_whole:
+        stretches = [_refined(part, rows) for rows in part.stretches()]
+        return min(float(nearest(points[:-1], points[1:], point).min()) for points in stretches)
     last = part.end if part.join is None else part.join
     points = refined(part.path.times, part.points, part.start, last, 2_000)
     return float(np.linalg.norm(points - point, axis=1).min())
+
+
+def _refined(part: _Part, rows: slice) -> Array:
+    """The points of some rows and others between them, at least two."""
+    times, points = part.path.times[rows], part.points[rows]
+    return refined(times, points, float(times[0]), float(times[-1]), 4 * len(times) + 2)
+
+
+def _avoids(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+    """The tip of the tool stays out of a zone in $WORLD, between samples too."""
+    numbers = _numbers(one)
+    zone, frame = (numbers[:-6], numbers[-6:]) if "in" in one.arguments else (numbers, np.zeros(6))
+    inverse = matrix_of(Pose.of(*frame.tolist()).inverse())
+    for rows in part.stretches():
+        tips = part.path.tips[rows] @ inverse[:3, :3].T + inverse[:3, 3]
+        starts, ends = (tips, tips) if len(tips) == 1 else (tips[:-1], tips[1:])
+        if one.arguments[0] == "sphere":
+            inside = nearest(starts, ends, zone[:3]) < zone[3]
+        else:
+            corners = zone.reshape(2, 3)
+            inside = crosses_box(starts, ends, corners.min(axis=0), corners.max(axis=0))
+        if inside.any():
+            first = rows.start + int(np.argmax(inside))
+            at = " ".join(f"{number:.1f}" for number in part.path.tips[first])
+            return "unmet", f"inside at {part.path.times[first] / 1e6:.6f} s, from {at} on"
+    return "met", ""
 
 
 def _passes(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
@@ -211,6 +272,8 @@ def _rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
 
 def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     kept = part.within(part.start, part.end if part.join is None else part.join)
+    if part.is_whole:
+        return _fastest(one, part)
     if one.arguments[0] == "drops":
         if part.leave is None or part.join is None:
             return "unmet", "there is no blend"
@@ -228,6 +291,23 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
             is_met = abs(fastest - wanted) <= wanted * _SPEED
             return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s"
     return ("met" if slowest < wanted else "unmet"), f"{slowest:.4f} m/s"
+
+
+def _fastest(one: Expectation, part: _Part) -> Evaluated:
+    """The highest speed of the tool in $WORLD in the whole run, and when that was."""
+    wanted, fastest, when = float(one.arguments[-1]), 0.0, 0
+    for rows in part.stretches():
+        times = part.path.times[rows]
+        if len(times) > 1:
+            speeds = np.linalg.norm(_rates(times, part.path.tips[rows]), axis=1) / 1_000
+            if speeds.max() > fastest:
+                fastest, when = float(speeds.max()), int(times[int(np.argmax(speeds))])
+    is_met = fastest <= wanted * (1 + _SPEED)
+    if one.arguments[0] == "reaches":
+        is_met = is_met and fastest >= wanted * (1 - _SPEED)
+    elif one.arguments[0] == "drops":
+        return "open", "it is about the blend of a line"
+    return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s at {when / 1e6:.6f} s"
 
 
 def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
@@ -265,6 +345,7 @@ _EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, _Part], Eval
     "path": _path,
     "passes": _passes,
     "misses": _misses,
+    "avoids": _avoids,
     "leaves": _leaves,
     "joins": _leaves,
     "speed": _speed,

@@ -8,7 +8,17 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["between", "circle_of", "drawn", "from_arc", "from_circle", "from_line", "refined"]
+__all__ = [
+    "between",
+    "circle_of",
+    "crosses_box",
+    "drawn",
+    "from_arc",
+    "from_circle",
+    "from_line",
+    "nearest",
+    "refined",
+]
 
 Array = npt.NDArray[np.float64]
 
@@ -24,6 +34,32 @@ def from_line(points: Array, start: Array, end: Array) -> Array:
         np.clip((points - start) @ along / length, 0.0, 1.0) if length else np.zeros(len(points))
     )
     return np.asarray(np.linalg.norm(points - (start + share[:, None] * along), axis=1))
+
+
+def nearest(starts: Array, ends: Array, point: Array) -> Array:
+    """The distance of a point from each of some line segments, their ends of shape (n, 3)."""
+    along = ends - starts
+    squares = np.einsum("ij,ij->i", along, along)
+    shares = np.einsum("ij,ij->i", point - starts, along) / np.where(squares > 0.0, squares, 1.0)
+    feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * along
+    return np.asarray(np.linalg.norm(feet - point, axis=1))
+
+
+def crosses_box(starts: Array, ends: Array, low: Array, high: Array) -> npt.NDArray[np.bool_]:
+    """Which line segments, their ends of shape (n, 3), have a point inside a box, not only on it.
+
+    ``low`` and ``high`` are opposite corners of the box, whose edges lie along the axes.
+    """
+    along = ends - starts
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.stack(((low - starts) / along, (high - starts) / along))
+    is_level = along == 0.0
+    between_faces = (starts > low) & (starts < high)
+    first = np.where(is_level, np.where(between_faces, 0.0, np.inf), shares.min(axis=0))
+    last = np.where(is_level, np.where(between_faces, 1.0, -np.inf), shares.max(axis=0))
+    begin, end = np.maximum(first.max(axis=1), 0.0), np.minimum(last.min(axis=1), 1.0)
+    is_point = is_level.all(axis=1)
+    return np.asarray((begin < end) | (is_point & between_faces.all(axis=1)))
 
 
 def circle_of(first: Array, second: Array, third: Array) -> tuple[Array, Array]:

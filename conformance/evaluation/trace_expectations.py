@@ -8,8 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+import numpy as np
+
 from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.path_geometry import between
 from conformance.suite.expectations import Anchor, Expectation, When
+from interp.robot.simulation.tracking import PathRecord
 
 __all__ = ["Evaluated", "Marks", "evaluate_on_trace", "time_of", "unwatched"]
 
@@ -38,6 +42,7 @@ _EVENTS: Final[Mapping[str, str]] = {
     "halt": "halt",
     "line": "line",
     "trigger": "trigger",
+    "ends": "end",
 }
 #: Relative: single precision agrees to the seventh digit [TYP-02].
 _REAL: Final = 1e-6
@@ -59,6 +64,8 @@ _NEEDS: Final[Mapping[str, str]] = {
     "exact": "blend_start",
     "lasts": "motion_end",
     "interrupt": "interrupt_enter",
+    "calls": "call",
+    "ends": "end",
 }
 
 
@@ -80,8 +87,12 @@ def evaluate_on_trace(one: Expectation, seen: Observation, marks: Marks) -> Eval
 
 def _value(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     name, *wanted = one.arguments
-    events = seen.on_line(one.file, one.line, "assign") or [*seen.of_kind("assign")]
     steps = _steps(name)
+    if not one.file and one.kind == "value" and steps[0] in seen.values:
+        fields = {"name": steps[0], "value": seen.values[str(steps[0])]}
+        events = [Event(None, "robot", "assign", "", 0, fields)]
+    else:
+        events = seen.on_line(one.file, one.line, "assign") or [*seen.of_kind("assign")]
     found = [value for event in events for value in _assigned(event, steps)]
     if one.kind == "value":
         found = found[-1:]
@@ -175,10 +186,10 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     faults = [*seen.of_kind("fault")]
     actual = "; ".join(
         f"{one_fault.fields.get('slug') or 'link'} {one_fault.fields.get('number') or ''}"
-        f" on line {one_fault.line}"
+        f" on line {one_fault.line}{'' if one.file else f' of {one_fault.file}'}"
         for one_fault in faults
     )
-    there = [event for event in faults if (event.file, event.line) == (one.file, one.line)]
+    there = seen.on_line(one.file, one.line, "fault")
     names = {str(event.fields.get("slug") or "link") for event in there}
     names |= {str(event.fields.get("number")) for event in there}
     return ("met" if one.arguments[0] in names else "unmet"), actual or f"none: {seen.ending}"
@@ -223,22 +234,28 @@ def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """An event is there, at its time; or never, or so often."""
     events = _events(one, seen)
     words = one.arguments
+    if one.near:
+        if seen.path is None:
+            return "open", "no path was recorded"
+        events, far = _near(one, events, seen.path)
+        if not events and far:
+            return ("met" if "never" in words else "unmet"), f"{far} away"
     if "never" in words:
-        return ("unmet" if events else "met"), _times(events)
+        return ("unmet" if events else "met"), _seen(one, events)
     if "times" in words:
         wanted = int(words[words.index("times") + 1])
-        return ("met" if len(events) == wanted else "unmet"), f"{len(events)}: {_times(events)}"
+        return ("met" if len(events) == wanted else "unmet"), f"{len(events)}: {_seen(one, events)}"
     if not events:
         return "unmet", "it never happened"
     if one.when is None:
-        return "met", _times(events)
+        return "met", _seen(one, events)
     if any(event.time is None for event in events):
         return "open", "the time was not measured"
     try:
         is_met = any(_is_then(event, one.when, one.tolerance, seen, marks) for event in events)
     except LookupError as error:
         return "unmet", str(error.args[0])
-    return ("met" if is_met else "unmet"), f"{_times(events)}{_moments(one.when, seen, marks)}"
+    return ("met" if is_met else "unmet"), f"{_seen(one, events)}{_moments(one.when, seen, marks)}"
 
 
 def _events(one: Expectation, seen: Observation) -> list[Event]:
@@ -249,6 +266,18 @@ def _events(one: Expectation, seen: Observation) -> list[Event]:
             return [event for event in seen.of_kind(kind) if test(one, event)]
         return [event for event in seen.on_line(one.file, one.line, kind) if test(one, event)]
     return seen.on_line(one.file, one.line, _EVENTS[one.kind])
+
+
+def _near(one: Expectation, events: Sequence[Event], path: PathRecord) -> tuple[list[Event], str]:
+    """The events that happened while the tool was near the place, and how near the others were."""
+    *place, most = one.near
+    timed = [(event, event.time) for event in events if event.time is not None]
+    tools = between(path.times, path.points[:, :3], [time for _, time in timed])
+    gaps = [float(gap) for gap in np.linalg.norm(tools - np.array(place), axis=1)]
+    far = ", ".join(
+        f"{_times([event])} {gap:.2f} mm" for (event, _), gap in zip(timed, gaps, strict=True)
+    )
+    return [event for (event, _), gap in zip(timed, gaps, strict=True) if gap <= most], far
 
 
 def _is_output(one: Expectation, event: Event) -> bool:
@@ -270,6 +299,17 @@ def _has_number(one: Expectation, event: Event) -> bool:
     return event.fields.get("number") == int(one.arguments[0])
 
 
+def _is_message(one: Expectation, event: Event) -> bool:
+    wanted = one.arguments[0]
+    if wanted.startswith('"'):
+        return wanted[1:-1] in str(event.fields.get("text"))
+    return _has_number(one, event)
+
+
+def _is_called(one: Expectation, event: Event) -> bool:
+    return str(event.fields.get("name")).upper() == one.arguments[0].upper()
+
+
 def _has_priority(one: Expectation, event: Event) -> bool:
     return event.fields.get("priority") == int(one.arguments[0])
 
@@ -277,7 +317,8 @@ def _has_priority(one: Expectation, event: Event) -> bool:
 _FITS: Final[Mapping[str, tuple[str, Callable[[Expectation, Event], bool]]]] = {
     "out": ("out", _is_output),
     "anout": ("anout", _is_analog),
-    "message": ("message", _has_number),
+    "message": ("message", _is_message),
+    "calls": ("call", _is_called),
     "interrupt": ("interrupt_enter", _has_priority),
 }
 
@@ -324,6 +365,14 @@ def time_of(anchor: Anchor, seen: Observation, marks: Marks) -> int:
 
 def _times(events: Sequence[Event]) -> str:
     return ", ".join("?" if e.time is None else f"{e.time / 1e6:.6f} s" for e in events[:8])
+
+
+def _seen(one: Expectation, events: Sequence[Event]) -> str:
+    """The times of events, with the lines that caused them where it may be any."""
+    if one.file:
+        return _times(events)
+    places = [f" ({event.file}:{event.line})" if event.file else "" for event in events[:8]]
+    return ", ".join(f"{_times([e])}{at}" for e, at in zip(events, places, strict=False))
 
 
 def _moments(when: When, seen: Observation, marks: Marks) -> str:

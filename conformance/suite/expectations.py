@@ -53,6 +53,7 @@ _NAME: Final = r"[$\w]+(?:\[\d+(?:,\d+)*\])?(?:\.\w+(?:\[\d+\])?)*"
 _VALUE: Final = rf"(?:{_NUMBER}|TRUE|FALSE|#\w+|\"[^\"]*\"|none)"
 _MANY: Final = rf"{_NUMBER}(?: {_NUMBER})*"
 _POINT: Final = rf"{_NUMBER} {_NUMBER} {_NUMBER}"
+_ZONE: Final = rf"(?:box {_POINT} to {_POINT}|sphere {_POINT} by {_NUMBER})"
 _SHAPE: Final = (
     rf"(?:line {_POINT} to {_POINT}|(?:circle|blend) {_POINT} by {_POINT} to {_POINT}|joint)"
 )
@@ -84,13 +85,15 @@ def _kinds() -> Mapping[str, Kind]:
         # what happens in the cell, and when
         Kind("out", _RUN, r"\d+ (?:(?:TRUE|FALSE)(?: never)?|never)", timed=True),
         Kind("anout", _RUN, rf"\d+ {_NUMBER}", timed=True, tolerant=True),
-        Kind("message", _RUN, r"\d+(?: never)?", timed=True),
+        Kind("message", _RUN, r"(?:\d+|\"[^\"]*\")(?: never)?", timed=True),
         Kind("interrupt", _RUN, r"\d+(?: never| times \d+)?", timed=True),
         Kind("trigger", _RUN, r"(?:never|times \d+)?", timed=True),
         Kind("brake", _RUN, timed=True),
         Kind("resume", _RUN, timed=True),
         Kind("halt", _RUN, timed=True),
         Kind("line", _RUN, timed=True),
+        Kind("calls", _RUN, r"\w+(?: never| times \d+)?", timed=True),
+        Kind("ends", _RUN, timed=True),
         # the motion of a line
         Kind("planned", _RUN, timed=True),
         Kind("start", _RUN, timed=True),
@@ -105,6 +108,7 @@ def _kinds() -> Mapping[str, Kind]:
         Kind("path", _RUN, _SHAPE, tolerant=True, robot="kinematic"),
         Kind("passes", _RUN, _POINT, tolerant=True, robot="kinematic"),
         Kind("misses", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
+        Kind("avoids", _RUN, rf"{_ZONE}(?: in {_POINT} {_POINT})?", robot="kinematic"),
         Kind("leaves", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
         Kind("joins", _RUN, rf"{_POINT} by {_NUMBER}", tolerant=True, robot="kinematic"),
         Kind("pose", _RUN, _MANY, timed=True, tolerant=True, robot="kinematic"),
@@ -149,8 +153,10 @@ class When:
 class Expectation:
     """What one ``;>`` says; ``file`` and ``line`` are the place it is about.
 
-    ``tolerance`` is in the unit of what is compared (seconds for times); ``None``: the usual one.
-    ``basis`` is the rule or clause it rests on; empty: the first of its case.
+    Where ``file`` is empty it is about all that the program does. ``tolerance`` is in the unit of
+    what is compared (seconds for times); ``None``: the usual one. ``basis`` is the rule or clause
+    it rests on; empty: the first of its case. ``near`` are X, Y and Z of a place in mm, and how far
+    from it the tool may be then.
     """
 
     kind: str
@@ -161,11 +167,12 @@ class Expectation:
     when: When | None = None
     tolerance: float | None = field(default=None)
     basis: str = ""
+    near: tuple[float, ...] = ()
 
     @property
     def needs(self) -> Literal["none", "kinematic", "mujoco"]:
         """The least robot that it can be evaluated with."""
-        return KINDS[self.kind].robot
+        return "kinematic" if self.near else KINDS[self.kind].robot
 
 
 _WORDS: Final = re.compile(r'"[^"]*"|[^\s"]+')
@@ -177,6 +184,7 @@ _WHEN: Final = re.compile(
     rf"(?:^| )(?:(?P<relation>at|before|after) (?P<one>{_MOMENT})(?P<exactly> exactly)?"
     rf"|between (?P<first>{_MOMENT}) and (?P<last>{_MOMENT}))$"
 )
+_NEAR: Final = re.compile(rf"(?:^| )near ({_POINT}) by ({_NUMBER})$")
 _MOMENT_PARTS: Final = re.compile(
     rf"(?:(?P<event>[a-z-]+) (?P<of>\w+)(?: (?P<sign>[-+]) (?P<more>{_NUMBER}))?"
     rf"|(?P<at>{_NUMBER}))$"
@@ -192,10 +200,15 @@ def read_expectation(text: str, file: str, line: int) -> Expectation:
     if kind is None:
         raise ExpectationError(f"there is no expectation {word!r}")
     tolerance, when = None, None
+    near: tuple[float, ...] = ()
     if found := _WITHIN.search(rest):
         tolerance, rest = float(found[1]), rest[: found.start()]
     if found := _WHEN.search(rest):
         when, rest = _when(found), rest[: found.start()]
+    if found := _NEAR.search(rest):
+        near, rest = (*map(float, found[1].split()), float(found[2])), rest[: found.start()]
+    if near and not kind.timed:
+        raise ExpectationError(f"{word} happens at no place")
     if when is not None and not kind.timed:
         raise ExpectationError(f"{word} happens at no time")
     if tolerance is not None and not (kind.tolerant or when is not None):
@@ -206,7 +219,7 @@ def read_expectation(text: str, file: str, line: int) -> Expectation:
         raise ExpectationError(f"{rest or 'nothing'!r} cannot stand behind {word}")
     arguments = tuple(_WORDS.findall(rest))
     rests_on = cited[1] if cited else ""
-    return Expectation(word, arguments, file, line, text.strip(), when, tolerance, rests_on)
+    return Expectation(word, arguments, file, line, text.strip(), when, tolerance, rests_on, near)
 
 
 def _when(found: re.Match[str]) -> When:

@@ -27,6 +27,7 @@ _COMMANDS: Final = {
     "run": "krl.commands.run:run",
     "demo": "krl.commands.demo:demo",
     "debug": "krl.commands.debug:debug",
+    "test": "krl.commands.test:run_tests",
     "lsp": "krl.commands.lsp:lsp",
     "nightly": "krl.commands.nightly:nightly",
 }

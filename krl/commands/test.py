@@ -1,0 +1,77 @@
+"""`krl test`: unit tests of robot programs, which pytest collects, runs and reports."""
+
+from importlib import metadata
+from itertools import takewhile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from krl.errors import InputError
+from krl.extras import ARM, expected_extras
+from krl.run_options import ExecutorOption
+
+__all__ = ["run_tests"]
+
+_PLUGIN = "krl.program_tests.pytest_plugin"
+#: What pytest says where all have passed, some have failed, and none was there.
+_PASSED, _FAILED, _NONE = 0, 1, 5
+
+
+def run_tests(
+    paths: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[PATH]...", help="Files and folders of tests; default: here."),
+    ] = None,
+    select: Annotated[
+        str | None, typer.Option("-k", metavar="WORDS", help="Only tests with these in their name.")
+    ] = None,
+    stop: Annotated[bool, typer.Option("-x", help="Stop at the first test that fails.")] = False,
+    processes: Annotated[
+        str | None, typer.Option("-n", metavar="N", help="So many processes (pytest-xdist).")
+    ] = None,
+    update: Annotated[
+        bool, typer.Option("--update", help="Record anew what recorded tests do.")
+    ] = False,
+    executor: ExecutorOption = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE.xml", help="Write results as JUnit here.")
+    ] = None,
+    cov_html: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write a page of the lines and branches that ran here."),
+    ] = None,
+    lcov: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the same for lcov here.")
+    ] = None,
+) -> int:
+    """Run unit tests of robot programs: `test_*.toml` and `test_*.src` below the paths.
+
+    What follows `--` goes to pytest, which runs them; `pytest PATH` collects them too. Exit
+    status 0 when all have passed, 1 when one has failed, 2 where a file cannot be used or there is
+    no test.
+    """
+    for path in takewhile(lambda word: not word.startswith("-"), paths or ()):
+        if not Path(path.partition("::")[0]).exists():
+            raise InputError(f"{path}: no such file or folder")
+    arguments = ["-o", "python_files=", "-o", "junit_suite_name=krl"]
+    for option, value in (
+        ("-k", select),
+        ("-n", processes),
+        ("--krl-executor", executor and executor.value),
+        ("--junitxml", junit),
+        ("--krl-cov-html", cov_html),
+        ("--krl-lcov", lcov),
+    ):
+        arguments += [] if value is None else [option, str(value)]
+    arguments += ["-x"] * stop + ["--krl-update"] * update
+    with expected_extras("pytest", *ARM):
+        import pytest
+
+        installed = metadata.entry_points(group="pytest11")
+        if all(one.value != _PLUGIN for one in installed):  # a checkout that was not installed
+            arguments += ["-p", _PLUGIN]
+        status = int(pytest.main([*arguments, *(paths or ["."])]))
+    if status == _NONE:
+        raise InputError("no test of a robot program there: test_*.toml or test_*.src")
+    return status if status in (_PASSED, _FAILED) else 2

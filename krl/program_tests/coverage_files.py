@@ -1,0 +1,37 @@
+"""Joins what tests have executed with the texts of the programs, for the page and for lcov."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from interp.testing.coverage import CoverageRecord, coverage_of
+from reports.coverage_page import CoveredFile
+from support.files.decode import decode
+from support.files.untrusted import read_bytes
+
+__all__ = ["covered_files"]
+
+
+def covered_files(records: Sequence[CoverageRecord]) -> list[CoveredFile]:
+    """The files with statements, by paths from the working folder where they lie below it."""
+    files = []
+    for path, one in coverage_of(records).items():
+        if one["lines"]:
+            files.append(CoveredFile(_shown(path), _text(Path(path)), **one))
+    return files
+
+
+def _shown(path: str) -> str:
+    file = Path(path).resolve()
+    here = Path.cwd()
+    return (file.relative_to(here) if file.is_relative_to(here) else file).as_posix()
+
+
+def _text(path: Path) -> str:
+    """The text of a file; empty where it has gone or cannot be read any more."""
+    try:
+        found = decode(read_bytes(path))
+    except OSError:
+        return ""
+    return "" if isinstance(found, str) else found.text

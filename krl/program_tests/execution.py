@@ -1,0 +1,271 @@
+"""Runs tests of robot programs: prepares the program of a test file, runs a test, judges it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import Any, Final
+
+from conformance.evaluation.evaluator import Check, evaluate_ending, evaluate_run
+from conformance.evaluation.execution import observed
+from conformance.evaluation.observation import Observation
+from conformance.suite.expectations import Expectation, ExpectationError
+from grammar.syntax.source import Source
+from interp.controller.input_script import ScriptError
+from interp.controller.profile import Profile, ProfileError
+from interp.executors import Prepared, available
+from interp.program.load import CheckedProgram, load
+from interp.robot.simulation.scene import SceneError, read_scene
+from interp.session import RunResult, RunSetup, run_program
+from interp.testing.coverage import Coverage, CoverageRecord
+from interp.testing.drivers import VALUES, Driver, DriverError, with_drivers
+from interp.values.faults import LinkError
+from interp.values.json_form import to_json
+from krl.errors import InputError
+from krl.program_loading import project_root, read_sources
+from krl.program_tests.recording import compared, recording_of
+from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
+from support.files.untrusted import read_text
+
+__all__ = ["Outcome", "run_test"]
+
+_WORDS: Final = re.compile(r"[A-Za-z_$][\w$]*")
+_ROOT: Final = re.compile(r"value ([A-Za-z_]\w*)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a test: what was not as expected, and which lines it has executed.
+
+    ``failures`` are lines to be printed, none where it has passed. ``files`` gives the file behind
+    each path that ``coverage`` names.
+    """
+
+    failures: tuple[str, ...]
+    coverage: CoverageRecord
+    files: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Project:
+    """The program of a file without tests, and the files it comes from by path."""
+
+    program: CheckedProgram
+    files: Mapping[str, str]
+    coverage: Coverage
+
+
+def run_test(
+    test: ProgramTest, others: Sequence[ProgramTest], *, executor: str | None, update: bool
+) -> Outcome:
+    """Run a test; ``others`` are those of its file, whose program is prepared at once.
+
+    With ``update`` what happens is recorded instead of being compared. Raises `TestFileError` for
+    a test that cannot be run.
+    """
+    try:
+        project = _project(test.program, test.path)
+        kin = [
+            one for one in others if (one.program, one.stand_ins) == (test.program, test.stand_ins)
+        ]
+        prepared, errors = _with_drivers(tuple(kin))
+        place = kin.index(test)
+        if place in errors:
+            raise TestFileError(f"{test.path}:{_line_of(test, errors[place])}: {errors[place]}")
+        setup = _setup(test, executor or available()[-1])
+        done = run_program(_beginning(prepared, _driver_name(place)), setup)
+    except (ScriptError, LinkError, InputError, SceneError, ProfileError) as error:
+        raise TestFileError(f"{test.path}:{test.line}: {error}") from error
+    units = project.program.units.values()
+    lengths = {one.module.path: len(one.source.text.splitlines()) for one in units}
+    failures = list(_failures(test, project.program, done, _seen(done, setup, lengths)))
+    if test.is_recorded:
+        failures += compared(test, recording_of(done, lengths), update=update)
+    coverage = project.coverage.of(done.events, _replaced(test, project))
+    return Outcome(tuple(failures), coverage, project.files)
+
+
+def _seen(done: RunResult, setup: RunSetup, lengths: Mapping[str, int]) -> Observation:
+    """What was seen of a run; what drivers did has no line."""
+    seen = observed(done, setup)
+    events = (
+        one if one.line <= lengths.get(one.file, 0) else replace(one, file="", line=0)
+        for one in seen.events
+    )
+    return replace(seen, events=tuple(events))
+
+
+def _setup(test: ProgramTest, executor: str) -> RunSetup:
+    return RunSetup(
+        executor=executor,
+        robot="kinematic",
+        profile=Profile.load(test.profile or "kss8"),
+        script=test.script,
+        submit=test.submit,
+        is_full=True,
+        until=round(test.seconds * 1e6),
+        scene=None if test.scene is None else read_scene(test.scene),
+        is_tolerant=True,
+    )
+
+
+# ---------------------------------------------------------------------------------- the program
+
+
+@lru_cache(maxsize=4)
+def _project(path: Path, tests: Path) -> _Project:
+    """The project of a program and of the tests in KRL that lie elsewhere."""
+    sources, main, left = read_sources(path)
+    root = project_root(path)
+    files = {source.path: str(root / source.path) for source in sources}
+    if tests.suffix.lower() == ".src" and tests.resolve() != path.resolve():
+        (own,) = (one for one in read_sources(tests)[0] if one.path.endswith(tests.name))
+        main = str(PurePosixPath(main).with_name(tests.name))
+        sources.append(Source(own.text, main))
+    program = load(sources, main, strict=False, stands_in=True, unread=left)
+    counted = [path for path in files if not PurePosixPath(path).name.lower().startswith("test_")]
+    return _Project(program, files, Coverage(program, counted))
+
+
+def _driver_name(place: int) -> str:
+    return f"KRL_TEST_{place + 1}"
+
+
+@lru_cache(maxsize=8)
+def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int, str]]:
+    """The program with a driver for each of some tests, and why tests can have none, by place."""
+    program = _project(tests[0].program, tests[0].path).program
+    stand_ins = dict(tests[0].stand_ins)
+    errors: dict[int, str] = {}
+    drivers = []
+    for place, test in enumerate(tests):
+        call = test.call or program.start().name
+        driver = Driver(_driver_name(place), test.before, call)
+        try:
+            with_drivers(program, [driver], stand_ins)
+            drivers.append(driver)
+        except DriverError as error:
+            errors[place] = str(error)
+    made = with_drivers(program, drivers, stand_ins if drivers else {})
+    loaded = load(made, program.main.module.path, strict=False, stands_in=True)
+    known = {one.name.upper() for one in program.stand_ins}
+    unknown = {one.name.upper() for one in loaded.stand_ins} - known
+    written = [text for _, bodies in tests[0].stand_ins for body in bodies for text in body]
+    for place, test in enumerate(tests):
+        words = _WORDS.findall(" ".join((*test.before, test.call, *written)))
+        lacking = [word for word in words if word.upper() in unknown]
+        if lacking:
+            errors[place] = f"'{lacking[0]}' is declared nowhere"
+    return Prepared(loaded), errors
+
+
+def _line_of(test: ProgramTest, error: str) -> int:
+    """The line of a test file that has what an error quotes, else that of the test."""
+    quoted = re.search(r"'([\w$.]+)", error)
+    lines = read_text(test.path, "utf-8-sig").splitlines()
+    for number in (*range(test.line, len(lines) + 1), *range(1, test.line)) if quoted else ():
+        if quoted and re.search(rf"\b{re.escape(quoted[1])}\b", lines[number - 1]):
+            return int(number)
+    return test.line
+
+
+def _beginning(prepared: Prepared, routine: str) -> Prepared:
+    """The same program, compiled once, that begins with another routine."""
+    made = copy(prepared)
+    made.routine = routine
+    return made
+
+
+def _replaced(test: ProgramTest, project: _Project) -> Mapping[str, range]:
+    """The lines of routines that something stood in for."""
+    found = {}
+    for routine in project.program.routines.values():
+        if routine.node.name.key in {name.upper() for name, _ in test.stand_ins}:
+            source = routine.unit.source
+            first, last = (source.place(place)[0] for place in routine.node.span)
+            found[routine.unit.module.path] = range(first, last + 1)
+    return found
+
+
+# ---------------------------------------------------------------------------------- judging
+
+
+def _failures(
+    test: ProgramTest, program: CheckedProgram, done: RunResult, seen: Observation
+) -> Iterator[str]:
+    names = [name for one in test.expected for name in (*one.names, *_ROOT.findall(one.text))]
+    seen = replace(seen, values=_values(names, done))
+    read: list[Expectation] = []
+    lines: list[int] = []
+    for stated in test.expected:
+        try:
+            one = stated.read(seen.values)
+            read.append(replace(one, file=_path(stated, program)))
+            lines.append(stated.line)
+        except (ExpectationError, LookupError) as error:
+            yield from _told(test, stated.line, stated.text, str(error.args[0]))
+    for line, check in zip(lines, evaluate_run(read, seen), strict=True):
+        if check.state != "met":
+            yield from _told(test, line, check.text, check.actual or "nothing", program, check)
+    for check in evaluate_ending(read, seen, program.main.module.path):
+        yield from _told(test, test.line, check.text, check.actual, program, check)
+    for at, reason in done.controller.skipped_motions:
+        place = f"{at.file}:{at.line}: {reason}"
+        yield from _told(test, test.line, "all motions can be planned", place)
+    for touched in done.observations:
+        if not touched.is_estimate:
+            yield from _told(test, test.line, "nothing is touched", str(touched))
+
+
+def _told(
+    test: ProgramTest,
+    line: int,
+    expected: str,
+    seen: str,
+    program: CheckedProgram | None = None,
+    check: Check | None = None,
+) -> Iterator[str]:
+    yield f"{test.path}:{line}: {test.name}"
+    yield f"    expected: {expected}"
+    yield f"    seen:     {seen}"
+    if program is not None and check is not None and check.line:
+        yield f"    line:     {check.file}:{check.line}: {_code(program, check.file, check.line)}"
+
+
+def _code(program: CheckedProgram, file: str, line: int) -> str:
+    """A line of a program without what stands behind it; empty where there is none."""
+    for unit in program.units.values():
+        if unit.module.path == file:
+            lines = unit.source.text.splitlines()
+            return lines[line - 1].partition(";>")[0].strip() if 0 < line <= len(lines) else ""
+    return ""
+
+
+def _path(stated: Expected, program: CheckedProgram) -> str:
+    """The path of the file that an expectation is about; raises `LookupError`."""
+    wanted = stated.about[0].upper()
+    paths = [unit.module.path for unit in program.units.values()]
+    found = (
+        [path for path in paths if f"/{path}".upper().endswith(f"/{wanted}")] if wanted else [""]
+    )
+    if not found:
+        raise LookupError(f"there is no file {stated.about[0]}")
+    return found[0]
+
+
+def _values(names: Iterable[str], done: RunResult) -> dict[str, Any]:
+    """The values of variables once the run is over, as the first file sees them."""
+    values: dict[str, Any] = {}
+    if not names:
+        return values
+    looker: Any = done.executor.companion(VALUES)
+    looker.advance()
+    for name in names:
+        seen = looker.look(name)
+        if seen is not None:
+            values[name.upper()] = None if seen.value is None else to_json(seen.value)
+    return values

@@ -1,0 +1,151 @@
+"""pytest plug-in: ``test_*.toml`` and ``test_*.src`` are tests of robot programs.
+
+It comes with the installed package, so ``pytest tests/cell`` collects them. Nothing of the packages
+that run programs is imported before there is such a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from krl.program_tests.test_files import ProgramTest
+
+__all__ = ["ProgramTestFile", "ProgramTestItem"]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The options of `krl test`, for pytest."""
+    group = parser.getgroup("krl", "tests of robot programs in KRL")
+    group.addoption("--krl-executor", choices=("tree", "vm", "native"), help="who executes them")
+    group.addoption("--krl-update", action="store_true", help="record what tests do anew")
+    group.addoption("--krl-cov-html", type=Path, metavar="DIR", help="page of lines and branches")
+    group.addoption("--krl-lcov", type=Path, metavar="FILE", help="coverage in the form of lcov")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Sum up coverage in the process that reports, where it is asked for."""
+    if config.option.krl_cov_html is not None or config.option.krl_lcov is not None:
+        config.pluginmanager.register(_Coverage(config), "krl_coverage")
+
+
+def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTestFile | None:
+    """A file that `krl.program_tests.test_files` takes for one of tests."""
+    if not file_path.name.lower().startswith("test_") or file_path.suffix.lower() not in (
+        ".toml",
+        ".src",
+    ):
+        return None
+    from krl.program_tests.test_files import is_test_file
+
+    if not is_test_file(file_path):
+        return None
+    found: ProgramTestFile = ProgramTestFile.from_parent(parent, path=file_path)
+    return found
+
+
+class ProgramTestFile(pytest.File):
+    """A test file, with an item a test."""
+
+    @cached_property
+    def tests(self) -> tuple[ProgramTest, ...]:
+        """What it holds; raises `krl.program_tests.test_files.TestFileError`."""
+        from krl.program_tests.test_files import read_tests
+
+        return read_tests(self.path)
+
+    def collect(self) -> Iterator[ProgramTestItem]:
+        """The items; `pytest.Collector.CollectError` for a file that cannot be used."""
+        from krl.program_tests.test_files import TestFileError
+
+        try:
+            tests = self.tests
+        except TestFileError as error:
+            raise self.CollectError(str(error)) from error
+        for test in tests:
+            yield ProgramTestItem.from_parent(self, name=test.name, test=test)
+
+
+class _Failed(Exception):
+    """A test has failed; its text is what is printed."""
+
+
+class ProgramTestItem(pytest.Item):
+    """A test of a robot program."""
+
+    def __init__(self, *, test: ProgramTest, **rest: Any) -> None:
+        super().__init__(**rest)
+        self.test = test
+        self.coverage: Any = None
+
+    def runtest(self) -> None:
+        """Run it; what was not as expected is raised as one text."""
+        from krl.program_tests.execution import run_test
+        from krl.program_tests.test_files import TestFileError
+
+        file = self.getparent(ProgramTestFile)
+        assert file is not None, "items are made by files"
+        options = self.config.option
+        try:
+            outcome = run_test(
+                self.test,
+                file.tests,
+                executor=options.krl_executor,
+                update=options.krl_update,
+            )
+        except TestFileError as error:
+            raise _Failed(str(error)) from error
+        if options.krl_cov_html is not None or options.krl_lcov is not None:
+            self.coverage = {outcome.files[path]: one for path, one in outcome.coverage.items()}
+        if outcome.failures:
+            raise _Failed("\n".join(outcome.failures))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *_: Any) -> Any:
+        """What was expected and seen, without a traceback through our own code."""
+        if isinstance(excinfo.value, _Failed):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where it stands, and its name."""
+        return self.path, self.test.line - 1, self.name
+
+
+class _Coverage:
+    """Takes what each test has executed along with its report, and writes what all have."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
+        self._records: list[Any] = []
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """A report goes from the process of a test to the one that reports."""
+        report = yield
+        if isinstance(item, ProgramTestItem) and report.when == "call":
+            report.krl_coverage = item.coverage
+        return report
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """A test has run, here or in another process."""
+        if getattr(report, "krl_coverage", None):
+            self._records.append(report.krl_coverage)
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Write page and file, and name them."""
+        from krl.program_tests.coverage_files import covered_files
+        from reports.coverage_page import write_coverage_page, write_lcov
+
+        files = covered_files(self._records)
+        html, lcov = self._config.option.krl_cov_html, self._config.option.krl_lcov
+        if html is not None:
+            page = write_coverage_page(files, len(self._records), html)
+            terminalreporter.write_line(f"coverage: {page}")
+        if lcov is not None:
+            write_lcov(files, lcov)
+            terminalreporter.write_line(f"coverage: {lcov}")

@@ -1,0 +1,125 @@
+"""What tests have executed of robot programs: a page without script, and a file for lcov."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.embedding import embedded_json, printable
+from reports.number_format import percent, share
+from reports.page import render
+from support.files.atomic_write import write_atomic
+
+__all__ = ["CoveredFile", "write_coverage_page", "write_lcov"]
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredFile:
+    """A file with its text, and how often each line, branch (by line) and routine was executed."""
+
+    path: str
+    text: str
+    lines: Mapping[int, int]
+    branches: Mapping[int, Mapping[str, int]]
+    routines: Mapping[str, tuple[int, int]]
+
+    @property
+    def ways(self) -> list[int]:
+        """How often each branch was taken."""
+        return [count for ways in self.branches.values() for count in ways.values()]
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """A line of a file; ``state`` is ran, part, missed, or empty for what is no statement."""
+
+    number: int
+    text: str
+    state: str
+    count: str
+    note: str
+
+
+def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) -> Path:
+    """Write ``folder``/index.html and return its path; raises OSError where it cannot be."""
+    ways = [count for one in files for count in one.ways]
+    lines = [count for one in files for count in one.lines.values()]
+    view = {
+        "figures": [_figure("statements", lines), _figure("branches", ways), _tests(tests)],
+        "files": [_file(one) for one in sorted(files, key=lambda one: one.path)],
+    }
+    page = render(
+        "coverage.html.j2",
+        script="",
+        styles=["page.css", "coverage.css"],
+        data=embedded_json({}),
+        view=view,
+    )
+    return write_atomic(folder / "index.html", page)
+
+
+def write_lcov(files: Sequence[CoveredFile], target: Path) -> None:
+    """Write what genhtml, Codecov and editors read; the file appears whole or not at all."""
+    lines = (line for one in files for line in _lcov(one))
+    write_atomic(target, "\n".join(["TN:", *lines, ""]))
+
+
+def _lcov(one: CoveredFile) -> Iterator[str]:
+    yield f"SF:{one.path}"
+    for name, (line, _) in one.routines.items():
+        yield f"FN:{line},{name}"
+    for name, (_, count) in one.routines.items():
+        yield f"FNDA:{count},{name}"
+    yield f"FNF:{len(one.routines)}"
+    yield f"FNH:{sum(1 for _, count in one.routines.values() if count)}"
+    for line, ways in sorted(one.branches.items()):
+        is_reached = one.lines.get(line, 0) > 0
+        for way, count in enumerate(ways.values()):
+            yield f"BRDA:{line},0,{way},{count if is_reached else '-'}"
+    yield f"BRF:{len(one.ways)}"
+    yield f"BRH:{sum(1 for count in one.ways if count)}"
+    for line, count in sorted(one.lines.items()):
+        yield f"DA:{line},{count}"
+    yield f"LF:{len(one.lines)}"
+    yield f"LH:{sum(1 for count in one.lines.values() if count)}"
+    yield "end_of_record"
+
+
+def _figure(label: str, counts: Sequence[int]) -> Mapping[str, Any]:
+    ran = sum(1 for count in counts if count)
+    return {
+        "label": label,
+        "value": percent(ran, len(counts)),
+        "share": share(ran, len(counts)),
+        "note": f"{ran:,} of {len(counts):,} were executed",
+    }
+
+
+def _tests(tests: int) -> Mapping[str, Any]:
+    return {"label": "tests", "value": f"{tests:,}", "share": None, "note": "have run"}
+
+
+def _file(one: CoveredFile) -> Mapping[str, Any]:
+    ran = sum(1 for count in one.lines.values() if count)
+    taken = sum(1 for count in one.ways if count)
+    return {
+        "path": printable(one.path),
+        "statements": percent(ran, len(one.lines)),
+        "branches": percent(taken, len(one.ways)),
+        "share": share(ran, len(one.lines)),
+        "is_whole": ran == len(one.lines) and taken == len(one.ways),
+        "missing": len(one.lines) - ran,
+        "lines": [_line(one, *pair) for pair in enumerate(one.text.splitlines(), start=1)],
+    }
+
+
+def _line(one: CoveredFile, number: int, text: str) -> _Line:
+    count = one.lines.get(number)
+    shown = printable(text.expandtabs(4))
+    if count is None:
+        return _Line(number, shown, "", "", "")
+    missing = [way for way, taken in one.branches.get(number, {}).items() if not taken]
+    if not count:
+        return _Line(number, shown, "missed", "0", "never executed")
+    note = f"never: {', '.join(missing)}" if missing else ""
+    return _Line(number, shown, "part" if missing else "ran", f"{count:,}", note)

@@ -1,0 +1,67 @@
+"""The plug-in gives tests of robot programs to pytest, and `krl test` runs it."""
+
+import shutil
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from krl.cli import main
+
+pytest_plugins = ["pytester"]
+
+CELL = Path(__file__).parents[3] / "examples" / "cell-tests"
+OPTIONS = ("-q", "-p", "krl.program_tests.pytest_plugin", "-p", "no:cacheprovider")
+
+
+def test_the_cell_of_the_tutorial_passes_as_documented(pytester: pytest.Pytester) -> None:
+    """All its tests pass; page and lcov show what ran, and what the tests leave out."""
+    shutil.copytree(CELL, pytester.path / "cell")
+    options = (*OPTIONS, "--junitxml=j.xml", "--krl-cov-html=cov", "--krl-lcov=cov.info")
+    result = pytester.runpytest_inprocess(*options, "cell/tests")
+    result.assert_outcomes(passed=6)
+    cases = ElementTree.parse(pytester.path / "j.xml").findall(".//testcase")
+    assert "two parts lie on the tray" in [case.get("name") for case in cases]
+    assert {"cell.tests.test_pick_place.toml", "cell.tests.test_gripper.src"} == {
+        case.get("classname") for case in cases
+    }
+    lcov = (pytester.path / "cov.info").read_text(encoding="utf-8")
+    assert "SF:cell/KRC/R1/Program/pick_place.src" in lcov
+    assert "DA:23,0" in lcov  # HALT behind a gripper that does not open
+    assert "test_gripper.src" not in lcov
+    page = (pytester.path / "cov" / "index.html").read_text(encoding="utf-8")
+    assert "never executed" in page
+
+
+def test_failures_and_errors_have_no_traceback(pytester: pytest.Pytester) -> None:
+    """A failure says what was expected and seen, a file that cannot be used its one line."""
+    Path("work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
+    text = "[[test]]\nname = 'x'\nexpect = ['out 1 never']\n"
+    Path("test_work.toml").write_text(text, encoding="utf-8")
+    Path("test_bad.toml").write_text("[[test]]\nnaem = 'x'\n", encoding="utf-8")
+    result = pytester.runpytest_inprocess(*OPTIONS, "--continue-on-collection-errors")
+    result.assert_outcomes(failed=1, errors=1)
+    result.stdout.fnmatch_lines(
+        ["*test_bad.toml:2: naem is no key here*", "*expected: out 1 never", "*seen: *work.src:2*"]
+    )
+    assert "Traceback" not in result.stdout.str()
+
+
+def test_krl_test_has_the_exit_status_of_all_commands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """0 where all pass, 1 where one fails, 2 without tests or for a path that is not there."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:cacheprovider")
+    Path("work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
+    assert 2 == main(["test"])
+    assert 2 == main(["test", "gone"])
+    text = "[[test]]\nname = '{}'\nexpect = ['out 1 {}']\n"
+    Path("test_work.toml").write_text(
+        text.format("good", "TRUE") + text.format("bad", "never"), encoding="utf-8"
+    )
+    Path("test_python.py").write_text("assert False\n", encoding="utf-8")
+    assert 1 == main(["test"])
+    assert 0 == main(["test", ".", "-k", "good", "--junit", "j.xml", "--", "-q"])
+    assert 'testsuite name="krl"' in Path("j.xml").read_text(encoding="utf-8")
+    assert "gone: no such file or folder" in capfd.readouterr().err
