@@ -28,6 +28,7 @@ _OWN: Final = {
     "spline_place": ("a spline motion is not allowed in an interrupt routine", "SPL-11"),
     "submit_motion": ("a submit program cannot move the robot", "SUB-05"),
     "trigger_priority": ("a trigger that calls a routine needs a valid PRIO", "TRG-06"),
+    "trigger_path": ("a trigger with PATH stands before a motion that has no path", "TRG-04"),
     "trigger_range": ("a trigger is too far away from its point", "TRG-03"),
     "unsupported": ("the routine acts on something that is not simulated", "FCT-11"),
     "motion_kind": ("this kind of motion is not simulated", "MOT-01"),

@@ -52,6 +52,9 @@ _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
 #: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].
 _FARTHEST: Final = 10_000_000
 _PATHS: Final = frozenset({"LIN", "CIRC", "SLIN", "SCIRC"})
+#: Motions that a trigger with PATH cannot refer to [TRG-04]; in a run with stand-ins it counts
+#: along the way of the tool.
+_AXIS_MOTIONS: Final = frozenset({"PTP", "PTP_REL"})
 _STATUS_BITS: Final = 7
 #: The message that a motion leads to where the arm is [MOT-11].
 _LENGTH_ZERO: Final = 3171
@@ -162,6 +165,9 @@ class MotionQueue:
                     self._check_trigger(item)
             planned = self._builder.block(request, triggers)
         else:
+            has_path = any(trigger.place_kind == "PATH" for trigger in triggers)
+            if has_path and request.kind in _AXIS_MOTIONS and not self._state.profile.is_tolerant:
+                raise own_fault("trigger_path")
             planned = self._builder.build(request, triggers)
         self._load(task, planned)
 
