@@ -246,14 +246,15 @@ def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
     return ContactCheck(Cell(machine, setup.scene or Scene(), setup.robot_file))
 
 
-#: Virtual time in µs from one report of progress to the next.
-_REPORT = 5_000_000
+#: Virtual time in µs from one report of progress to the next, while the arm moves and else.
+_REPORT, _LONG_REPORT = 1_000_000, 5_000_000
 
 
 def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]) -> RunOutcome:
     now = moved = known = 0
     while True:
-        now = min(now + _REPORT, setup.until)
+        report = _REPORT if moved == now else _LONG_REPORT
+        now = min(now + report, moved + setup.patience, setup.until)
         outcome = controller.run(now)
         on_time(outcome.time)
         if outcome.ending != "time" or now >= setup.until or outcome.time < now:
