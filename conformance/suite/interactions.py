@@ -32,7 +32,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
         "override",
         "proceed",
         "resume",
-        "resume_nested",
+        "resume_deep",
         "operator",
     ),
     "when": ("0.15", "0.42"),
@@ -112,7 +112,7 @@ _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
         "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [TYP-13]",
     ),
     "resume": ("BRAKE", "RESUME ;> resume after in 1 [INT-10]"),
-    "resume_nested": (
+    "resume_deep": (
         "INTERRUPT ON 4",
         "$FLAG[1] = TRUE",
         "WAIT SEC 1",
@@ -179,7 +179,7 @@ def _front(row: Row) -> Iterator[str]:
     yield f";@ rule: {', '.join([first, *others])}"
     parts = (row["trigger"], "trigger"), (row["behind"], "behind"), (row["beside"], "too")
     words = ", ".join(f"{value} {what}" for value, what in parts if value != "none")
-    words = f"{row['path']}, {row['act']} after {row['when']} s; {words or 'nothing else'}; "
+    words = f"{row['path']}, {row['act']} at {row['when']} s; {words or 'nothing else'}; "
     words += f"{row['override']} %, {row['advance']} ahead"
     yield f";@ title: {words}".replace("_", " ")
     yield ";@ phase: run"
@@ -203,7 +203,7 @@ def _main(name: str, row: Row) -> Iterator[str]:
     yield f"DEF {name}()"
     if row["act"] != "operator":
         yield "  INTERRUPT DECL 5 WHEN $IN[1] DO act()"
-    if "nested" in row["act"]:
+    if row["act"] in ("nested", "resume_deep"):
         yield "  INTERRUPT DECL 4 WHEN $FLAG[1] DO higher()"
     yield "  $TOOL = $NULLFRAME"
     yield "  $BASE = $NULLFRAME"
@@ -227,7 +227,7 @@ def _main(name: str, row: Row) -> Iterator[str]:
         if not is_left and row["act"] != "halt":
             yield "  $FLAG[2] = TRUE ;> interrupt 5 times 1 [INT-01]"
         yield "END"
-    if "nested" in row["act"]:
+    if row["act"] in ("nested", "resume_deep"):
         yield "DEF higher()"
         if is_left:
             yield "  BRAKE"
