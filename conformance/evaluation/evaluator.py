@@ -114,8 +114,12 @@ def _said(one: Expectation, seen: Observation) -> Check:
 
 
 def _recorded(one: Expectation, seen: Observation) -> Check:
-    """What a controller says has its own numbers: ours are a line where it complains."""
-    there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
+    """What a controller says has its own numbers: ours are a line where it complains.
+
+    It may notice only at the first word of the line behind.
+    """
+    places = (one.line, one.line + 1)
+    there = [each for each in seen.findings if each.file == one.file and each.line in places]
     actual = _list(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
@@ -136,6 +140,8 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
     said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
     if case.phase == "parse" and said:
         return  # only the first failure is specified
+    if seen.watched is not None:
+        said |= {(file, line + 1) for file, line in said}
     for found in seen.findings:
         if found.severity == "error" and (found.file, found.line) not in said:
             text = "no error but those expected"

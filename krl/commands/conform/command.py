@@ -30,7 +30,7 @@ def conform(
         typer.Argument(
             metavar="[SELECT...]",
             help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths; "
-            "default: all. Or: import FILE.",
+            "default: all. Or: import FILE, export FILE.zip [SELECT...].",
         ),
     ] = None,
     executor: Annotated[
@@ -77,7 +77,8 @@ def conform(
     """Run conformance cases, compare each with what it expects and executors with one another.
 
     Exit status 1 where a case failed. 'krl conform import FILE' evaluates a recording that was made
-    on a controller; conformance/CASES.md says how to make one.
+    on a controller; conformance/CASES.md says how to make one. 'krl conform export FILE.zip' writes
+    the cases with what they expect as JSON, and a reference result, for executors of others.
     """
     words = select or []
     check_files(json_file, junit)
@@ -90,7 +91,7 @@ def conform(
             from krl.commands.conform.laws import check_laws
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
-        if fault is None or list_ or words[:1] == ["import"]:
+        if fault is None or list_ or words[:1] in (["import"], ["export"]):
             return _conform(
                 words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
             )
@@ -130,7 +131,9 @@ def _conform(
     fault: str = "",
 ) -> int:
     if words[:1] == ["import"]:
-        return _import(words[1:], json_file)
+        return _import(words[1:], json_file, junit, html)
+    if words[:1] == ["export"]:
+        return _export(words[1:], jobs, scheduler)
     cases = _cases(words)
     if list_:
         return _list(cases, json_file)
@@ -296,9 +299,27 @@ def _lint(words: Iterable[str]) -> int:
     return FINDINGS if found else FINE
 
 
-def _import(words: Sequence[str], json_file: Path | None) -> int:
+def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> int:
+    """Write the cases, what they expect and what the tree interpreter does with them."""
+    from conformance.export import write_export
+
+    if not words or not words[0].endswith(".zip"):
+        raise InputError("krl conform export takes the name of an archive, FILE.zip")
+    path = Path(words[0])
+    check_files(path)
+    results = _run(_cases(words[1:]), ["tree"], ["kinematic"], jobs, scheduler)
+    try:
+        write_export(path, results, metadata.version("krl-workbench"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    typer.echo(one_line(f"{path}: {len(results)} cases, their expectations, a reference result"))
+    return FINDINGS if any(one.verdict == "fail" for one in results) else FINE
+
+
+def _import(
+    words: Sequence[str], json_file: Path | None, junit: Path | None, html: Path | None
+) -> int:
     """Judge a recording: what it fails, and what it says of rules that are unconfirmed."""
-    from conformance.record import record_of
     from conformance.recording import Recording, RecordingError, answers, evaluate_recording
     from conformance.suite.case import CaseError, find_cases
 
@@ -313,11 +334,8 @@ def _import(words: Sequence[str], json_file: Path | None) -> int:
     if not results:
         raise InputError(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
-    if json_file is not None:
-        version = metadata.version("krl-workbench")
-        robots = sorted({result.robot for one in results for result in one.results})
-        names = [recording.controller]
-        write_json(record_of(results, names, robots, version=version, seconds=seconds), json_file)
+    robots = sorted({result.robot for one in results for result in one.results})
+    _write(results, [recording.controller], robots, seconds, json_file, junit, html, "")
     typer.echo(one_line(f"recorded on {recording.controller}"))
     for answer in answers(results):
         told = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
