@@ -1,1 +1,20 @@
-"""The `krl` command: reads arguments, calls the packages below and prints."""
+"""The workbench for KRL: the command `krl`, and `check`, `run`, `recover` and `load_backup`.
+
+What is imported from here is loaded when it is first asked for, as the command starts quickly.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from krl.library import check, load_backup, recover, run
+
+__all__ = ["check", "load_backup", "recover", "run"]
+
+
+def __getattr__(name: str) -> Any:
+    """A function of `krl.library`."""
+    if name not in __all__:
+        raise AttributeError(f"module 'krl' has no attribute {name!r}")
+    from krl import library
+
+    return getattr(library, name)

@@ -1,12 +1,14 @@
-"""Makes docs/commands.md: every command with its arguments and options, from the commands.
+"""Makes docs/commands.md from the commands, and docs/python-reference.md from `krl.library`.
 
-``python -m krl.reference --write`` makes it anew, ``--check`` says whether it is up to date.
+``python -m krl.reference --write`` makes them anew, ``--check`` says whether they are up to date.
 """
 
 import argparse
+import dataclasses
+import inspect
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -15,9 +17,16 @@ import typer
 
 from support.files.atomic_write import write_atomic
 
-__all__ = ["PAGE", "reference"]
+__all__ = ["LIBRARY_PAGE", "PAGE", "library_reference", "reference"]
 
 PAGE = Path(__file__).parents[1] / "docs" / "commands.md"
+LIBRARY_PAGE = PAGE.with_name("python-reference.md")
+_QUOTED_TYPE = re.compile(r"""(: |-> )(?:'([^']*)'|"([^"]*)")""")
+_LIBRARY_HEAD = """# The library
+
+<!-- made by python -m krl.reference --write -->
+
+"""
 _HEAD = """# Commands
 
 <!-- made by python -m krl.reference --write -->
@@ -33,6 +42,34 @@ def reference() -> str:
 
     command = typer.main.get_command(app())
     return _HEAD + "".join(_command("krl", command))
+
+
+def library_reference() -> str:
+    """The page of `krl.library`, from its docstrings."""
+    from krl import library
+
+    parts = [getattr(library, name) for name in library.__all__]
+    functions = [one for one in parts if inspect.isfunction(one)]
+    classes: list[Any] = [one for one in parts if inspect.isclass(one)]
+    said = [_documented(f"krl.{one.__name__}", one) for one in functions]
+    for one in classes:
+        said.append(f"\n## {one.__name__}\n\n{_prose(inspect.getdoc(one))}\n")
+        fields = [field for field in dataclasses.fields(one) if not field.name.startswith("_")]
+        said.append("\nFields: " + ", ".join(f"`{field.name}: {field.type}`" for field in fields))
+        said.append(".\n")
+        for name, member in vars(one).items():
+            if isinstance(member, property):
+                said.append(f"\n`{name}`: {_prose(inspect.getdoc(member))}\n")
+            elif inspect.isfunction(member) and not name.startswith("_"):
+                said.append(_documented(name, member, "###"))
+    return _LIBRARY_HEAD + _prose(library.__doc__, keeps_code=True) + "\n" + "".join(said)
+
+
+def _documented(name: str, function: Callable[..., Any], mark: str = "##") -> str:
+    """A function with its signature and what its docstring says."""
+    signature = re.sub(r"\(self(, )?", "(", str(inspect.signature(function)))
+    signature = _QUOTED_TYPE.sub(lambda found: found[1] + (found[2] or found[3]), signature)
+    return f"\n{mark} {name}\n\n```\n{name}{signature}\n```\n\n{_prose(function.__doc__)}\n"
 
 
 def _command(name: str, command: Any) -> Iterator[str]:
@@ -86,26 +123,34 @@ def _told(parameter: Any) -> str:
     return help_text.replace("|", "\\|").replace("<", "&lt;")
 
 
-def _prose(text: str | None) -> str:
-    paragraphs = re.split(r"\n\s*\n", (text or "").strip())
-    return "\n\n".join(" ".join(one.split()) for one in paragraphs)
+def _prose(text: str | None, *, keeps_code: bool = False) -> str:
+    """Paragraphs of one line each; with ``keeps_code``, indented ones are code of Python."""
+    made: list[str] = []
+    for one in re.split(r"\n\s*?\n(?=\s*\S)", (text or "").strip()):
+        if keeps_code and one.startswith("    "):
+            if made[-1] == "::":
+                made.pop()
+            code = inspect.cleandoc(one)
+            made.append(f"```python\n{code}\n```")
+        else:
+            made.append(" ".join(one.split()))
+    return "\n\n".join(made)
 
 
 def main() -> int:
-    """Write the page, or say whether it is up to date."""
+    """Write the pages, or say whether they are up to date."""
     parser = argparse.ArgumentParser(description=__doc__)
     chosen = parser.add_mutually_exclusive_group(required=True)
     chosen.add_argument("--write", action="store_true")
     chosen.add_argument("--check", action="store_true")
     arguments = parser.parse_args()
-    page = reference()
-    if arguments.write:
-        write_atomic(PAGE, page)
-        return 0
-    if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == page:
-        return 0
-    sys.stderr.write(f"{PAGE.name} is stale: python -m krl.reference --write\n")
-    return 1
+    for file, page in ((PAGE, reference()), (LIBRARY_PAGE, library_reference())):
+        if arguments.write:
+            write_atomic(file, page)
+        elif not file.is_file() or file.read_text(encoding="utf-8") != page:
+            sys.stderr.write(f"{file.name} is stale: python -m krl.reference --write\n")
+            return 1
+    return 0
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from grammar.comparison.content import Datum
 from grammar.syntax import ast
 
-__all__ = ["POINT_TYPES", "PointChange", "frame_numbers", "point_change"]
+__all__ = ["POINT_TYPES", "PointChange", "frame_numbers", "numbers_of", "point_change"]
 
 _POSES = frozenset({"FRAME", "POS", "E3POS", "E6POS"})
 _AXES = frozenset({"AXIS", "E3AXIS", "E6AXIS"})
@@ -38,7 +38,7 @@ class PointChange:
 
 def point_change(old: Datum, new: Datum) -> PointChange | None:
     """From one value to another; ``None`` unless both are written out in numbers."""
-    before, after = _numbers(old), _numbers(new)
+    before, after = numbers_of(old), numbers_of(new)
     if before is None or after is None:
         return None
     names = dict.fromkeys([*before, *after])
@@ -59,13 +59,13 @@ def point_change(old: Datum, new: Datum) -> PointChange | None:
 def frame_numbers(data: Mapping[str, Datum], point: str) -> tuple[int | None, int | None]:
     """Tool and base of a point that an inline form has taught: XP1 has them in FP1."""
     form = data.get(f"F{point[1:]}") if point.startswith("X") else None
-    known = _numbers(form) if form else None
+    known = numbers_of(form) if form else None
     numbers = [(known or {}).get(name) for name in ("TOOL_NO", "BASE_NO")]
     tool, base = (None if one is None else int(one) for one in numbers)
     return tool, base
 
 
-def _numbers(datum: Datum) -> dict[str, float] | None:
+def numbers_of(datum: Datum) -> dict[str, float] | None:
     """The components of an aggregate that are numbers; ``None`` for anything else."""
     if not isinstance(datum.value, ast.Aggregate):
         return None

@@ -168,9 +168,19 @@ def _statements(program: CheckedProgram, unit: Unit) -> _Statements:
                 case ast.Switch(branches=branches):
                     cases = {number: f"CASE {number}" for number in range(1, len(branches) + 1)}
                     ways[line] = {**cases, 0: "no CASE" if node.default is None else "DEFAULT"}
+                case ast.For() if _is_passed_through(node):
+                    continue
                 case ast.For() | ast.While():
                     loops[line] = unit.source.place(node.span[1] - 1)[0]
     return _Statements(frozenset(lines), ways, loops, routines)
+
+
+def _is_passed_through(node: ast.For) -> bool:
+    """Whether a loop cannot but be entered: from one number up to another."""
+    first, last = node.first, node.last
+    if not isinstance(first, ast.IntegerLiteral) or not isinstance(last, ast.IntegerLiteral):
+        return False
+    return node.step is None and first.value <= last.value
 
 
 def _blocks(body: Sequence[ast.Statement]) -> Iterator[ast.Statement]:

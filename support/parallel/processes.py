@@ -5,11 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.context import SpawnContext, SpawnProcess
+from types import ModuleType
 from typing import TypeVar, TypeVarTuple
 
 __all__ = ["LocalWorkers", "process_pool"]
@@ -26,10 +28,13 @@ def process_pool(
 
 
 class _Process(SpawnProcess):
-    """A process that hears of no interrupt until it has begun: it would print a traceback."""
+    """A process that hears of no interrupt until it has begun: it would print a traceback.
+
+    Nor does it import the script that this one runs, which without a guard would begin anew there.
+    """
 
     def start(self) -> None:
-        with _interrupts_held():
+        with _interrupts_held(), _script_hidden():
             super().start()
 
 
@@ -37,6 +42,17 @@ class _Context(SpawnContext):
     """How processes are made: 'spawn' behaves the same on every system and copies no threads."""
 
     Process = _Process
+
+
+@contextmanager
+def _script_hidden() -> Iterator[None]:
+    """What is started now finds no main module to import; its tasks are functions of others."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 @contextmanager

@@ -130,6 +130,18 @@ def test_coverage_counts_lines_and_branches(run: Run) -> None:
     assert {0} == {count for line, count in two["lines"].items() if line > 20}
 
 
+def test_a_loop_that_is_always_entered_is_no_branch(write: Write) -> None:
+    """FOR from one number up to another has one way only; down or to a variable it has two."""
+    path = write("[[test]]\nname = 'x'\nexpect = ['ends']\n")
+    head = "FOR i = {}\nENDFOR\n"
+    path.with_name("work.src").write_text(
+        f"DEF work()\nINT i\n{head.format('1 TO 2')}{head.format('2 TO 1')}END\n", encoding="utf-8"
+    )
+    tests = read_tests(path)
+    found = run_test(tests[0], tests, executor=None, update=False).coverage["work.src"]
+    assert {5: {"entered": 0, "zero times": 1}} == found["branches"]
+
+
 def test_a_recording_is_compared_and_told_as_a_diff(write: Write) -> None:
     """What differs from the recorded run stands in the failure, line by line."""
     head = "recorded = true\nio = 'on OUT[1]=TRUE after 0.2 IN[1]=TRUE'\n[[test]]\nname = 'r'\n"

@@ -1,0 +1,329 @@
+"""The workbench in Python, for scripts and notebooks: `check`, `run`, `recover`, `load_backup`.
+
+::
+
+    import krl
+
+    krl.check("D:/backups/cell").to_dataframe().groupby("code").size()
+    krl.run("cell.src", robot="kinematic").path_dataframe().plot("t", ["q1", "q2"])
+
+Results are typed, and `to_dataframe` makes pandas tables of them (extra ``records``). What cannot
+be done raises `krl.errors.InputError` with one sentence. A script needs no guard around its main
+part, although work is shared out to processes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from krl.errors import InputError, as_input_errors
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from interp.controller.trace import TraceEvent
+    from interp.program.load import CheckedProgram
+    from interp.robot.simulation.tracking import PathRecord
+    from interp.session import RunResult, RunSetup
+
+__all__ = [
+    "Backup",
+    "Finding",
+    "Findings",
+    "Point",
+    "Routine",
+    "Run",
+    "Survey",
+    "check",
+    "load_backup",
+    "recover",
+    "run",
+]
+
+PathLike = str | Path
+_COORDINATES = "X Y Z A B C S T A1 A2 A3 A4 A5 A6 E1 E2 E3 E4 E5 E6".split()
+
+
+# ------------------------------------------------------------------------------------- check
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What the check says of a place; lines and columns count from 1."""
+
+    path: str
+    line: int
+    column: int
+    severity: str
+    code: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """The findings of a check in their order, and how many files were checked."""
+
+    findings: tuple[Finding, ...]
+    files: int
+
+    @property
+    def errors(self) -> tuple[Finding, ...]:
+        """Those that a controller would refuse the program for."""
+        return tuple(one for one in self.findings if one.severity == "error")
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """A row a finding."""
+        return _table(self.findings, Finding)
+
+
+def check(
+    *paths: PathLike,
+    complete: bool = False,
+    packages: Sequence[str] = (),
+    jobs: int | None = None,
+) -> Findings:
+    """The findings about files, folders and archives, as `krl check` has them without settings.
+
+    ``complete``: no file is missing; ``packages`` are option packages that are there; ``jobs`` is
+    the number of processes, by default as many as are worth it. Raises `InputError`.
+    """
+    from grammar.check.batch import CheckOptions, check_paths
+    from krl.program_loading import project_paths
+    from support.files.discovery import IngestError
+
+    roots = [Path(path) for path in paths]
+    around = [one for path in roots for one in project_paths(path)]
+    names = tuple(sorted(name.upper() for name in packages))
+    options = CheckOptions(is_complete=complete, packages=names)
+    with as_input_errors(IngestError):
+        report = check_paths(roots, options, around=around, jobs=jobs)
+    findings = (
+        Finding(
+            one.path,
+            one.region.line,
+            one.region.column,
+            one.severity,
+            one.code,
+            one.message,
+        )
+        for one in report.diagnostics
+    )
+    return Findings(tuple(findings), report.files)
+
+
+# ------------------------------------------------------------------------------------- run
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run: how it ended (``end``, ``halt``, ``fault``, ``time`` …), when, and what happened.
+
+    ``at`` is ``file:line`` where a program ended it, ``error`` why; both may be empty. ``events``
+    are those of the trace; ``path`` are the set-points of the arm, ``None`` without a robot.
+    """
+
+    ending: str
+    seconds: float
+    at: str
+    error: str
+    events: tuple[TraceEvent, ...]
+    path: PathRecord | None
+    _whole: tuple[RunResult, CheckedProgram, RunSetup]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """A row an event of the trace: t in µs, task, kind, at, and the fields of its kind."""
+        import pandas as pd
+
+        rows = [
+            {"t": one.time, "task": one.task, "kind": one.kind, "at": one.place, **one.fields}
+            for one in self.events
+        ]
+        return pd.DataFrame(rows, columns=None if rows else ["t", "task", "kind", "at"])
+
+    def path_dataframe(self) -> pd.DataFrame:
+        """A row an interpolation cycle, as `krl run --path` writes it; raises `InputError`."""
+        import pandas as pd
+
+        if self.path is None:
+            raise InputError("the robot none takes no set-points: say robot='kinematic'")
+        return pd.DataFrame(self.path.columns())
+
+    def write_page(self, file: PathLike) -> None:
+        """Write the page of the run."""
+        from interp.run_record import record_of
+        from reports.run_page import write_run_page
+
+        write_run_page(record_of(*self._whole), Path(file))
+
+
+def run(
+    file: PathLike,
+    routine: str | None = None,
+    *,
+    io: str = "",
+    robot: Literal["none", "kinematic", "mujoco"] = "kinematic",
+    executor: Literal["tree", "vm", "native"] | None = None,
+    submit: str | None = None,
+    profile: str = "kss8",
+    seconds: float = 3600.0,
+    full: bool = False,
+    strict: bool = False,
+) -> Run:
+    """A run of a program, as `krl run` does it.
+
+    ``io`` are lines of a script of inputs, or ``"auto"``; ``seconds`` is the most virtual time;
+    ``full`` tells every line and assignment too; with ``strict`` nothing stands in for what the
+    project lacks. Raises `InputError`.
+    """
+    from interp.controller.automatic_inputs import OPERATOR
+    from interp.controller.input_script import Script
+    from interp.controller.profile import Profile
+    from interp.session import RunSetup, available, run_program
+    from interp.values.faults import RuntimeFailure
+    from krl.program_loading import load_program
+
+    with as_input_errors(RuntimeFailure):
+        program, _ = load_program(Path(file), strict=strict, stands_in=not strict)
+        setup = RunSetup(
+            executor=executor or available()[-1],
+            robot=robot,
+            profile=Profile.load(profile),
+            script=Script.read(OPERATOR if io == "auto" else io),
+            routine=routine,
+            submit=submit,
+            is_full=full,
+            until=round(seconds * 1e6),
+            is_tolerant=not strict,
+        )
+        done = run_program(program, setup)
+    outcome = done.outcome
+    return Run(
+        outcome.ending,
+        outcome.time / 1e6,
+        "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}",
+        "" if outcome.error is None else str(outcome.error),
+        tuple(done.events),
+        done.path,
+        (done, program, setup),
+    )
+
+
+# ------------------------------------------------------------------------------------- recover
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What the grammar reads of a corpus; ``record`` is what `krl recover --json` writes.
+
+    `krl.dataframes` makes its other tables: ``dataframes.failures(survey.record)``.
+    """
+
+    files: int
+    parsed: int
+    record: Mapping[str, Any]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """A row a cluster of failures with one cause."""
+        from krl.dataframes import clusters
+
+        return clusters(self.record)
+
+
+def recover(*paths: PathLike, grammar: PathLike | None = None, jobs: int | None = None) -> Survey:
+    """A survey of files, folders and archives, with the causes of what cannot be read.
+
+    ``grammar`` is a .g4 in place of the one in force. Raises `InputError`.
+    """
+    from tempfile import TemporaryDirectory
+
+    from krl.dataframes import CommandError, record
+
+    options = [] if grammar is None else ["--grammar", str(grammar)]
+    options += [] if jobs is None else ["--jobs", str(jobs)]
+    with TemporaryDirectory(prefix="krl-") as folder, as_input_errors(CommandError):
+        found = record("recover", *map(str, paths), "--no-start", "--out", folder, *options)
+    return Survey(found["files"], found["parsed"], found)
+
+
+# ------------------------------------------------------------------------------------- backups
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """A routine of a backup: its file, its first line, and how many lines of code it has."""
+
+    path: str
+    line: int
+    name: str
+    lines: int
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A position of a data list; ``values`` by component, mm and degrees, those that it has."""
+
+    path: str
+    line: int
+    name: str
+    type: str
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Backup:
+    """The KRL files of a backup, their routines and taught points, in the order of the paths."""
+
+    files: tuple[str, ...]
+    routines: tuple[Routine, ...]
+    points: tuple[Point, ...]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """A row a point: path, line, name, type, and a column a component."""
+        import pandas as pd
+
+        rows = [
+            {"path": one.path, "line": one.line, "name": one.name, "type": one.type, **one.values}
+            for one in self.points
+        ]
+        return pd.DataFrame(rows, columns=["path", "line", "name", "type", *_COORDINATES])
+
+    def routines_dataframe(self) -> pd.DataFrame:
+        """A row a routine."""
+        return _table(self.routines, Routine)
+
+
+def load_backup(path: PathLike) -> Backup:
+    """What a folder or an archive of a controller holds. Raises `InputError`.
+
+    Files that cannot be read are left out; of a data list with a mistake, what can be read counts.
+    """
+    from grammar.comparison.content import content_of
+    from grammar.comparison.points import POINT_TYPES, numbers_of
+    from krl.program_loading import sources_below
+
+    contents = [content_of(source) for _, source in sources_below([Path(path)])]
+    contents.sort(key=lambda one: one.path)
+    routines = [
+        Routine(one.path, routine.head.number, routine.name, len(routine.body))
+        for one in contents
+        for routine in one.routines
+        if routine.name
+    ]
+    points = []
+    for one in contents:
+        for datum in one.data.values():
+            values = numbers_of(datum) if datum.type.upper() in POINT_TYPES else None
+            if values:
+                kept = {name: values[name] for name in _COORDINATES if name in values}
+                points.append(Point(one.path, datum.line, datum.name, datum.type, kept))
+    return Backup(tuple(one.path for one in contents), tuple(routines), tuple(points))
+
+
+def _table(rows: Iterable[Any], kind: type[Any]) -> pd.DataFrame:
+    """The rows with the columns of their kind, which are there without any row."""
+    import pandas as pd
+
+    return pd.DataFrame(map(asdict, rows), columns=[field.name for field in fields(kind)])
