@@ -160,9 +160,10 @@ class Debugger:
     def _end(self, text: str) -> None:
         """A run has ended: leave it to the client whether that is the end."""
         self._history.ends(self._count())
-        if self._history.is_repeating:
+        if self._history.is_searched():
             self._history.end_search()
             raise _Again
+        self._history.has_arrived()  # where no statement came that could be returned to
         self._is_ended = True
         robot = self._tasks["robot"]
         self._stopped(robot, Stop("ended", "robot", robot.at, text=text))
@@ -481,7 +482,9 @@ class Debugger:
                     text = "this is the first statement"
                 case Restart():
                     self._history.forget()
-                    self._history.return_to(START)
+                    self._is_begun = False
+                    for hits in self._hits.values():
+                        del hits[:]
                     raise _Again
                 case Quit():
                     raise _Left

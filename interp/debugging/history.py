@@ -115,10 +115,6 @@ class History:
         """Changes are no longer made."""
         self.changes.clear()
 
-    def return_to(self, moment: Position) -> None:
-        """The next run is to stop at a moment."""
-        self._goal = moment
-
     def has_arrived(self) -> bool:
         """Whether the moment that was to be returned to has come."""
         if self._search is None and self._goal is not None and self.here >= self._goal:

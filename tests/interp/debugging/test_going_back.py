@@ -301,3 +301,18 @@ def test_texts_of_breakpoints_that_only_report() -> None:
     debugger.run(lambda: run_program(PREPARED, setup, debugger=debugger))
     once = [f"A[{i}]={fac} (NO is not known here)" for i, fac in enumerate((1, 2, 6, 24), 1)]
     assert [*once, *once] == told  # once more behind the way back to the first statement
+
+
+def test_a_program_without_statements_only_ends() -> None:
+    """There is nothing to go back to, which is no reason to look for it for ever."""
+    program = load([Source("DEF MAIN()\nEND\n", "main.src")], "main.src")
+    commands: list[Command] = [Back("into"), Back("go"), Restart()]
+    stops: list[str] = []
+
+    def client(_debugger: Debugger, stop: Stop) -> Command:
+        stops.append(stop.reason)
+        return commands.pop() if commands else Go()
+
+    debugger = Debugger(program, client)
+    debugger.run(lambda: run_program(Prepared(program), RunSetup(), debugger=debugger))
+    assert ["ended"] * 4 == stops
