@@ -160,9 +160,10 @@ def run_program(
         machine = setup.machine
     elif setup.is_tolerant:
         sources = _own_sources(program)
-        machine, note = arm_or_stand_in(sources, _machine_of(profile))
         starts = [program.start(prepared.routine)]
         starts += [program.start(setup.submit)] if setup.submit else []
+        used = [unit.source for unit in program.reached(*starts) if unit.module.folder != FOLDER]
+        machine, note = arm_or_stand_in(sources, _machine_of(profile), used)
         is_other = bool(note) and machine_data_of(sources) is not None
         is_tolerant = is_other or bool(program.used_stand_ins(*starts))
         profile = replace(profile, is_tolerant=is_tolerant)

@@ -141,6 +141,12 @@ class CheckedProgram:
         """The stand-ins that files reached from some routines use, in their order."""
         if not self.stand_ins:
             return ()
+        units = self.reached(*routines)
+        names = {name.key for unit in units for name in unit.checked.resolution.answers}
+        return tuple(one for one in self.stand_ins if one.name.upper() in names)
+
+    def reached(self, *routines: Routine) -> tuple[Unit, ...]:
+        """The files that some routines lie in, and all that these use, with their data lists."""
         reached: dict[Module, Unit] = {}
         todo = [routine.unit for routine in routines]
         while todo:
@@ -153,8 +159,7 @@ class CheckedProgram:
             data = self.project.data_of(unit.module)
             others.add(data)
             todo += [self.units[other] for other in others if other is not None]
-        names = {name.key for unit in reached.values() for name in unit.checked.resolution.answers}
-        return tuple(one for one in self.stand_ins if one.name.upper() in names)
+        return tuple(reached.values())
 
     def can_begin(self, routine: Routine) -> bool:
         """Whether a program can begin with a routine, as there is nobody to give or take values."""

@@ -77,16 +77,19 @@ def understood(source: Source) -> MachineData:
     return machine
 
 
-def arm_or_stand_in(sources: Sequence[Source], default: MachineData) -> tuple[MachineData, str]:
+def arm_or_stand_in(
+    sources: Sequence[Source], default: MachineData, used: Iterable[Source] = ()
+) -> tuple[MachineData, str]:
     """The arm of a project's own machine data, else one in its place and why.
 
-    ``sources`` are the files that the project has itself, ``default`` the arm where it has none.
+    ``sources`` are the files that the project has itself, ``default`` the arm where it has none;
+    those that are ``used`` by the program to be run count by themselves too.
     """
     source = machine_data_of(sources)
     if source is None:
         lists = [one.text for one in sources if one.kind == "dat"]
         programs = [one.text for one in sources if one.kind != "dat"]
-        machine = fitting_arm(default, programs, lists)
+        machine = fitting_arm(default, programs, lists, [one.text for one in used])
         return machine, f"no machine data of an arm: {machine.name} stands in"
     try:
         return understood(source), ""
@@ -126,22 +129,20 @@ class Places:
 
 
 def fitting_arm(
-    machine: MachineData, programs: Iterable[str], data_lists: Iterable[str]
+    machine: MachineData,
+    programs: Iterable[str],
+    data_lists: Iterable[str],
+    used: Iterable[str] = (),
 ) -> MachineData:
     """The machine itself where it reaches the points in some texts, else a larger one.
 
     Points are aggregates of numbers with X, Y, Z in mm; only those in data lists, which were
-    taught, tell of the limits of axes too, as A1 to A6 in degrees.
+    taught, tell of the limits of axes too, as A1 to A6 in degrees. Those in texts that are ``used``
+    are reached, however many others are nearer.
     """
-    distances: list[float] = []  # from the shoulder, in mm
     lower = [axis.lower for axis in machine.axes]
     upper = [axis.upper for axis in machine.axes]
     lists = list(data_lists)
-    for text in (*programs, *lists):
-        distances += (
-            math.dist(map(float, one.groups()), machine.tiroro.position)
-            for one in _POSE.finditer(text)
-        )
     for text in lists:
         for found in _AXIS.finditer(text):
             number, value = int(found[1]) - 1, float(found[2])
@@ -154,12 +155,17 @@ def fitting_arm(
     )
     if axes != machine.axes:
         machine = replace(machine, axes=axes)
-    factor = _factor(machine, distances)
+    factor = max(_factor(machine, texts) for texts in ((*programs, *lists), used))
     return machine if factor == 1.0 else _scaled(machine, factor)
 
 
-def _factor(machine: MachineData, distances: list[float]) -> float:
-    """How much longer its links have to be, in steps of a tenth."""
+def _factor(machine: MachineData, texts: Iterable[str]) -> float:
+    """How much longer its links have to be for the points in texts, in steps of a tenth."""
+    distances = [  # from the shoulder, in mm
+        math.dist(map(float, one.groups()), machine.tiroro.position)
+        for text in texts
+        for one in _POSE.finditer(text)
+    ]
     if len(distances) < _FEWEST:
         return 1.0
     far = sorted(distances)[math.ceil(_SHARE * len(distances)) - 1]

@@ -49,6 +49,14 @@ def test_garbage() -> None:
     assert default_machine() == fitting_arm(default_machine(), [wild], [])
 
 
+def test_points_of_the_program() -> None:
+    """A few far points of the program to be run are reached, though most of the others are near."""
+    near = FAR.replace("2600", "500").replace("1000", "300") * 40
+    machine = default_machine()
+    assert machine == fitting_arm(machine, [], [near, FAR])
+    assert fitting_arm(machine, [], [FAR]) == fitting_arm(machine, [], [near, FAR], [FAR])
+
+
 def _machine(**changes: str) -> Source:
     text = model_file("kr6r900.dat").read_text()
     for name, value in changes.items():
