@@ -30,6 +30,7 @@ from grammar.notation.model import (
     complement,
     normalised,
 )
+from grammar.notation.unsupported import unsupported
 from grammar.notation.wellformed import problem
 from support.files.untrusted import read_bytes
 
@@ -101,8 +102,10 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
         ended = isinstance(error, UnexpectedToken) and str(error.token.type) == "$END"
         place = len(text) if ended else int(getattr(error, "pos_in_stream", None) or 0)
         found = text[place : place + 12].splitlines()
-        what = f"unexpected {found[0]!r}" if found else "unexpected end"
-        raise GrammarError(f"{source}:{error.line}: not a grammar of our style: {what}") from None
+        what = repr(found[0]) if found else "end"
+        wrong = f"{source}:{error.line}: not a grammar of our style: unexpected {what}"
+        others = ", ".join(f"{part} (line {line})" for line, part in unsupported(text))
+        raise GrammarError(f"{wrong}; not understood: {others}" if others else wrong) from None
 
 
 # --------------------------------------------------------------------------- tree to data

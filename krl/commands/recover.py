@@ -48,7 +48,8 @@ def recover(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Programs that every proposal must keep rejected; default: corpus/negatives.",
+            help="Programs that every proposal must keep rejected; default: corpus/negatives,"
+            " with --auto only those that are generated.",
         ),
     ] = None,
     start: Annotated[
@@ -94,8 +95,7 @@ def recover(
         first = grammar or GRAMMAR.with_name("preliminary.g4")
         with expected_errors():
             chosen = read_file(first)
-            given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
-            rejected = load(given) if given else ()
+            rejected = load(negatives) if negatives else ()
         return recover_auto(
             roots,
             chosen,

@@ -18,6 +18,8 @@ __all__ = ["BlockLines", "SourceFile", "find_blocks"]
 
 #: A line as its leading word, empty where it has none, and its tokens.
 _Line = tuple[str, tuple[Token, ...]]
+#: Distinct lines with the origins that have them.
+_Having = dict[tuple[Token, ...], set[str]]
 # The least share of files in which a pair of words is in balance; damaged files are the others.
 _BALANCED_SHARE = 0.95
 _LEAST_FILES = 3
@@ -43,9 +45,9 @@ class BlockLines:
 
     opener: str
     closer: str
-    headers: list[tuple[Token, ...]] = field(default_factory=list)
-    closers: list[tuple[Token, ...]] = field(default_factory=list)
-    middles: dict[str, list[tuple[Token, ...]]] = field(default_factory=lambda: defaultdict(list))
+    headers: _Having = field(default_factory=lambda: defaultdict(set))
+    closers: _Having = field(default_factory=lambda: defaultdict(set))
+    middles: dict[str, _Having] = field(default_factory=dict)
     often: dict[str, str] = field(default_factory=dict)
     has_body: bool = False
 
@@ -120,16 +122,16 @@ def _gathered(
     seen: list[Counter[str]] = []
     lengths: list[int] = []
     order: dict[str, None] = {}
-    inside: dict[str, list[tuple[Token, ...]]] = defaultdict(list)
+    inside: dict[str, _Having] = defaultdict(lambda: defaultdict(set))
     first: list[str] = []
     for file in files:
         open_: list[Counter[str]] = []
         for lead, tokens in file.lines:
             if lead == opener:
                 open_.append(Counter())
-                block.headers.append(tokens)
+                block.headers[tokens] |= file.origins
             elif lead == closer and open_:
-                block.closers.append(tokens)
+                block.closers[tokens] |= file.origins
                 done = open_.pop()
                 lengths.append(sum(done.values()))
                 seen.append(done)
@@ -138,7 +140,7 @@ def _gathered(
                     first.append(lead)
                 open_[-1][lead] += 1
                 if lead in free:
-                    inside[lead].append(tokens)
+                    inside[lead][tokens] |= file.origins
                     order.setdefault(lead)
             elif lead in free:
                 outside.add(lead)

@@ -11,19 +11,22 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
 
-__all__ = ["FormWriter", "samples_of"]
+__all__ = ["LONG_LIST", "FormWriter", "samples_of"]
 
 # The part of what one rule reads that two may read together to be preferred.
 _MUCH_LESS = 0.8
 # Lists of so many kinds, none of them longer than this, are never longer.
 _MANY_LISTS = 8
 _SHORT_LIST = 3
+#: So many items are more than a short list has.
+LONG_LIST = _SHORT_LIST + 1
 _COMMA = "','"
 _EQUALS = "'='"
 #: A list of pieces with commas between: its text is this, ``inside`` is none.
@@ -49,13 +52,14 @@ class FormWriter:
             rule for kinds in operands for rule in rules.matcher.rules_for(kinds)
         )
 
-    def form(self, lines: Sequence[Sequence[Symbol]]) -> str | None:
+    def form(self, given: Iterable[Sequence[Symbol]]) -> str | None:
         """The text of a rule that reads all the lines; ``None`` where an operand has no rule."""
+        lines = [tuple(line) for line in given]
         some = [line for line in lines if line]
         if len(some) < len(lines):
             text = self.form(some) if some else ""
             return text and f"({text})?"
-        lines = self._opened([tuple(line) for line in lines])
+        lines = self._opened(lines)
         items = self._items(lines)
         if items is not None:
             lines, item = items
@@ -169,7 +173,8 @@ class FormWriter:
             if rules is None:
                 return None
             words += rules
-        text = " | ".join(dict.fromkeys(words))
+        words = list(dict.fromkeys(words))
+        text = " | ".join(words)
         is_one = len(words) == 1 and " " not in text
         if factor.often:
             return f"{text if is_one else f'({text})'}{factor.often}"
@@ -198,7 +203,7 @@ class FormWriter:
         whole = [rule for rule in usual if reads[rule] >= left]
         if whole:
             single_rule = min(whole, key=self._breadth)
-            return self._narrower(single_rule, reads, left) or [single_rule]
+            return self._of_values(self._narrower(single_rule, reads, left) or [single_rule])
         found: list[str] = []
         while left:
             best = max(usual, key=lambda r: (len(reads[r] & left), [-n for n in self._breadth(r)]))
@@ -207,7 +212,24 @@ class FormWriter:
                 return [*found, *sorted(tokens)] if len(tokens) == len(left) else None
             left -= reads[best]
             found.append(best)
+        return self._of_values(found)
+
+    def _of_values(self, found: list[str]) -> list[str]:
+        """The rules with variables for mere names: beside values a name is one of a variable."""
+        if len(found) > 1 and self._name() in found and self._variable:
+            return [self._variable if rule == self._name() else rule for rule in found]
         return found
+
+    @cached_property
+    def _variable(self) -> str | None:
+        """The narrowest rule of names and of what may follow them, and of no other value."""
+        rules, lexer = self.rules, self.rules.recognizer.lexer
+        others = [(k,) for k in lexer.kind_of.values() if k != rules.name_kind]
+        values = [kinds for kinds in others if rules.matcher.is_operand(kinds[0])]
+        examples = [(rules.name_kind,), *(o.kinds for o in rules.followed.values())]
+        having = frozenset(rules.usual).intersection(*map(rules.matcher.rules_for, examples))
+        fitting = having.difference({self._name()}, *map(rules.matcher.rules_for, values))
+        return min(fitting, key=self._breadth, default=None) if rules.followed else None
 
     def _indexed(self, kinds: set[tuple[int, ...]], needed: set[str]) -> str | None:
         """A name with what may follow it in brackets; ``None`` where operands are anything else."""
@@ -226,7 +248,7 @@ class FormWriter:
     def _narrower(
         self, wide: str, reads: Mapping[str, set[tuple[int, ...] | str]], wanted: set[object]
     ) -> list[str] | None:
-        """Two rules instead of a wide one, where they read much less together."""
+        """Two rules instead of a wide one, where they read much less, or no names and it does."""
         usual = [r for r in self.rules.usual if reads[r] and r not in self.rules.including(wide)]
         pairs = [
             (self._reads[one] + self._reads[other], usual.index(one), usual.index(other))
@@ -234,10 +256,13 @@ class FormWriter:
             for other in usual
             if one < other and reads[one] | reads[other] >= wanted
         ]
-        if not pairs or min(pairs)[0] > _MUCH_LESS * self._reads[wide]:
+        if not pairs:
             return None
-        _, first, second = min(pairs)
-        return [usual[first], usual[second]]
+        count, first, second = min(pairs)
+        found = [usual[first], usual[second]]
+        named = self.rules.matcher.rules_for((self.rules.name_kind,))
+        is_constant = wide in named and named.isdisjoint(found)
+        return found if is_constant or count <= _MUCH_LESS * self._reads[wide] else None
 
     def _breadth(self, rule: str) -> tuple[int, ...]:
         """What a rule reads, first of the corpus, then of what other rules are."""
@@ -434,8 +459,10 @@ def _samples(rules: OperandRules, element: Element) -> list[tuple[Symbol, ...]]:
         case Repeat(item=item, operator=operator):
             once = _samples(rules, item)
             # more often than a short list, so that it stays one of any length
-            more = [s * (_SHORT_LIST + 1) for s in once] if operator != "?" else []
+            more = [s * LONG_LIST for s in once] if operator != "?" else []
             return [*(() if operator == "+" else [()]), *once, *more]
+        case Reference(name=name) if name in rules.following.values():
+            return [(Symbol("", Operand((), name)),)]
         case Reference(name=name) if not name[0].isupper():
             alternatives = rules.grammar.by_name[name].alternatives
             if name in rules.reaches[name] and name in rules.ladder:

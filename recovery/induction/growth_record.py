@@ -71,7 +71,9 @@ class Growth:
             step.title,
             tuple(edits),
             number=len(self.constructs) + 1,
-            summary="Inferred from the lines that fail without it.",
+            summary="Inferred from the lines that fail without it."
+            if step.evidence.lines
+            else "Says more with less: no line needs it.",
             evidence=evidence,
         )
         construct = replace(construct, state=construct.earned_state)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Insert, Replace, Widen
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat
@@ -26,6 +27,7 @@ from recovery.induction.symbols import (
     SymbolReader,
     Token,
     bracket_pairs,
+    operands_of,
 )
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
@@ -37,6 +39,8 @@ _WORD = re.compile(r"\b[A-Z_][A-Z0-9_]*\b")
 _LONG_LIST = 8
 # The part of the kinds of line of one word that another has too, for one form to read both.
 _ALIKE = 0.5
+# What a level counts by which operators bind weaker than they need, in symbols.
+_LEVEL = 12
 #: Signs that may stand ahead of an operand.
 _PREFIXES = frozenset({"+", "-", "NOT"})
 
@@ -46,6 +50,7 @@ class Inferred:
     """Edits, why they were written, and the lines they were written for.
 
     Those that are ``is_strict`` read so much that they may accept nothing which must be rejected.
+    ``breadth`` is how much more they read than others for the same lines, in symbols of a rule.
     """
 
     title: str
@@ -53,6 +58,7 @@ class Inferred:
     lines: tuple[int, ...]
     is_strict: bool = False
     is_block: bool = False
+    breadth: int = 0
 
 
 class Inference:
@@ -63,10 +69,15 @@ class Inference:
         recognizer: Recognizer,
         lines: Sequence[LinePattern],
         contexts: Sequence[FailureContext],
+        origins: Sequence[Collection[str]],
         blocks: Sequence[BlockLines] = (),
         prefixes: frozenset[str] = frozenset(),
+        least: int = 1,
     ) -> None:
         """``contexts[n]`` is what the grammar was doing where line ``n`` fails.
+
+        ``origins[n]`` are those that have the line; each pair of neighbours in a form has to be in
+        lines of ``least`` of them.
 
         ``blocks`` are those of the corpus that the grammar does not have, ``prefixes`` words that
         may be missing at the head of a line.
@@ -76,6 +87,8 @@ class Inference:
         self.lexer = recognizer.lexer
         self.lines = lines
         self.contexts = contexts
+        self._origins = origins
+        self._least = least
         self._blocks = blocks
         self._prefixes = prefixes
         self.kept_for_blocks = frozenset[str]().union(*(block.words for block in blocks))
@@ -89,18 +102,7 @@ class Inference:
         ]
         self._operator_lines: set[int] = set()
         self._operators: set[str] = {f"'{sign}'" for sign in _PREFIXES}
-        self.writer = FormWriter(self.reader, self._operands())
-
-    def _operands(self) -> list[tuple[int, ...]]:
-        found: dict[tuple[int, ...], None] = {}
-        todo = list(self.symbols)
-        for symbols in todo:
-            for symbol in symbols:
-                if symbol.operand is not None:
-                    found[symbol.operand.kinds] = None
-                elif symbol.inside:
-                    todo.append(symbol.inside)
-        return list(found)
+        self.writer = FormWriter(self.reader, operands_of(self.symbols))
 
     def inner(self) -> Iterator[Inferred]:
         """What is missing within operands: operators, what stands in brackets."""
@@ -141,8 +143,10 @@ class Inference:
         self._operator_lines = {n for ns in (*infix.values(), *prefix.values()) for n in ns}
         self._operators |= infix.keys() | prefix.keys()
         for text, members in infix.items():
-            for edits in self._as_infix(text):
-                yield Inferred(f"{text} between operands", edits, tuple(members))
+            for edits, level in self._as_infix(text):
+                breadth = _LEVEL * (len(self.rules.ladder) - level)
+                title = f"{text} between operands"
+                yield Inferred(title, edits, tuple(members), breadth=breadth)
         for text, members in prefix.items():
             for rule in self.rules.ladder:
                 for alternative in self.grammar.by_name[rule].alternatives:
@@ -168,19 +172,20 @@ class Inference:
             elif self.lexer.kind_of.get("NAME", -1) in self._expected(number):
                 prefix[text].append(number)
 
-    def _as_infix(self, text: str) -> Iterator[tuple[Edit, ...]]:
+    def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """The edits for each level of operators, and the place of that level on the ladder."""
         words = self.reserving(text)
         is_word = text[0] != "'"
-        for rule in self.rules.ladder:
+        for level, rule in enumerate(self.rules.ladder):
             for number, alternative in enumerate(self.grammar.by_name[rule].alternatives, 1):
                 for place, element in enumerate(alternative.elements, 1):
                     if isinstance(element, Repeat) and isinstance(element.item, Group):
                         inner = element.item.alternatives[0].elements
                         if len(inner) == 2 and self._is_operator(inner[0], is_word=is_word):
-                            yield (*words, Widen(rule, (number, place, 1, 1), text))
+                            yield (*words, Widen(rule, (number, place, 1, 1), text)), level
         if not is_word and self.rules.ladder:
             # a sign of its own kind binds tighter than all others
-            for rule in self.rules.ladder:
+            for level, rule in enumerate(self.rules.ladder, 1):
                 for number, alternative in enumerate(self.grammar.by_name[rule].alternatives, 1):
                     single = alternative.elements
                     if len(single) != 1 or not isinstance(single[0], Reference):
@@ -193,7 +198,7 @@ class Inference:
                     ):
                         new = self._fresh(f"{lower}Chain")
                         rule_text = f"{new}\n    : {lower} ({text} {lower})*\n    ;"
-                        yield AddRule(rule, rule_text), Replace(rule, (number, 1), new)
+                        yield (AddRule(rule, rule_text), Replace(rule, (number, 1), new)), level
                         return
 
     def _is_operator(self, element: object, *, is_word: bool) -> bool:
@@ -373,11 +378,11 @@ class Inference:
             parts.append(f"({text}){often}" if often else text)
         return " ".join((*parts, closer))
 
-    def _line_form(self, lines: Sequence[tuple[Token, ...]]) -> str | None:
-        shapes = dict.fromkeys(
-            self._known_groups(self.reader.symbols(tokens)) for tokens in dict.fromkeys(lines)
-        )
-        return self.writer.form([s for s in shapes if s])
+    def _line_form(self, lines: Mapping[tuple[Token, ...], Collection[str]]) -> str | None:
+        shapes: dict[tuple[Symbol, ...], set[str]] = defaultdict(set)
+        for tokens, origins in lines.items():
+            shapes[self._known_groups(self.reader.symbols(tokens))].update(origins)
+        return self.writer.form([shape for shape in self._supported(shapes) if shape])
 
     # ---------------------------------------------------------------------------------- statements
 
@@ -396,7 +401,10 @@ class Inference:
                         found[host, other].append(number)
         for (host, other), members in found.items():
             edits = (AddAlternative(host, other),)
-            yield Inferred(f"{other} as {host}", edits, tuple(members))
+            fresh = {other, *self.rules.reaches[other]} - {host, *self.rules.reaches[host]}
+            known = self.grammar.by_name
+            breadth = sum(len(known[name].alternatives) for name in fresh if name in known)
+            yield Inferred(f"{other} as {host}", edits, tuple(members), breadth=breadth)
 
     def statements(self) -> Iterator[Inferred]:
         """Forms of lines by their first word, or first sign where they begin with a name."""
@@ -406,6 +414,9 @@ class Inference:
             symbols = self.symbols[number]
             if line.is_enormous or not symbols or self._opened_in_group(number):
                 continue
+            beside = [a.is_operand and b.is_operand for a, b in pairwise(symbols)]
+            if symbols[0].is_operand and any(beside):
+                continue  # no line has two operands and no word that says what they are
             head = self._head(symbols)
             if self.kept_for_blocks.isdisjoint(s.text for s in symbols[:2]):
                 groups[self._hosts(number), head].append(number)
@@ -531,6 +542,14 @@ class Inference:
         shown = self._shown((kinds[-1], None)) if kinds else ""
         return symbol.text or (shown if shown in BRACKETS.values() else "_")
 
+    def _finer_sort(self, symbol: Symbol) -> str:
+        """The sort of a symbol; operands by their rule, and by whether they begin with a name."""
+        if symbol.operand is None or symbol.operand.rule:
+            return symbol.text or (symbol.operand.rule if symbol.operand else "")
+        first = symbol.operand.kinds[0]
+        is_name = first == self.rules.name_kind or self.rules.matcher.may_be_a_name(first)
+        return "name" if is_name else self._sort(symbol)
+
     def _statement(
         self, hosts: Sequence[str], head: str, members: Sequence[int]
     ) -> Iterator[Inferred]:
@@ -571,8 +590,13 @@ class Inference:
     ) -> Iterator[str]:
         """Forms of ``old`` shapes and these: all, those that recur, those whose words recur.
 
-        One odd line must not spoil the form.
+        One odd line must not spoil the form, nor one origin.
         """
+        having = {
+            shape: set[str]().union(*(self._origins[n] for n in numbers))
+            for shape, numbers in shapes.items()
+        }
+        shapes = {shape: shapes[shape] for shape in self._supported(having, old)}
         lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
         choices = [
             [shape for shape, numbers in shapes.items() if len(numbers) >= least]
@@ -584,6 +608,32 @@ class Inference:
         ]
         texts = [self.writer.form([*old, *chosen]) for chosen in choices if chosen]
         yield from dict.fromkeys(text for text in texts if text)
+
+    def _supported(
+        self,
+        shapes: Mapping[tuple[Symbol, ...], Collection[str]],
+        old: Sequence[tuple[Symbol, ...]] = (),
+    ) -> list[tuple[Symbol, ...]]:
+        """Those in which all neighbours are such in enough origins, or in an ``old`` shape.
+
+        ``shapes`` come with the origins that have them.
+        """
+        pairs = {shape: frozenset(self._pairs(shape)) for shape in shapes}
+        known = {pair for shape in old for pair in self._pairs(shape)}
+        having: dict[tuple[str, ...], set[str]] = defaultdict(set)
+        for shape, origins in shapes.items():
+            for pair in pairs[shape]:
+                having[pair].update(origins)
+        enough = known | {pair for pair, found in having.items() if len(found) >= self._least}
+        return [shape for shape in shapes if pairs[shape] <= enough]
+
+    def _pairs(self, symbols: Sequence[Symbol], group: str = "") -> Iterator[tuple[str, ...]]:
+        """What stands beside what, in groups in brackets too; operands by their sort."""
+        for left, right in pairwise(["", *map(self._finer_sort, symbols), ""]):
+            yield group, left, right
+        for symbol in symbols:
+            if symbol.inside is not None:
+                yield from self._pairs(symbol.inside, f"{group}{symbol.text}")
 
     # ------------------------------------------------------------------------------------- helpers
 

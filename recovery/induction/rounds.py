@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal, get_args
 
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import (
@@ -33,9 +34,10 @@ from grammar.parser.recognizer import Recognizer, State
 from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
 from recovery.induction.blocks import BlockLines, SourceFile, find_blocks
 from recovery.induction.corpus_lines import CorpusFile, CorpusLines
+from recovery.induction.folding import Folding, size
 from recovery.induction.inference import Inference, Inferred
 from recovery.induction.literals import split_literals
-from recovery.induction.symbols import OperandRules
+from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.proposals.edit_site import LinePattern
@@ -62,6 +64,11 @@ _NAMED_LINES = 3
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
+#: What a round looks for: what is missing within lines, whole lines and blocks, what is alike.
+_Step = Literal["inner", "outer", "fold"]
+_STEPS: tuple[_Step, ...] = get_args(_Step)
+# The files, the shortest, on which it is tried whether an alternative is needed.
+_FOLD_FILES = 40
 
 #: Edits whose place another edit of the same rule may move.
 _Placed = Insert | Widen | MakeOptional | Replace
@@ -155,37 +162,38 @@ class Induction:
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
         """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
-        inner, origins = True, self.least_origins
+        # what recurs in one origin only comes last
+        stages = [(step, n) for n in dict.fromkeys((self.least_origins, 1)) for step in _STEPS]
+        place = 0
         for _ in range(most):
-            done = self._round(inner=inner, origins=origins)
+            step, origins = stages[place]
+            done = self._round(step, origins)
             yield done
-            if done.taken:
-                inner = True
-            elif inner:
-                inner = False
-            elif origins > 1:  # what recurs in one origin only comes last
-                inner, origins = True, 1
-            else:
+            place = stages.index((_STEPS[0], origins)) if done.taken else place + 1
+            if place == len(stages):
                 self.is_finished = True
                 return
 
     # ------------------------------------------------------------------------------------ a round
 
-    def _round(self, *, inner: bool, origins: int) -> Round:
+    def _round(self, step: _Step, origins: int) -> Round:
         finder, failures = self._failures_under(self.grammar)
         shown = _reading(failures)
         held = _reading([finder.find(file.text) for file in self.held])
-        taken, refused = self._steps(finder, failures, inner=inner, origins=origins)
+        if step == "fold":
+            taken, refused = self._folded(finder.recognizer, failures)
+        else:
+            taken, refused = self._inferred(finder, failures, origins, inner=step == "inner")
         self.grammar = apply(self.grammar, _joined(taken))
         return Round(shown, held, tuple(taken), tuple(refused))
 
-    def _steps(
+    def _inferred(
         self,
         finder: FailureFinder,
         failures: Sequence[Sequence[Failure]],
+        origins: int,
         *,
         inner: bool,
-        origins: int,
     ) -> tuple[list[Taken], list[Refused]]:
         """What is taken and what refused, of what is inferred from the lines that fail."""
         recognizer = finder.recognizer
@@ -193,7 +201,9 @@ class Induction:
             self._corpus = CorpusLines(self.shown, recognizer.lexer)
         corpus = self._corpus
         if self._keywords is None or self._keywords.lexer.names != recognizer.lexer.names:
-            self._keywords = WouldBeKeywords(corpus, recognizer.lexer, self._names_read(failures))
+            types = OperandRules(recognizer).type_words
+            read = self._names_read(failures)
+            self._keywords = WouldBeKeywords(corpus, recognizer.lexer, read, types)
         keywords = self._keywords
         if inner:
             whole = self._with_literals(failures, recognizer)
@@ -206,7 +216,8 @@ class Induction:
         self._names = OperandRules(recognizer).names
         prefixes = _prefixes(corpus, keywords, recognizer)
         blocks = [] if inner else self._blocks(corpus, keywords, recognizer, prefixes)
-        inference = Inference(recognizer, lines, contexts, blocks, prefixes)
+        having = [line.origins for line in known]
+        inference = Inference(recognizer, lines, contexts, having, blocks, prefixes, origins)
         trial = EditTrial(recognizer, lines)
         rejected = self.negatives.rejected_by(recognizer)
         scored: list[tuple[float, Inferred, frozenset[int]]] = []
@@ -224,11 +235,11 @@ class Induction:
             else:
                 gain, mended = _line_gain(trial, found, known)
             if gain:
-                size = sum(map(_size, found.edits))
+                breadth = found.breadth + sum(map(_size, found.edits))
                 callers = inference.profile.callers
                 rules = [r for r in changed_rules(found.edits) if r in callers]
-                size += sum(map(inference.profile.width, rules))
-                scored.append((gain * _BREADTH_FACTOR**size, found, mended))
+                breadth += sum(map(inference.profile.width, rules))
+                scored.append((gain * _BREADTH_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
         taken, refused = self._chosen(scored, known, rejected, recognizer, origins)
         taken, lost = self._kept(taken, failures)
@@ -246,22 +257,25 @@ class Induction:
             self._read = (grammar.sha256, finder, found)
         return self._read[1:]
 
-    def _names_read(self, failures: Sequence[Sequence[Failure]]) -> frozenset[str]:
-        """Words in lines that can be read."""
-        read: dict[str, None] = {}
+    def _names_read(self, failures: Sequence[Sequence[Failure]]) -> dict[str, set[str]]:
+        """Words in lines that can be read, with the origins of these."""
+        read: dict[str, set[str]] = defaultdict(set)
         for file, of_file in zip(self.shown, failures, strict=True):
             failing = {failure.line for failure in of_file}
             for number, line in enumerate(source_lines(file.text), 1):
                 if number not in failing:
-                    read[line] = None
+                    read[line] |= file.origins
         lexer = Recognizer(self.grammar).lexer
         name = lexer.kind_of.get("NAME")
         found: Counter[str] = Counter()
-        for line in read:
+        origins: dict[str, set[str]] = defaultdict(set)
+        for line, having in read.items():
             words = [word for word in lexer.lexemes(line) if lexer.kinds[word] != SKIPPED]
             # what only ever begins a line may be a word that looks like a call there
-            found.update({w.upper() for w in words[1:] if lexer.kinds[w] == name})
-        return frozenset(word for word, count in found.items() if count >= _NAMED_LINES)
+            for upper in {w.upper() for w in words[1:] if lexer.kinds[w] == name}:
+                found[upper] += 1
+                origins[upper] |= having
+        return {word: origins[word] for word, count in found.items() if count >= _NAMED_LINES}
 
     def _table(
         self, failures: Sequence[Sequence[Failure]], keywords: WouldBeKeywords
@@ -443,16 +457,22 @@ class Induction:
                     break
                 finder = FailureFinder(Recognizer(grammar))
                 read = {p: finder.find(self.shown[p].text) for p in worse}
-                earlier = [f[0] for p, f in read.items() if _first(f) < _first(failures[p])]
-                reason = "loses lines that can be read" if earlier else ""
-                if not earlier:
+                lost_in = [p for p, f in read.items() if _first(f) < _first(failures[p])]
+                if not lost_in or self._is_outvoted(lost_in, step.evidence):
+                    reason = ""
                     break
-                version = self._with_names_kept(step, earlier)
+                reason = "loses lines that can be read"
+                version = self._with_names_kept(step, [read[p][0] for p in lost_in])
             if reason:
                 lost.append(Refused(step.title, step.edits, 0.0, reason))
             else:
                 kept.append(version)
         return kept, lost
+
+    def _is_outvoted(self, places: Sequence[int], evidence: Evidence) -> bool:
+        """Whether files are of one origin, and an edit is shown by more origins and files."""
+        origins = frozenset[str]().union(*(self.shown[p].origins for p in places))
+        return len(origins) == 1 < evidence.origins and 2 * len(places) < evidence.files
 
     def _with_names_kept(self, step: Taken, failures: Sequence[Failure]) -> Taken:
         """The step with the words that it reserves left names too where lines fail for them."""
@@ -461,6 +481,45 @@ class Induction:
         more = tuple(AddAlternative(self._names, word) for word in words if self._names)
         edits = (*step.edits, *(edit for edit in more if edit not in step.edits))
         return replace(step, edits=edits)
+
+    # ------------------------------------------------------------------------------------- folding
+
+    def _folded(
+        self, recognizer: Recognizer, failures: Sequence[Sequence[Failure]]
+    ) -> tuple[list[Taken], list[Refused]]:
+        """Folds after which the grammar is shorter, accepts no more negatives and reads no less."""
+        rejected = self.negatives.rejected_by(recognizer)
+        reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
+        lines = CorpusLines(self.shown, recognizer.lexer).lines
+        operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
+        grammar = self.grammar
+        good = [p for p, found in enumerate(failures) if not found]
+        some = sorted(good, key=lambda p: len(self.shown[p].text))[:_FOLD_FILES]
+        taken: list[Taken] = []
+        refused: dict[str, Refused] = {}
+        place = 0
+        while place < len(found := list(Folding(recognizer, operands).candidates())):
+            fold = found[place]
+            place += 1
+            if fold.title in refused or fold.edits in self.struck:
+                continue
+            reason = self._objection(
+                grammar, fold.edits, fold.edits, recognizer, rejected, 0.0, is_strict=True
+            )
+            if not reason:
+                shorter = apply(grammar, fold.edits)
+                narrower = Recognizer(shorter)
+                if size(shorter) >= size(grammar) + fold.breadth:
+                    reason = "the grammar would not be shorter"
+                elif not all(narrower.accepts(self.shown[p].text) for p in some):
+                    reason = "loses lines that can be read"
+            if reason:
+                refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)
+                continue
+            taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
+            grammar, recognizer, place = shorter, narrower, 0
+        taken, lost = self._kept(taken, failures)
+        return taken, [*lost, *refused.values()]
 
     # ------------------------------------------------------------------------------------- literals
 

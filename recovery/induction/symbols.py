@@ -6,7 +6,7 @@ says. What no rule reads yet stays words, signs and groups in brackets.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -25,6 +25,7 @@ __all__ = [
     "SymbolReader",
     "Token",
     "bracket_pairs",
+    "operands_of",
 ]
 
 #: Signs that come in pairs.
@@ -90,6 +91,27 @@ class OperandRules:
             )
         ]
         return having[0] if len(having) == 1 else None
+
+    @cached_property
+    def word_choices(self) -> Mapping[str, frozenset[str]]:
+        """Rules that give a choice of words and names, as that of types does, with the words."""
+        vocabulary = Vocabulary(self.recognizer)
+        within = [n for n in self._called if n in self.within_lines and n != self.names]
+        found = {name: vocabulary.words_of(name) for name in within}
+        lexer = self.recognizer.lexer
+        words = frozenset(w for w, kind in lexer.kind_of.items() if lexer.is_keyword(kind))
+        return {n: words & some - self.named_words for n, some in found.items() if "NAME" in some}
+
+    @cached_property
+    def named_words(self) -> frozenset[str]:
+        """The tokens that are names: that of names, and words that the rule of names has."""
+        words = Vocabulary(self.recognizer).words_of(self.names) if self.names else frozenset()
+        return words | {"NAME"}
+
+    @cached_property
+    def type_words(self) -> frozenset[str]:
+        """Words of which some rule gives a choice beside names."""
+        return frozenset[str]().union(*self.word_choices.values())
 
     @cached_property
     def within_lines(self) -> frozenset[str]:
@@ -244,6 +266,19 @@ def _is_optional(element: Element) -> bool:
     return isinstance(element, Repeat) and element.operator != "+"
 
 
+def operands_of(lines: Iterable[tuple[Symbol, ...]]) -> list[tuple[int, ...]]:
+    """The distinct operands of lines and of the groups in them, as kinds of token."""
+    found: dict[tuple[int, ...], None] = {}
+    todo = list(lines)
+    for symbols in todo:
+        for symbol in symbols:
+            if symbol.operand is not None:
+                found[symbol.operand.kinds] = None
+            elif symbol.inside:
+                todo.append(symbol.inside)
+    return list(found)
+
+
 def bracket_pairs(sequence: Alternative) -> list[tuple[str, int, int]]:
     """Pairs of brackets that a sequence writes: the opening one, and the indices of both."""
     out = []
@@ -273,16 +308,7 @@ class SymbolReader:
         lowest = [n for n in rules.ladder if not {*rules.alone(n)} - {rules.names}]
         self._atoms = [recognizer.at_rule(n) for n in (*lowest, *names[1:])]
         self._longest: dict[tuple[bool, tuple[int, ...]], int] = {}
-        vocabulary = Vocabulary(recognizer)
-        kind_of = self.lexer.kind_of
-        self._type_words = frozenset(
-            kind_of[word]
-            for rule in recognizer.grammar.rules
-            if not rule.is_lexer and rule.name in rules.within_lines
-            for words in [vocabulary.words_of(rule.name)]
-            if words & {"NAME"} and rule.name != rules.names
-            for word in words
-        )
+        self._type_words = frozenset(map(self.lexer.kind_of.__getitem__, rules.type_words))
 
     def symbols(self, tokens: Sequence[Token], *, atoms: bool = False) -> tuple[Symbol, ...]:
         """The symbols of tokens, which are a line or part of one.

@@ -10,7 +10,7 @@ such surroundings nearly always, in several origins.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from grammar.parser.lexer import Lexer
@@ -35,8 +35,9 @@ _OPENING = frozenset("(+-")
 
 #: The head of the line, what is ahead, what is behind.
 _Surroundings = tuple[str, str, str]
-_OPERAND = "operand"
+_OPERAND = "an operand"
 _END = "end"
+_TYPE = "a type"
 # Where a name is nothing but a name.
 _PLAIN: _Surroundings = ("", "", "")
 # Where it may be either.
@@ -56,9 +57,19 @@ class _Use:
 class WouldBeKeywords:
     """The words that the lines of a corpus have as keywords, under one lexer."""
 
-    def __init__(self, corpus: CorpusLines, lexer: Lexer, read: Collection[str] = ()) -> None:
-        """``read`` are names in lines that the grammar reads."""
+    def __init__(
+        self,
+        corpus: CorpusLines,
+        lexer: Lexer,
+        read: Mapping[str, Collection[str]],
+        types: Collection[str],
+    ) -> None:
+        """``read`` are names in lines that the grammar reads, with the origins that use them so.
+
+        ``types`` are reserved words that stand where the names of types may.
+        """
         self.lexer = lexer
+        self._types = frozenset(types)
         self._name = lexer.kind_of.get("NAME", -9)
         self._values = frozenset(
             kind
@@ -83,7 +94,7 @@ class WouldBeKeywords:
         heads: Counter[str] = Counter()
         places: dict[str, set[str]] = defaultdict(set)
         for surroundings, words in fillers.items():
-            is_head = surroundings == _HEAD
+            is_head = surroundings == _HEAD or (surroundings[2] == _TYPE and len(words) <= _FEWER)
             if surroundings in (_PLAIN, _OPEN):
                 continue
             if is_head or len(words) <= (_FEW if surroundings in beside else _FEWER):
@@ -99,11 +110,27 @@ class WouldBeKeywords:
             or count >= _MANY_FILES
             if heads[word] >= _LEAST_FILES or count >= _LEAST_SHARE * uses[word]
         )
+        typed = {
+            word
+            for surroundings, words in fillers.items()
+            if _is_of_types(surroundings) and surroundings[1] in lexer.kind_of
+            for word, origins in words.items()
+            if len(origins) >= _LEAST_ORIGINS
+        }
+        ahead = {w for s in self._closed if s[2] == _TYPE for w in fillers[s]}
         #: Those that are used as names besides.
         self.soft = frozenset(
             word
             for word in self.words
-            if files[_PLAIN, word] > _NAME_SHARE * uses[word] or word in read
+            if word in typed - ahead
+            or (
+                (files[_PLAIN, word] > _NAME_SHARE * uses[word] or word in read)
+                # one origin that uses it as a name does not outvote several that do not
+                and (
+                    len(fillers[_PLAIN][word].union(read.get(word, ()))) > 1
+                    or len(places[word]) < 3
+                )
+            )
         )
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
@@ -114,7 +141,7 @@ class WouldBeKeywords:
             if use.word in self.words
             and (
                 use.word not in self.soft
-                or use.surroundings in self._closed
+                or (use.surroundings in self._closed and not _is_of_types(use.surroundings))
                 or use.surroundings == _OPEN
             )
         )
@@ -167,4 +194,10 @@ class WouldBeKeywords:
         if line[place] in signs or kinds[place] in self._values:
             # the first word of a line says what may come behind it, whether it is known or not
             return _OPERAND if place else line[0]
-        return line[place]
+        return _TYPE if line[place] in self._types else line[place]
+
+
+def _is_of_types(surroundings: _Surroundings) -> bool:
+    """Whether they are a word and an operand, between which the names of types stand."""
+    _, ahead, behind = surroundings
+    return behind == _OPERAND and ahead not in ("", _OPERAND) and ahead.isidentifier()

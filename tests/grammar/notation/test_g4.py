@@ -312,7 +312,8 @@ def test_what_is_not_of_our_style_is_refused(rules: str, line: int, message: str
         (f"grammar Bad;\n{TOKENS}", "bad.g4:1: no parser rule"),
         (
             "grammar Bad;\r\ns : {x} ;\r\n",
-            "bad.g4:2: not a grammar of our style: unexpected '{x} ;'",
+            "bad.g4:2: not a grammar of our style: unexpected '{x} ;'; "
+            "not understood: an action (line 2)",
         ),
     ],
 )

@@ -1,0 +1,226 @@
+"""Folding: alternatives that say nearly the same become one, and what nothing needs goes.
+
+Induction writes a form for each word that begins lines. Where such words are of a kind, as ``INT``
+and ``REAL`` are, one form for all of them is shorter, and it reads what some word was not seen
+with. Of a kind are words between which and names some rule gives a choice.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from grammar.notation.edits import (
+    AddAlternative,
+    AddRule,
+    Edit,
+    RemoveAlternative,
+    RemoveRule,
+    Replace,
+)
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Grammar,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    walk,
+)
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
+from recovery.induction.inference import Inferred
+from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+from recovery.proposals.grammar_profile import GrammarProfile
+
+__all__ = ["Folding", "size"]
+
+# Symbols by which a grammar may become longer where what holds in one place holds in another too.
+_LONGER = 12
+
+
+def size(grammar: Grammar) -> int:
+    """How many symbols the parser rules of a grammar write."""
+    return sum(
+        len([e for a in rule.alternatives for e in walk(a)]) + len(rule.alternatives)
+        for rule in grammar.rules
+        if not rule.is_lexer
+    )
+
+
+class Folding:
+    """What could be folded in one grammar."""
+
+    def __init__(self, recognizer: Recognizer, operands: Iterable[tuple[int, ...]]) -> None:
+        """``operands`` of the corpus tell what is narrow."""
+        self.grammar = recognizer.grammar
+        self.rules = OperandRules(recognizer)
+        self.profile = GrammarProfile(recognizer)
+        self.writer = FormWriter(SymbolReader(self.rules), operands)
+        #: Words of a kind: those of which a rule gives a choice beside names, and those it names.
+        self.types = (self.rules.type_words | self.rules.named_words) - {"NAME"}
+        #: The rule of all words of the kind.
+        self._kind = f"{next(iter(self.rules.word_choices), '')}Word"
+
+    def candidates(self) -> Iterator[Inferred]:
+        """Folds, those of most alternatives first; each stands for itself."""
+        unused = [n for n in self.rules.reaches if self.profile.is_free(n)]
+        for name in unused:
+            yield Inferred(f"nothing calls {name}", (RemoveRule(name),), ())
+        families = sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
+        for rule, word, numbers in families:
+            if len(numbers) > 1:
+                edits = self._folded(word, [(rule, n) for n in numbers])
+                yield Inferred(f"one form for {word} in {rule}", edits, ())
+        for rule, word, numbers in families:
+            for other, same, more in families:
+                if other != rule and same == word:
+                    places = [(r, n) for r, ns in ((rule, numbers), (other, more)) for n in ns]
+                    title = f"{rule} reads what {word} begins in {other}"
+                    yield Inferred(title, self._folded(word, places), ())
+        yield from self._lists(families)
+        yield from self._trailing()
+
+    def _lists(self, families: Sequence[tuple[str, str, list[int]]]) -> Iterator[Inferred]:
+        """Lists where the same word begins one in another rule."""
+        listing = {
+            (rule, number): any(isinstance(e, Literal) and e.text == "," for e in walk(alternative))
+            for rule, _, numbers in families
+            for number in numbers
+            for alternative in [self._alternative(rule, number)]
+        }
+        listed = {(rule, word) for rule, word, ns in families if any(listing[rule, n] for n in ns)}
+        for rule, word, numbers in families:
+            is_listed = any(same == word and other != rule for other, same in listed)
+            for number in numbers if is_listed else ():
+                if not listing[rule, number]:
+                    elements = self._line(rule, number)
+                    shapes = samples_of(self.rules, elements)
+                    items = [(s, (Symbol("','"), *s[_item(s) :])) for s in shapes if _item(s)]
+                    more = [(*shape, *item * LONG_LIST) for shape, item in items]
+                    form = self.writer.form(dict.fromkeys([*shapes, *more]))
+                    edits = (Replace(rule, (number, 1), form, len(elements)),) if form else ()
+                    title = f"a list behind {word} in {rule}"
+                    yield Inferred(title, edits, (), breadth=_LONGER)
+
+    def _trailing(self) -> Iterator[Inferred]:
+        """One choice for words that may end lines, where two such choices have a word in common."""
+        found: list[tuple[str, tuple[int, int], frozenset[str], bool]] = []
+        for rule in self.grammar.rules:
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                elements = self._line(rule.name, number)
+                match elements[-1] if len(elements) > 1 else None:
+                    case Repeat(item=item, operator="?" | "*" as often) if self._words(item):
+                        place = (number, len(elements))
+                        found.append((rule.name, place, self._words(item), often == "*"))
+        done: set[frozenset[str]] = set()
+        for _, _, words, _ in found:
+            alike = [f for f in found if f[2] & words]
+            every = frozenset[str]().union(*(f[2] for f in alike))
+            is_often = any(f[3] for f in alike)
+            text = f"({' | '.join(sorted(every))}){'*' if is_often else '?'}"
+            edits = [
+                Replace(rule, place, text)
+                for rule, place, some, how in alike
+                if (some, how) != (every, is_often)
+            ]
+            if len(every) > 1 and edits and every not in done:
+                done.add(every)
+                title = f"{', '.join(sorted(every))} at the end of lines"
+                yield Inferred(title, tuple(edits), (), breadth=_LONGER * len(edits))
+
+    def _alternative(self, rule: str, number: int) -> Alternative:
+        return self.grammar.by_name[rule].alternatives[number - 1]
+
+    def _families(self) -> Iterator[tuple[str, str, list[int]]]:
+        """Rules, words and the alternatives, at least one, that a word of this kind begins."""
+        for rule in self.grammar.rules:
+            if (
+                rule.is_lexer
+                or rule.name in self.rules.recursive
+                or all(len(a.elements) == 1 for a in rule.alternatives)
+            ):
+                continue
+            found: dict[str, list[int]] = defaultdict(list)
+            for number in range(1, len(rule.alternatives) + 1):
+                head = self._head(self._line(rule.name, number))
+                if head:
+                    found[head].append(number)
+            yield from ((rule.name, head, numbers) for head, numbers in found.items())
+
+    def _line(self, rule: str, number: int) -> Sequence[Element]:
+        """The elements of an alternative without its line end; none for more than one line."""
+        elements = self._alternative(rule, number).elements
+        source = self.grammar.by_name[rule].source_of
+        if elements and source(elements[-1]) == self.profile.line_end:
+            elements = elements[:-1]
+        called = {e.name for e in elements if isinstance(e, Reference)}
+        return () if called & {self.profile.line_end, "NEWLINE"} else elements
+
+    def _head(self, elements: Sequence[Element]) -> str:
+        """The first word of a line, or its kind where it is one of a kind; empty without any."""
+        for element in elements:
+            if isinstance(element, Repeat) and element.operator != "+":
+                continue
+            words = self._words(element)
+            if words and words <= self.types:
+                return self._kind
+            return min(words) if len(words) == 1 and len(elements) > 1 else ""
+        return ""
+
+    def _words(self, element: Element) -> frozenset[str]:
+        match element:
+            case Reference(name=name, is_token=True):
+                return frozenset({name})
+            case Reference(name=name) if self.profile.vocabulary.is_set_of_words(name):
+                return self.profile.vocabulary.words_of(name)
+            case Group(alternatives=alternatives):
+                firsts = [self._words(a.elements[0]) for a in alternatives if len(a.elements) == 1]
+                is_all = len(firsts) == len(alternatives) and all(firsts)
+                return frozenset[str]().union(*firsts) if is_all else frozenset()
+            case _:
+                return frozenset()
+
+    def _folded(self, word: str, places: Sequence[tuple[str, int]]) -> tuple[Edit, ...]:
+        """One form in the first of some alternatives, the others gone; none without a form."""
+        words: set[str] = set()
+        lines = [
+            shape
+            for rule, number in places
+            for shape in samples_of(self.rules, self._line(rule, number))
+        ]
+        if word == self._kind:
+            lines = [tuple(self._of_kind(symbol, words) for symbol in shape) for shape in lines]
+        shapes = dict.fromkeys(lines)
+        form = self.writer.form(list(shapes))
+        if form is None:
+            return ()
+        (rule, first), *others = places
+        edits: list[Edit] = []
+        if word == self._kind and self._kind not in self.grammar.by_name:
+            text = "\n    | ".join(sorted(words | self.rules.type_words))
+            last = [r.name for r in self.grammar.rules if not r.is_lexer][-1]
+            edits.append(AddRule(last, f"{self._kind}\n    : {text}\n    ;"))
+        elif word == self._kind:
+            known = self.profile.vocabulary.words_of(self._kind)
+            edits += (AddAlternative(self._kind, w) for w in sorted(words - known))
+        edits.append(Replace(rule, (first, 1), form, len(self._line(rule, first))))
+        edits += (RemoveAlternative(r, number) for r, number in reversed(others))
+        return tuple(edits)
+
+    def _of_kind(self, symbol: Symbol, words: set[str]) -> Symbol:
+        if symbol.text in self.types:
+            words.add(symbol.text)
+            return Symbol(self._kind)
+        is_kind = symbol.operand is not None and symbol.operand.rule == self._kind
+        return Symbol(self._kind) if is_kind else symbol
+
+
+def _item(shape: Sequence[Symbol]) -> int:
+    """Where the first item of a list would begin: the last operand of the first in a row."""
+    for place in range(1, len(shape)):
+        following = shape[place + 1 : place + 2]
+        if shape[place].is_operand and not (following and following[0].is_operand):
+            return place
+    return 0

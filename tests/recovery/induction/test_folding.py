@@ -1,0 +1,133 @@
+"""Folding: alternatives that say nearly the same become one."""
+
+from random import Random
+
+import pytest
+
+from grammar.notation.edits import apply
+from grammar.notation.g4 import read
+from grammar.notation.model import Grammar
+from grammar.notation.wellformed import problem
+from grammar.parser.recognizer import Recognizer
+from grammar.parser.sentences import Sentences, Speller
+from recovery.induction.folding import Folding
+from recovery.induction.inference import Inferred
+
+_GRAMMAR = """grammar Toy;
+
+program : (line NEWLINE)* EOF ;
+
+line
+    : INT NAME (',' NAME)*
+    | REAL NAME index?
+    | DIM kind NAME
+    | DIM kind NAME index
+    | GO NAME
+    | MOVE NAME (FAST | SLOW)?
+    | TURN NAME SLOW*
+    | NAME '=' expression
+    | later
+    ;
+
+later
+    : DIM kind ':' NAME (',' NAME)*
+    | GO ':'
+    ;
+
+kind : INT | REAL | BOOL | NAME ;
+
+expression : primary ('+' primary)* ;
+
+primary : NUMBER | NAME index? | '(' expression ')' ;
+
+index : '[' expression ']' ;
+
+idle : NUMBER NUMBER ;
+
+INT : 'INT' ;
+REAL : 'REAL' ;
+BOOL : 'BOOL' ;
+DIM : 'DIM' ;
+GO : 'GO' ;
+MOVE : 'MOVE' ;
+TURN : 'TURN' ;
+FAST : 'FAST' ;
+SLOW : 'SLOW' ;
+COLON : ':' ;
+COMMA : ',' ;
+ASSIGN : '=' ;
+PLUS : '+' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+LBRACKET : '[' ;
+RBRACKET : ']' ;
+NAME : [A-Z]+ ;
+NUMBER : [0-9]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+"""
+
+
+@pytest.fixture(scope="module")
+def grammar() -> Grammar:
+    """Two declarations without DIM and two with it, and a rule that nothing calls."""
+    return read(_GRAMMAR)
+
+
+@pytest.fixture(scope="module")
+def folds(grammar: Grammar) -> dict[str, Inferred]:
+    """All folds of it, by their titles."""
+    recognizer = Recognizer(grammar)
+    return {fold.title: fold for fold in Folding(recognizer, ()).candidates()}
+
+
+def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
+    """Words of a kind have one form, as the alternatives of one word have; GO is of no kind."""
+    assert {
+        "nothing calls idle",
+        "one form for kindWord in line",
+        "one form for DIM in line",
+        "line reads what DIM begins in later",
+        "later reads what DIM begins in line",
+        "line reads what GO begins in later",
+        "later reads what GO begins in line",
+        "a list behind DIM in line",
+        "FAST, SLOW at the end of lines",
+    } == folds.keys()
+
+
+@pytest.mark.parametrize(
+    ("text", "accepted"),
+    [("BOOL A[1], B\n", True), ("REAL A, B\n", True), ("GO A, B\n", False), ("INT 1\n", False)],
+)
+def test_what_one_word_shows_holds_for_its_kind(
+    grammar: Grammar, folds: dict[str, Inferred], text: str, accepted: bool
+) -> None:
+    """A list and an index, each seen with one word, are read with all words of the kind."""
+    folded = apply(grammar, folds["one form for kindWord in line"].edits)
+    assert accepted == Recognizer(folded).accepts(text)
+
+
+@pytest.mark.parametrize(
+    ("title", "text"),
+    [
+        ("FAST, SLOW at the end of lines", "MOVE A SLOW FAST\nTURN B FAST\n"),
+        ("a list behind DIM in line", "DIM INT A, B, C, D, E\n"),
+    ],
+)
+def test_what_holds_in_one_place_holds_in_another(
+    grammar: Grammar, folds: dict[str, Inferred], title: str, text: str
+) -> None:
+    """Words at the end of lines with one in common are one choice; a list elsewhere is one here."""
+    folded = apply(grammar, folds[title].edits)
+    assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
+
+
+def test_a_fold_reads_all_that_was_read(grammar: Grammar, folds: dict[str, Inferred]) -> None:
+    """Sentences of the grammar are sentences of each fold, which is well formed."""
+    sentences, speller, random = Sentences(grammar), Speller(grammar), Random(3)
+    texts = [speller.text(sentences.random(random)) for _ in range(100)]
+    for fold in folds.values():
+        folded = apply(grammar, fold.edits)
+        recognizer = Recognizer(folded)
+        assert (None, []) == (problem(folded), [t for t in texts if not recognizer.accepts(t)])

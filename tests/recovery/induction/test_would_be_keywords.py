@@ -1,0 +1,31 @@
+"""Which names of a corpus are meant as keywords."""
+
+import pytest
+
+from grammar.notation.model import Grammar
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.corpus_lines import CorpusFile, CorpusLines
+from recovery.induction.would_be_keywords import WouldBeKeywords
+
+
+def _keywords(toy: Grammar, files: dict[str, str], types: tuple[str, ...] = ()) -> WouldBeKeywords:
+    lexer = Recognizer(toy).lexer
+    shown = [CorpusFile(o, text, frozenset({o})) for o, text in files.items()]
+    return WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, types)
+
+
+@pytest.mark.parametrize(("origins", "soft"), [("abc", False), ("ab", True)])
+def test_one_origin_does_not_outvote_others(toy: Grammar, origins: str, soft: bool) -> None:
+    """One origin that uses a keyword as a name leaves it reserved where three show the keyword."""
+    files = {o: f"MOVE A{o}\nMOVE 1\nMOVE 2\n" for o in origins}
+    files["a"] += "X := MOVE + 1\nY := MOVE + 2\n"
+    keywords = _keywords(toy, files)
+    assert ("MOVE" in keywords.words, soft) == (True, "MOVE" in keywords.soft)
+
+
+def test_a_name_before_a_type(toy: Grammar) -> None:
+    """A word before reserved words that are types is a keyword; many such words are names."""
+    few = {o: "".join(f"X{n} FIXED HALT\n" for n in range(3)) for o in "ab"}
+    many = {o: "".join(f"X FIXED{n} HALT\n" for n in range(20)) for o in "ab"}
+    assert "FIXED" in _keywords(toy, few, ("HALT",)).words
+    assert not [w for w in _keywords(toy, many, ("HALT",)).words if w.startswith("FIXED")]
