@@ -444,8 +444,8 @@ def _sequences(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[S
     lines: list[tuple[Symbol, ...]] = [()]
     for element in sequence:
         lines = [(*line, *more) for line in lines for more in _samples(rules, element)]
-        if len(lines) > _MOST_SAMPLES:
-            lines = lines[:_MOST_SAMPLES]
+        # an odd step takes both of what comes in pairs
+        lines = lines[:: len(lines) // _MOST_SAMPLES | 1]
     return lines
 
 

@@ -244,9 +244,10 @@ class Inference:
         levels = [r for r in self.rules.ladder if self.profile.has_choice(r)]
         for rule, members in found.items():
             for level in levels:
-                if level != rule and gathering:
+                if level != rule:
                     edits = (AddAlternative(level, rule),)
-                    yield Inferred(f"{rule} as an operand", edits, tuple(members))
+                    breadth = 0 if level == gathering else _LEVEL
+                    yield Inferred(f"{rule} as an operand", edits, tuple(members), breadth=breadth)
 
     # ----------------------------------------------------------------------------------- brackets
 

@@ -61,6 +61,8 @@ _PREFIX_SHARE = 0.6
 _PREFIX_TOKENS = 5
 # Lines that use a word as a name, from which on it stays one.
 _NAMED_LINES = 3
+# Files that show a change of what is there, where they are of one origin.
+_LOOSENING_FILES = 5
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -379,8 +381,12 @@ class Induction:
             origins = frozenset[str]().union(*(known[n].origins for n in lines))
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
+            files = {p for n in lines for p in known[n].files}
+            # a single origin may add something in two files; what is there it loosens with more
+            is_new = not fixed or any(isinstance(e, AddToken) for e in found.edits)
+            enough = 2 if is_new or len(origins) > 1 else _LOOSENING_FILES
             reason = ""
-            if len(origins) < least or len({p for n in lines for p in known[n].files}) < 2:
+            if len(origins) < least or len(files) < enough:
                 reason = "only one origin shows it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
@@ -401,7 +407,6 @@ class Induction:
             done |= lines
             changed |= changed_rules(found.edits)
             reserved |= {e for e in edits if isinstance(e, AddToken | AddAlternative)}
-            files = {p for n in lines for p in known[n].files}
             count = sum(len(known[n].files) for n in lines)
             seen = tuple(dict.fromkeys(s for n in sorted(lines) for s in known[n].seen))[:10]
             taken.append(
