@@ -1,15 +1,16 @@
 """What becomes of the data of a routine: read before it has a value, unused, counters changed.
 
-Only the routine's own variables are followed: nothing else can reach them. That a variable is read
-too early is said where no way through the routine gives it a value before, so a finding is certain
-as far as the language goes.
+Only the routine's own variables are followed: nothing else can reach them. Where no way through the
+routine gives a variable a value before it is read, the finding is certain as far as the language
+goes. Where some ways do and others do not, nobody knows whether these are ever taken: a note.
 """
 
 from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 from grammar.check.accesses import Access, Use, accesses, calls_of
 from grammar.check.constant_folding import constant
@@ -20,7 +21,7 @@ from grammar.semantics.symbols import Kind
 from grammar.semantics.types import BOOL, REAL
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from grammar.syntax.walk import root_variable, walk, without_parentheses
+from grammar.syntax.walk import BODIES, root_variable, walk, without_parentheses
 
 __all__ = ["check", "needed_parameters"]
 
@@ -64,6 +65,19 @@ def needed_parameters(context: Context, routine: RoutineBody) -> tuple[int, ...]
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _OnCondition:
+    """A variable that is assigned to in blocks, if in any, first at an ``offset`` of the text.
+
+    ``deciding`` are the names that the heads of ``blocks`` ask for, and those that are assigned to
+    along with it.
+    """
+
+    offset: int
+    deciding: frozenset[str]
+    blocks: frozenset[ast.Node]
+
+
 class _DataFlow:
     """The variables of one routine and what its statements do to them."""
 
@@ -99,7 +113,7 @@ class _DataFlow:
         if not followed:
             return
         bits = {key: 1 << index for index, key in enumerate(sorted(followed))}
-        known = self._assigned(bits)
+        known = self._reaching(0, lambda node, _, value: value | self._changed(node, bits))
         told = 0
         for node in sorted(known, key=_position):
             value = known[node]
@@ -111,18 +125,28 @@ class _DataFlow:
                 elif access.use is not Use.READ:
                     value |= bit
 
-    def _assigned(self, bits: dict[str, int]) -> dict[FlowNode, int]:
-        """The variables that may have a value, at each place that can be reached."""
+    def _changed(self, node: FlowNode, bits: dict[str, int]) -> int:
+        """The variables that get a value at a place."""
+        changed = 0
+        for access in self._of(node):
+            if access.use is not Use.READ:
+                changed |= bits.get(access.name.key, 0)
+        return changed
+
+    def _reaching(
+        self, first: int, passed: Callable[[FlowNode, int, int], int]
+    ) -> dict[FlowNode, int]:
+        """What may reach each place that can be reached, as bits; ``first`` is there at the start.
+
+        ``passed`` says what a place hands on of what reaches it, by the number of the way on.
+        """
         start = self._graph.start
-        known = {start: 0}
+        known = {start: first}
         todo = deque([start])
         while todo:
             node = todo.popleft()
-            value = known[node]
-            for access in self._of(node):
-                if access.use is not Use.READ:
-                    value |= bits.get(access.name.key, 0)
-            for after in node.after:
+            for number, after in enumerate(node.after):
+                value = passed(node, number, known[node])
                 before = known.get(after)
                 if before is None or value | before != before:
                     known[after] = value | (before or 0)
@@ -158,10 +182,80 @@ class _DataFlow:
 
     def read_too_early(self) -> Iterator[Diagnostic]:
         """Variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
+        told: set[str] = set()
         for access in self.early(self.variables):
+            told.add(access.name.key)
             message = f"{access.name.text} has no value yet"
             reason = "nothing before this assigns to it"
             yield self._context.finding("read-too-early", access.name, message, reason=reason)
+        for access, line in self._possibly_early(self.variables - told):
+            message = f"{access.name.text} may have no value yet"
+            reason = f"line {line} assigns to it, and there is a way past that"
+            yield self._context.finding("read-perhaps-early", access.name, message, reason=reason)
+
+    def _possibly_early(self, followed: frozenset[str]) -> Iterator[tuple[Access, int]]:
+        """The first read of each variable that a way without a value leads to.
+
+        With it comes the line of an assignment. Loops count as gone through at least once. Not
+        told is what a condition may rule out: one that asks for a name which also decides whether
+        the variable is assigned to, or is assigned along with it.
+        """
+        some = self._on_conditions(followed)
+        if not some:
+            return
+        bits = {key: 1 << index for index, key in enumerate(sorted(some))}
+
+        def lacking(node: FlowNode, number: int, value: int) -> int:
+            value &= ~self._changed(node, bits)
+            if number == 0 and isinstance(node.statement, ast.For | ast.While):  # the way past it
+                for key, one in some.items():
+                    value &= ~bits[key] if node.statement in one.blocks else ~0
+            return value
+
+        known = self._reaching(sum(bits.values()), lacking)
+        place_of = {placed.statement: placed for placed in self._routine.statements}
+        told: set[str] = set()
+        for node in sorted(known, key=_position):
+            value = known[node]
+            for access in self._of(node):
+                key = access.name.key
+                if access.use is not Use.READ:
+                    value &= ~bits.get(key, 0)
+                elif node.statement and key not in told and bits.get(key, 0) & value:
+                    read = place_of[node.statement]
+                    asked = set[str]().union(*map(self._asked, (read, *_around(read))))
+                    if asked.isdisjoint(some[key].deciding):
+                        told.add(key)
+                        yield access, self._context.source.place(some[key].offset)[0]
+
+    def _on_conditions(self, followed: frozenset[str]) -> dict[str, _OnCondition]:
+        """Those variables that are assigned to inside of blocks, or that a GOTO may pass by."""
+        assigned: dict[str, list[PlacedStatement]] = {}
+        along: dict[PlacedStatement | None, set[str]] = {}
+        has_jumps = False
+        for placed in self._routine.statements:
+            has_jumps |= isinstance(placed.statement, ast.Goto)
+            for access in accesses(self._context, placed.statement):
+                key = access.name.key
+                if access.use is not Use.READ:
+                    along.setdefault(placed.inside, set()).add(key)
+                    if key in followed:
+                        assigned.setdefault(key, []).append(placed)
+        found: dict[str, _OnCondition] = {}
+        for key, places in assigned.items():
+            blocks = {around for one in places for around in _around(one)}
+            if blocks or has_jumps:
+                beside = [along[one.inside] for one in places if one.inside]
+                names = set[str]().union(*map(self._asked, blocks), *beside) - {key}
+                nodes = frozenset(one.statement for one in blocks)
+                found[key] = _OnCondition(places[0].statement.span[0], frozenset(names), nodes)
+        return found
+
+    def _asked(self, placed: PlacedStatement) -> set[str]:
+        """The names in the head of a block; none for a statement that is none."""
+        if type(placed.statement) not in BODIES:
+            return set()
+        return {access.name.key for access in accesses(self._context, placed.statement)}
 
     def unused(self) -> Iterator[Diagnostic]:
         """Variables and parameters that nothing reads; notes."""
@@ -178,6 +272,14 @@ class _DataFlow:
             what = "is assigned to and never read" if key in written else "is never used"
             message = f"{symbol.name} {what}"
             yield self._context.finding("unused", symbol.span, message)
+
+
+def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
+    """The statements that one stands in, the innermost first."""
+    around = placed.inside
+    while around is not None:
+        yield around
+        around = around.inside
 
 
 def _is_whole(node: ast.Expression | None, key: str) -> bool:

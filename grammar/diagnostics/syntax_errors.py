@@ -52,13 +52,18 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
 
 @dataclass(frozen=True, slots=True)
 class _Mistake:
-    """What is wrong: the words for it, and where, if not at the offending token."""
+    """What is wrong: the words for it, and where, if not at the offending token.
+
+    ``is_unconfirmed``: somebody's program has it, which proves neither that it is KRL nor that it
+    is not.
+    """
 
     message: str
     fix: Fix | None = None
     reason: str = ""
     slug: str = "syntax"
     region: Region | None = None
+    is_unconfirmed: bool = False
 
 
 def _finding(site: ErrorSite) -> Diagnostic:
@@ -77,6 +82,7 @@ def _finding(site: ErrorSite) -> Diagnostic:
         mistake.region or region,
         mistake.message,
         reason=mistake.reason,
+        is_unconfirmed=mistake.is_unconfirmed,
         fix=mistake.fix,
     )
 
@@ -254,6 +260,9 @@ def _signs(site: ErrorSite) -> _Mistake | None:
     if text == "'":
         fix = Fix("write 'B101' or 'H1F'; texts stand in double quotation marks")
         return _Mistake("what stands behind ' is no number in bits", fix)
+    if text == "#" and place > 0 and site.word(place + 1)[:1].isalpha():
+        fix = site.swap(f"#{site.tokens[place + 1][0]}", place, place + 1)
+        return _Mistake("a constant follows its # without a blank", fix, is_unconfirmed=True)
     if text in ("@", "`", "\\", "?", "~", "!", "§"):
         return _Mistake(f"{text} is no sign of KRL")
     return None
@@ -264,7 +273,8 @@ def _decimal_points(site: ErrorSite) -> _Mistake | None:
     if site.text != ".":
         return None
     if site.word(site.place + 1)[:1].isdigit() and site.expects("INTEGER"):
-        return _Mistake("a number begins with a digit", site.swap("0.", site.place))
+        fix = site.swap("0.", site.place)
+        return _Mistake("a number begins with a digit", fix, is_unconfirmed=True)
     if site.word(site.place - 1).isdigit():
         return _Mistake("a number ends with a digit", site.swap(".0", site.place))
     return None

@@ -22,7 +22,7 @@ USED = ("$ANOUT[1] = I + N", "$FLAG[1] = B")
         ["N = 1", "B = TRUE", "I = N + 1"],
         ["N = I ;> KRL409?", "I = 1", "B = TRUE"],
         ["I = I + 1 ;> KRL409?", "N = 1", "B = I > 1"],
-        ["N = 1", "B = TRUE", "IF $IN[1] THEN", "I = 2", "ENDIF"],
+        ["N = 1", "B = TRUE", "IF $IN[1] THEN", "I = 2", "ELSE", "I = 3", "ENDIF"],
         ["N = 1", "IF B THEN ;> KRL409?", "I = 2", "ENDIF", "B = TRUE", "I = 3"],
         [
             "N = 1",
@@ -31,7 +31,7 @@ USED = ("$ANOUT[1] = I + N", "$FLAG[1] = B")
             "IF N > 5 THEN",
             "EXIT",
             "ENDIF",
-            "N = I",
+            "N = I ;> KRL415-",
             "I = N",
             "ENDLOOP",
         ],
@@ -46,10 +46,43 @@ def test_values(agrees: Agrees, lines: list[str]) -> None:
     agrees(text, with_data=True)
 
 
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["IF $IN[1] THEN", "I = 2", "ENDIF", "N = I ;> KRL415-"],
+        ["IF $IN[1] THEN", "I = 2", "ELSE", "I = 3", "ENDIF", "N = I"],
+        ["IF $IN[1] THEN", "I = 2", "ELSE", "HALT", "RETURN", "ENDIF", "N = I"],
+        ["SWITCH $MODE_OP", "CASE #T1", "I = 2", "ENDSWITCH", "N = I ;> KRL415-"],
+        ["SWITCH $MODE_OP", "CASE #T1", "I = 2", "DEFAULT", "I = 1", "ENDSWITCH", "N = I"],
+        ["IF $IN[1] THEN", "I = 2", "ENDIF", "IF $IN[1] THEN", "N = I", "ENDIF"],
+        [
+            "B = FALSE",
+            "IF $IN[1] THEN",
+            "B = TRUE",
+            "I = 2",
+            "ENDIF",
+            "IF B THEN",
+            "N = I",
+            "ENDIF",
+        ],
+        ["FOR N = 1 TO 2", "I = N", "ENDFOR", "N = I"],
+        ["N = 0", "WHILE N < 2", "N = N + 1", "I = N", "ENDWHILE", "N = I"],
+        ["IF $IN[1] THEN", "GOTO BEHIND", "ENDIF", "I = 1", "BEHIND:", "N = I ;> KRL415-"],
+        ["IF $IN[1] THEN", "I = 1", "GOTO BEHIND", "ENDIF", "I = 2", "BEHIND:", "N = I"],
+        ["LOOP", "IF $IN[1] THEN", "EXIT", "ENDIF", "I = 1", "ENDLOOP", "N = I ;> KRL415-"],
+        ["LOOP", "IF $IN[1] THEN", "I = 1", "EXIT", "ENDIF", "ENDLOOP", "N = I"],
+    ],
+)
+def test_values_on_some_ways(agrees: Agrees, lines: list[str]) -> None:
+    """Where a way leads past each assignment, and no condition rules it out, there is a note."""
+    text = routine("B = TRUE", "N = 1", *lines, "$ANOUT[1] = N", "$FLAG[1] = B")
+    agrees(text, with_data=True)
+
+
 def test_names_in_texts(agrees: Agrees) -> None:
     """A variable that VARSTATE is asked for may have no value."""
     line = 'IF VARSTATE("I") == #INITIALIZED THEN'
-    agrees(routine(line, "N = I", "B = TRUE", "ENDIF", *USED), with_data=True)
+    agrees(routine("N = 1", "B = TRUE", line, "N = I", "ENDIF", *USED), with_data=True)
 
 
 def test_unused(agrees: Agrees) -> None:

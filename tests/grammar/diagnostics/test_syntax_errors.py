@@ -77,6 +77,7 @@ def test_first_finding_is_on_the_line_of_the_negative(negative: Negative) -> Non
         ("$OUT[1 = TRUE", None, None),
         ("// a comment", "a comment begins with a semicolon", "; a comment"),
         ("X = -.5", "a number begins with a digit", "X = -0.5"),
+        ("E = # OPEN", "a constant follows its # without a blank", "E = #OPEN"),
         ("GLOBAL DECL INT N", "GLOBAL stands behind DECL", "DECL GLOBAL INT N"),
         ("PART_T LAST", "DECL is missing before PART_T", "DECL PART_T LAST"),
         ("ELSEIF $IN[2] THEN", "KRL has no ELSEIF", None),
@@ -97,6 +98,12 @@ def test_usual_mistakes(line: str, message: str | None, better: str | None) -> N
         assert message == first.message
     if better is not None:
         assert f"DEF A()\n{better}\nEND\n" == mended(text, first.fix)
+
+
+@pytest.mark.parametrize("line", ["X = .5", "E = # OPEN"])
+def test_a_spelling_of_one_program_alone_is_no_error(line: str) -> None:
+    """What one program has and nothing confirms or refutes is a warning."""
+    assert ["warning"] == [one.severity for one in findings(f"DEF A()\n{line}\nEND\n")]
 
 
 @pytest.mark.parametrize(
