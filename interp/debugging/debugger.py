@@ -332,6 +332,9 @@ class Debugger:
         """
         history = self._history
         history.comes(self._count())
+        if history.is_idle:
+            stop = self._why(executor)
+            return None if stop is None else self._stopped(executor, stop)
         line: int | None = None
         for change in history.due():
             if isinstance(change, Assigned):
@@ -364,7 +367,10 @@ class Debugger:
             raise _Again
 
     def _count(self) -> int:
-        return sum(one.inside.begun for one in self._tasks.values())
+        count = 0
+        for one in self._tasks.values():
+            count += one.inside.begun
+        return count
 
     # ----------------------------------------------------------------------- why to stop
 

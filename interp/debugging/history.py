@@ -77,6 +77,11 @@ class History:
         """Whether what happens has happened before."""
         return self._goal is not None or self._search is not None
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether there is nothing to return to, to look for, or to change."""
+        return self._goal is None and self._search is None and not self.changes
+
     def begin(self) -> None:
         """A run begins."""
         self.here = (0, -1)

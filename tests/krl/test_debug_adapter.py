@@ -324,3 +324,38 @@ def test_over_standard_input_and_output(project: Path) -> None:
         assert "entry" == client.wait("stopped")["reason"]
         client.do("disconnect")
         assert 0 == process.wait(30)
+
+
+def test_a_program_that_runs_can_be_paused_and_ended(client: Client, tmp_path: Path) -> None:
+    """It stops at its next statement; breakpoints can be set meanwhile."""
+    file = tmp_path / "main.src"
+    file.write_text("DEF MAIN()\nINT I\nLOOP\nI=0\nWAIT SEC 0.01\nENDLOOP\nEND\n", encoding="utf-8")
+    begun(client, file)
+    assert "the program runs" == client.ask("stackTrace", threadId=1)["message"]
+    client.do("pause", threadId=1)
+    assert "pause" == client.wait("stopped")["reason"]
+    client.do("continue", threadId=1)
+    client.do("setBreakpoints", source={"path": str(file)}, breakpoints=[{"line": 4}])
+    assert "breakpoint" == client.wait("stopped")["reason"]
+    client.do("setBreakpoints", source={"path": str(file)}, breakpoints=[])
+    client.do("continue", threadId=1)
+    client.do("terminate")
+    client.wait("terminated")
+
+
+def test_over_a_port(project: Path) -> None:
+    """Clients are served one after the other; what is no message ends a session, not the server."""
+    command = [sys.executable, "-m", "krl", "debug", "--dap", "--port", "0"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        port = int(process.stderr.readline().rpartition(":")[2])
+        with socket.create_connection(("127.0.0.1", port), 30) as rude:
+            rude.sendall(b"GET / HTTP/1.1\r\n\r\n")
+            assert b"without a length" in rude.recv(1000)
+        with socket.create_connection(("127.0.0.1", port), 30) as polite:
+            stream = cast(BinaryIO, polite.makefile("rwb"))
+            client = Client(stream, stream)
+            begun(client, project, {"line": 8})
+            assert "breakpoint" == client.wait("stopped")["reason"]
+            client.do("disconnect")
+        process.terminate()
