@@ -108,10 +108,10 @@ class Prompt(cmd.Cmd):
     # ----------------------------------------------------------------------- lines
 
     def onecmd(self, line: str) -> bool:
-        """Carry out a line; whether the program goes on."""
+        """Carry out a line, an empty one in a terminal like the last; whether to go on."""
+        line = line.strip() or self._last
+        self._last = line if self._is_terminal else ""
         words = line.split()
-        if line and self._is_terminal:
-            self._last = line
         if not words or words[0].startswith(";"):
             return False
         name = _SHORT.get(words[0], words[0]).split()
@@ -129,10 +129,6 @@ class Prompt(cmd.Cmd):
             return False
         self._way = way
         return True
-
-    def emptyline(self) -> bool:
-        """An empty line does the last command again, in a terminal."""
-        return self.onecmd(self._last)
 
     @staticmethod
     def _say(text: str) -> None:

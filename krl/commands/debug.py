@@ -119,10 +119,7 @@ def _at_prompt(options: RunOptions) -> int:
         prepared = Prepared(program, setup.routine)
 
         def begin() -> "RunResult":
-            events: list[TraceEvent] = []
-
             def take(event: "TraceEvent") -> None:
-                events.append(event)
                 if event.kind == "message" and not debugger.is_repeating:
                     typer.echo(one_line(f"message: {event.fields.get('text')}"))
 

@@ -180,10 +180,7 @@ class Adapter:
         prepared = Prepared(self._program, self._setup.routine)
 
         def begin() -> RunResult:
-            events: list[TraceEvent] = []
-
             def take(event: TraceEvent) -> None:
-                events.append(event)
                 if event.kind == "message" and not debugger.is_repeating:
                     self._output(f"{event.fields.get('text')}\n", "console")
 
