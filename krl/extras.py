@@ -22,6 +22,7 @@ _EXTRA_OF = {
     "ruckig": "arm",
     "scipy": "arm",
     "watchfiles": "watch",
+    "xdist": "test",
 }
 
 _OURS = ("conformance", "grammar", "interp", "recovery", "reports", "support")

@@ -65,7 +65,7 @@ def run_tests(
     ):
         arguments += [] if value is None else [option, str(value)]
     arguments += ["-x"] * stop + ["--krl-update"] * update
-    with expected_extras("pytest", *ARM):
+    with expected_extras("pytest", *ARM, *["xdist"] * (processes is not None)):
         import pytest
 
         installed = metadata.entry_points(group="pytest11")

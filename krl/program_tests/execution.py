@@ -143,12 +143,12 @@ def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int
     errors: dict[int, str] = {}
     drivers = []
     for place, test in enumerate(tests):
-        call = test.call or program.start().name
-        driver = Driver(_driver_name(place), test.before, call)
         try:
+            call = test.call or program.start().name
+            driver = Driver(_driver_name(place), test.before, call)
             with_drivers(program, [driver], stand_ins)
             drivers.append(driver)
-        except DriverError as error:
+        except (DriverError, LinkError) as error:
             errors[place] = str(error)
     made = with_drivers(program, drivers, stand_ins if drivers else {})
     loaded = load(made, program.main.module.path, strict=False, stands_in=True)

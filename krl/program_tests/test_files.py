@@ -259,9 +259,9 @@ class _Reader:
     def _routines(self) -> Iterator[_Entry]:
         """Each routine TEST… with its lines, and what stands beside them.
 
-        The first routine has the name of its file, which is of no meaning where it expects nothing.
+        The first routine carries the name of the file, and is no test where it expects nothing.
         """
-        name, start, about = "", 0, 0
+        name, start, about, is_first = "", 0, 0, True
         expected: list[tuple[str, int, tuple[str, int] | None]] = []
         for number, line in enumerate(self._lines, start=1):
             found = _BESIDE.match(line)
@@ -274,9 +274,9 @@ class _Reader:
                     raise self.error(number, "an expectation outside of a routine TEST…")
                 expected.append((text.strip(), number, (self._path.name, about)))
             if name and _END.fullmatch(code):
-                if expected or name.lower() != self._path.stem.lower():
+                if expected or not is_first:
                     yield _Span(start, number + 1), {"name": name, "call": name}, expected
-                name = ""
+                name, is_first = "", False
 
     def _test(
         self, span: _Span, entry: Mapping[str, Any], expected: Sequence[_Stated]
