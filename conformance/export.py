@@ -79,6 +79,7 @@ SCHEMA: Final[Mapping[str, Any]] = {
                                 },
                                 number={"type": ["integer", "null"]},
                                 tolerance=_NUMBER,
+                                near={"type": "array", "items": _NUMBER},
                                 when=_object(
                                     {
                                         "relation": {"enum": ["at", "before", "after", "between"]},
@@ -137,6 +138,8 @@ def _expectation(one: Expectation, case: Case) -> dict[str, Any]:
         found["number"] = int(word) if word.isdigit() else known.number if known else None
     if one.tolerance is not None:
         found["tolerance"] = one.tolerance
+    if one.near:
+        found["near"] = list(one.near)
     if one.when is not None:
         found["when"] = _when(one.when)
     return found
@@ -187,7 +190,8 @@ def _seen(case: Case, seen: Observation) -> dict[str, Any]:
 
 #: What the reference has watched even where it did not happen.
 _WATCHED: Final = (
-    "advance_stop anout assign blend_apex blend_end blend_start brake halt interrupt_enter line "
+    "advance_stop anout assign blend_apex blend_end blend_start brake call end halt "
+    "interrupt_enter line "
     "message motion_end motion_planned motion_start out resume trigger"
 ).split()
 
