@@ -16,10 +16,12 @@ from interp.values.faults import LinkError
 if TYPE_CHECKING:
     from interp.bytecode.verifier.verify import Verified
 
-__all__ = ["EXECUTORS", "Prepared", "available"]
+__all__ = ["COMPILED", "EXECUTORS", "Prepared", "available", "is_available"]
 
 #: The reference first.
 EXECUTORS: Final = ("tree", "vm", "native")
+#: The machine in C with native code of the program: takes a C compiler, only where it is asked for.
+COMPILED: Final = "compiled"
 
 
 def available() -> tuple[str, ...]:
@@ -29,15 +31,28 @@ def available() -> tuple[str, ...]:
     return EXECUTORS if AVAILABLE else EXECUTORS[:-1]
 
 
+def is_available(name: str) -> bool:
+    """Whether an executor can run here, `COMPILED` too."""
+    from interp.native import AVAILABLE
+
+    if name != COMPILED or not AVAILABLE:
+        return name in available()
+    from interp.native.compiled import compiler
+
+    return compiler() is not None
+
+
 class Prepared:
     """A program for executors of any kind: compiled and verified where one needs it, and once.
 
-    ``routine`` is what it begins with, by default the first one of its first file.
+    ``routine`` is what it begins with, by default the first one of its first file. ``notes`` says
+    why the machine runs a program that native code was asked for.
     """
 
     def __init__(self, program: CheckedProgram, routine: str | None = None) -> None:
         self.program = program
         self.routine = routine
+        self.notes: list[str] = []
 
     @cached_property
     def verified(self) -> Verified:
@@ -58,15 +73,27 @@ class Prepared:
                 from interp.bytecode.vm.executor import Machine
 
                 return Machine(self.verified, self.start, limits, sink)
-            case "native":
+            case "native" | "compiled":
                 from interp.native import AVAILABLE
 
                 if not AVAILABLE:
                     raise LinkError("the machine in C was not built: there was no C compiler")
+                if name == COMPILED:
+                    return self._compiled(limits, sink)
                 from interp.native.machine import Machine as NativeMachine
 
                 return NativeMachine(self.verified, self.start, limits, sink)
         raise ValueError(f"there is no executor {name}")
+
+    def _compiled(self, limits: Limits, sink: Sink | None) -> Executor:
+        """One with native code, else the machine that it is made for."""
+        from interp.native.compiled import CompiledMachine
+
+        try:
+            return CompiledMachine(self.verified, self.start, limits, sink)
+        except OSError as error:
+            self.notes.append(f"no native code: {error}; the machine in C runs the program")
+            return self.executor("native", limits, sink)
 
     @property
     def start(self) -> str:

@@ -54,6 +54,7 @@ class Executor(StrEnum):
     TREE = "tree"
     VM = "vm"
     NATIVE = "native"
+    COMPILED = "compiled"
 
 
 class Robot(StrEnum):

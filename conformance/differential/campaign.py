@@ -14,7 +14,7 @@ from typing import Any, Final
 from conformance.differential.construct_coverage import Counts, counted, language, missing
 from conformance.differential.divergence import Difference, Files, difference, prepared
 from conformance.differential.reduction import reduce_program
-from conformance.differential.runs import EXECUTORS, Prepared, available, trace_of
+from conformance.differential.runs import EXECUTORS, Prepared, is_available, trace_of
 from grammar.generation.closed.programs import seeded
 from grammar.syntax.build import builder
 from interp.values.faults import LinkError
@@ -142,7 +142,7 @@ def _unlittered() -> Iterator[None]:
 
 
 def _run(shard: _Shard) -> _Outcome:
-    absent = set(shard.executors) - set(available())
+    absent = [name for name in shard.executors if not is_available(name)]
     if absent:
         raise WorkersError(f"a worker on {node()} has no executor {min(absent)}")
     if next(_shards_run) % _LIFE == 0:

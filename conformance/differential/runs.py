@@ -14,7 +14,7 @@ from typing import Any, Final
 from conformance.differential.random_world import RandomWorld
 from conformance.differential.traces import Fact, Trace
 from interp import executors
-from interp.executors import Prepared, available
+from interp.executors import COMPILED, Prepared, available, is_available
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
@@ -35,7 +35,7 @@ from interp.port.requests import (
 from interp.program.load import Limits
 from interp.values.faults import LinkError, RuntimeFailure
 
-__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "trace_of"]
+__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "is_available", "trace_of"]
 
 #: More statements than any generated program executes, and a slice short enough to come up.
 LIMITS: Final = Limits(statements=20_000, per_slice=25)
@@ -54,7 +54,7 @@ def _made(name: str) -> Factory:
 
 
 #: The executors by name; the first one is the reference.
-EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in executors.EXECUTORS}
+EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in (*executors.EXECUTORS, COMPILED)}
 
 
 @dataclass(slots=True)

@@ -28,7 +28,7 @@ from interp import session
 from interp.controller.input_script import Script, ScriptError
 from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
-from interp.executors import EXECUTORS, Prepared, available
+from interp.executors import COMPILED, EXECUTORS, Prepared, is_available
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.program.load import CheckedProgram, Limits, load
@@ -39,6 +39,7 @@ from interp.robot.simulation.robot import Robot
 from interp.values.faults import LinkError
 
 __all__ = [
+    "COMPILED",
     "EXECUTORS",
     "FRONT",
     "PROFILES",
@@ -135,7 +136,7 @@ def _finding(found: Diagnostic) -> Finding:
 
 def missing(setup: Setup) -> str:
     """Why a setup cannot be used on this machine; empty where it can."""
-    if setup.executor not in available():
+    if not is_available(setup.executor):
         return f"there is no executor {setup.executor} on this machine"
     if setup.robot == "mujoco" and find_spec("mujoco") is None:
         return "MuJoCo is not installed"

@@ -17,8 +17,11 @@ file                     what it is
 ``translate.c``          instructions on a stack to register code, which ``register_code.h`` lists
 ``virtual_stack.c``      what lies on the stack while that is done
 ``translate_*.c``        the parts for control flow, for data movement and for arithmetic
-``run.c``                the interpreter: what each step of register code does
+``steps.h``              what each step of register code does
+``run.c``                the interpreter: steps that call and leave
 ``dispatch.h``           how the interpreter goes from one step to the next
+`compiled`               register code as native code, by a C compiler
+``compiled.h``           what that is written with
 ``array_operations.h``   what steps do with arrays
 ``machine.c``            memory and frames
 ``numeric_functions.c``  predefined functions of numbers and poses

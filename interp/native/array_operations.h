@@ -62,4 +62,20 @@ static inline void krl_set_text(krl_cell *target, int32_t length, const struct k
     krl_blank_cells(target + count, length - count);
 }
 
+/* Puts arguments, of which structures are references, into a frame, and takes the rest's values away. */
+static inline void krl_receive(struct krl_machine *machine, const struct krl_routine *callee,
+                               krl_cell *frame, const krl_cell *arguments)
+{
+    const struct krl_code *code = callee->code;
+    for (int32_t i = 0; i < code->parameter_count; i++) {
+        const struct krl_slot *slot = &code->slots[i];
+        int is_copied = slot->handed.mode == KRL_BY_VALUE &&
+                        !krl_is_plain(&machine->program, slot->handed.type);
+        const krl_cell *given = is_copied ? machine->cells + krl_int_in(*arguments) : arguments;
+        krl_copy_cells(frame + slot->offset, given, slot->cells);
+        arguments += krl_stack_cells(&slot->handed);
+    }
+    krl_blank_cells(frame + callee->received, callee->frame - callee->received);
+}
+
 #endif

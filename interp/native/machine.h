@@ -70,13 +70,26 @@ enum krl_told {
     KRL_TOLD_BRANCH = 16
 };
 
+struct krl_machine;
+struct krl_stopped;
+
+/* Runs a program that was compiled from the step that `stopped` has, as `krl_run` does; 0 where it cannot
+ * be entered there. */
+typedef int krl_compiled(struct krl_machine *machine, int *is_begun, struct krl_stopped *stopped);
+
+/* What a program that was compiled calls of this module. */
+struct krl_outside;
+
 struct krl_machine {
     struct krl_program program;
+    krl_compiled *compiled; /* its steps as C that was compiled, NULL for none */
+    const struct krl_outside *outside;
     int told; /* which events are traced */
     struct krl_routine *routines;
     struct krl_step *steps;
     int32_t step_count;
     struct krl_array *arrays;
+    int32_t array_count;
     int32_t most_whole; /* the most cells that any frame takes */
     int32_t most_stack;
 
@@ -187,5 +200,18 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program,
 /* `inputs` are what lay on the stack; the result takes the place of the first of them. */
 void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
                    const struct krl_entry *entry, krl_cell *inputs);
+
+struct krl_outside {
+    int (*compute)(enum krl_function function, float one, float other, float *result);
+    int (*compose)(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
+    int (*invert)(krl_cell *target, const krl_cell *pose, int32_t size);
+    void (*call_text)(struct krl_machine *machine, enum krl_text_function function,
+                      const struct krl_entry *entry, krl_cell *inputs);
+};
+
+/* What both sides of a program that was compiled have to agree on. */
+#define KRL_LAYOUT                                                                                 \
+    ((uint32_t)(sizeof(struct krl_machine) * 65599 + sizeof(struct krl_step) * 4099 +              \
+                sizeof(struct krl_call) * 257 + KRL_STEP_COUNT))
 
 #endif

@@ -8,6 +8,14 @@
 #include <structmember.h>
 
 #include "machine.h"
+#include "register_code.h"
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <dlfcn.h>
+#define HAS_LIBRARIES 1
+#else
+#define HAS_LIBRARIES 0
+#endif
 
 struct core {
     PyObject_HEAD
@@ -314,6 +322,70 @@ static PyObject *core_floor(PyObject *self, void *Py_UNUSED(closure))
     return PyLong_FromLong(machine->fp + machine->routines[machine->code].frame);
 }
 
+/* ---------------------------------------------------------------------------- register code */
+
+static const char *const step_names[] = {
+#define STEP_NAME(name) #name,
+    KRL_STEPS(STEP_NAME)
+#undef STEP_NAME
+};
+
+/* All steps, each a tuple; the targets of jumps are the numbers of steps. */
+static PyObject *core_steps(PyObject *self, PyObject *Py_UNUSED(ignored))
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    PyObject *found = PyList_New(machine->step_count);
+    for (int32_t i = 0; found != NULL && i < machine->step_count; i++) {
+        const struct krl_step *step = &machine->steps[i];
+        int32_t d = KRL_IS_JUMP(step->op) ? i + step->d / (int32_t)sizeof *step : step->d;
+        PyObject *one = Py_BuildValue("siiiiii", step_names[step->op], (int)step->a, (int)step->b, (int)step->c,
+                                      (int)d, (int)step->tag, (int)step->statement);
+        if (one == NULL || PyList_SetItem(found, i, one) < 0)
+            Py_CLEAR(found);
+    }
+    return found;
+}
+
+/* The arrays that steps name: base, width and sizes of each. */
+static PyObject *core_arrays(PyObject *self, PyObject *Py_UNUSED(ignored))
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    PyObject *found = PyList_New(machine->array_count);
+    for (int32_t i = 0; found != NULL && i < machine->array_count; i++) {
+        const struct krl_array *array = &machine->arrays[i];
+        PyObject *one = Py_BuildValue("iiiiii", (int)array->base, (int)array->width, (int)array->dimensions,
+                                      (int)array->sizes[0], (int)array->sizes[1], (int)array->sizes[2]);
+        if (one == NULL || PyList_SetItem(found, i, one) < 0)
+            Py_CLEAR(found);
+    }
+    return found;
+}
+
+/* Runs from now on what was compiled from these very steps. The library stays. */
+static PyObject *core_load(PyObject *self, PyObject *arguments)
+{
+    static const struct krl_outside outside = {krl_compute, krl_compose, krl_invert, krl_call_text};
+    struct krl_machine *machine = &((struct core *)self)->machine;
+    const char *path;
+    if (!PyArg_ParseTuple(arguments, "s", &path))
+        return NULL;
+#if HAS_LIBRARIES
+    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    const uint32_t *layout = library == NULL ? NULL : dlsym(library, "krl_layout");
+    if (layout == NULL || *layout != KRL_LAYOUT) {
+        PyErr_SetString(PyExc_OSError, library == NULL ? dlerror() : "it was compiled for another machine");
+        return NULL;
+    }
+    *(void **)&machine->compiled = dlsym(library, "krl_go");
+    machine->outside = &outside;
+    Py_RETURN_NONE;
+#else
+    (void)outside, (void)machine;
+    PyErr_SetString(PyExc_OSError, "this system has no shared objects");
+    return NULL;
+#endif
+}
+
 /* ---------------------------------------------------------------------------- the type */
 
 static PyMethodDef core_methods[] = {
@@ -325,6 +397,9 @@ static PyMethodDef core_methods[] = {
     {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
     {"call", core_call, METH_VARARGS, "call(number): code, first cell, statement, serial of an open call."},
     {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
+    {"steps", core_steps, METH_NOARGS, "steps(): name, a, b, c, d, tag and LINE of each step."},
+    {"arrays", core_arrays, METH_NOARGS, "arrays(): base, width, dimensions, three sizes of each."},
+    {"load", core_load, METH_VARARGS, "load(library): run what was compiled from these steps."},
     {NULL, NULL, 0, NULL},
 };
 

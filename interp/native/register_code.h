@@ -29,7 +29,8 @@
     X(EQ_REAL) X(NE_REAL) X(LT_REAL) X(GT_REAL) X(LE_REAL) X(GE_REAL)                              \
     X(EQ_REAL_K) X(NE_REAL_K) X(LT_REAL_K) X(GT_REAL_K) X(LE_REAL_K) X(GE_REAL_K)
 
-#define KRL_STEPS(X)                                                                               \
+/* What neither calls nor leaves. */
+#define KRL_ORDINARY_STEPS(X)                                                                               \
     KRL_JUMPS(X)                                                                                   \
     KRL_RELATIONS(X)                                                                               \
     X(NOP)                                                                                         \
@@ -69,13 +70,16 @@
     X(INT_TO_REAL) X(REAL_TO_INT) X(INT_TO_CHAR) /* a from b */                                    \
     X(FUNCTION)          /* a from b and c, function tag */                                        \
     X(TEXT)              /* inputs from a on, entry b, function tag */                             \
-    X(CALL) X(CALL_COPY) /* arguments from a on, routine b, own frame c; and behind it d cells */  \
     X(CHECK_CALL)        /* faults where the call would: routine b, own frame c */                 \
+    X(FAIL)              /* fault b */                                                             \
+    X(REMEMBER_LOCAL) X(REMEMBER_DATA) /* the address a was written last */
+
+#define KRL_STEPS(X)                                                                               \
+    KRL_ORDINARY_STEPS(X)                                                                          \
+    X(CALL) X(CALL_COPY) /* arguments from a on, routine b, own frame c; and behind it d cells */  \
     X(RETURN) X(RETURN_VALUE) /* b */                                                              \
     X(END_ACTION)                                                                                  \
     X(AT)                /* the statement is that of place b */                                    \
-    X(FAIL)              /* fault b */                                                             \
-    X(REMEMBER_LOCAL) X(REMEMBER_DATA) /* the address a was written last */                        \
     X(PYTHON)            /* for Python: matter tag of the instruction at place b; stack up to a */
 
 enum krl_step_op {

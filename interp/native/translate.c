@@ -289,6 +289,7 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
     machine->steps = at.steps;
     machine->step_count = at.count;
     machine->arrays = at.arrays;
+    machine->array_count = at.array_count;
     if (at.is_wrong)
         return 0;
     land(machine);

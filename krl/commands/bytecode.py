@@ -1,5 +1,6 @@
 """`krl compile`, `krl asm` and `krl disasm`: programs of the bytecode machine."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,6 +34,10 @@ def compile_file(
     strict: Annotated[
         bool, typer.Option("--strict", help="Write nothing while the checker finds an error.")
     ] = False,
+    native: Annotated[
+        bool,
+        typer.Option("--native", help="Make native code too, for krl run --executor compiled."),
+    ] = False,
 ) -> int:
     """Compile a program with its whole project to bytecode, verify it, and write its image.
 
@@ -51,6 +56,8 @@ def compile_file(
     target = output or file.with_suffix(".krlb")
     write_image_of(compiled.program, file, target)
     told = [f"left out: {why}" for why in left]
+    if native:
+        told += _native_code(compiled.program)
     told += [f"{one.path}:{one.line}: {one.reason}" for one in compiled.refusals]
     for line in told[:_MOST_TOLD]:
         typer.echo(one_line(line), err=True)
@@ -60,6 +67,22 @@ def compile_file(
     count = sum(len(code.instructions) for code in codes)
     typer.echo(one_line(f"{target}: {len(codes):,} code objects, {count:,} instructions"))
     return FINDINGS if compiled.refusals else FINE
+
+
+def _native_code(program: "Program") -> Iterator[str]:
+    """Make and keep it; gives why there is none."""
+    from interp.bytecode.verifier.verify import verify
+    from interp.native import AVAILABLE
+
+    if not AVAILABLE:
+        yield "no native code: the machine in C was not built"
+        return
+    from interp.native.compiled import keep
+
+    try:
+        keep(verify(program))
+    except OSError as error:
+        yield f"no native code: {error}"
 
 
 def assemble_file(

@@ -159,8 +159,10 @@ def _check_targets(
 
 def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None) -> "RunResult":
     """Run it with a progress bar, writing the trace as it comes."""
+    from interp.executors import Prepared
     from interp.session import run_program
 
+    prepared = Prepared(program, setup.routine)
     with progress_bar("running, virtual seconds", None) as bar, _tracing(trace) as stream:
         kept: list[TraceEvent] = []
         told = 0
@@ -175,8 +177,10 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
             bar(now // 1_000_000 - told)
             told = now // 1_000_000
 
-        done = run_program(program, setup, take=take, on_time=on_time)
-        return replace(done, events=kept)
+        done = run_program(prepared, setup, take=take, on_time=on_time)
+    for note in prepared.notes:
+        typer.echo(one_line(note), err=True)
+    return replace(done, events=kept)
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """The command: what is to be checked, under which settings, and what is done about it."""
 
 import os
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from krl.project_settings import (
     read_settings,
     settings_of,
 )
+from support.files.user_cache import user_cache
 
 if TYPE_CHECKING:
     from grammar.check.batch import CheckOptions, CheckReport
@@ -131,7 +131,7 @@ def check(
         selection,
         None if write_baseline else known,
         jobs,
-        None if no_cache else _usable(cache, _users_cache()),
+        None if no_cache else _usable(cache, user_cache()),
     )
     if fix or diff:
         from krl.commands.check.fixing import fix_files
@@ -251,20 +251,6 @@ def _line_of(report: "CheckReport") -> Callable[[str, int], str]:
 
 
 # -- the cache -------------------------------------------------------------------------------------
-
-
-def _users_cache() -> Path | None:
-    """Where programs of this user keep what can be worked out again."""
-    if sys.platform == "win32":
-        base = os.environ.get("LOCALAPPDATA")
-        return Path(base, "krl", "cache") if base else None
-    if base := os.environ.get("XDG_CACHE_HOME"):
-        return Path(base, "krl")
-    try:
-        home = Path.home()
-    except RuntimeError:  # a user without a home
-        return None
-    return home / "Library" / "Caches" / "krl" if sys.platform == "darwin" else home / ".cache/krl"
 
 
 def _usable(wanted: Path | None, default: Path | None) -> Path | None:

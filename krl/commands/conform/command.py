@@ -35,7 +35,10 @@ def conform(
     ] = None,
     executor: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="tree, vm or native; may be repeated; default: all."),
+        typer.Option(
+            metavar="NAME",
+            help="tree, vm, native or compiled; may be repeated; default: all but compiled.",
+        ),
     ] = None,
     robot: Annotated[
         list[str] | None,
@@ -188,13 +191,15 @@ def _one_case(path: Path) -> "list[Case]":
 
 
 def _chosen(wanted: list[str] | None, what: str) -> list[str]:
-    from conformance.evaluation.execution import EXECUTORS, ROBOTS, Setup, missing
+    from conformance.evaluation.execution import COMPILED, EXECUTORS, ROBOTS, Setup, missing
 
-    known = EXECUTORS if what == "executor" else ROBOTS
+    known: tuple[str, ...] = EXECUTORS if what == "executor" else ROBOTS
     if not wanted:
         setups = [Setup(n, "none") if what == "executor" else Setup("tree", n) for n in known]
         there = [name for name, setup in zip(known, setups, strict=True) if not missing(setup)]
         return there if what == "executor" else there[:2]
+    if what == "executor":
+        known = (*known, COMPILED)
     for name in wanted:
         if name not in known:
             raise InputError(f"{name}: the {what} is one of {', '.join(known)}")

@@ -1,0 +1,729 @@
+/* What each step does that neither calls nor leaves: for the interpreter (run.c), and for programs that
+ * are compiled (compiled.h), where the step is a constant.
+ *
+ * A step is a function that is always inlined. It gives where to go on, or a fault.
+ */
+#ifndef KRL_STEPS_H
+#define KRL_STEPS_H
+
+#include "array_operations.h"
+#include "register_code.h"
+
+#if defined(__GNUC__)
+#define UNLIKELY(condition) __builtin_expect(!!(condition), 0)
+#define KRL_UNUSED __attribute__((unused))
+#define KRL_INLINE static inline __attribute__((always_inline, unused))
+#else
+#define UNLIKELY(condition) (condition)
+#define KRL_UNUSED
+#define KRL_INLINE static __forceinline
+#endif
+
+/* Where a step goes on that does not fault, whose codes are not negative. */
+enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
+
+#ifndef KRL_ARRAY
+#define KRL_ARRAY(number) (&machine->arrays[number])
+#endif
+
+/* All `cells`, the frame `fp`, its `registers`, which are the same cells or copies of them, the step `pc`. */
+#define STEP(name)                                                                                 \
+    KRL_INLINE int krl_step_##name(KRL_UNUSED struct krl_machine *machine,                         \
+                                   KRL_UNUSED krl_cell *const cells, KRL_UNUSED krl_cell *const fp, \
+                                   KRL_UNUSED krl_cell *const registers,                           \
+                                   KRL_UNUSED const struct krl_step *const pc)
+#define NEXT() return KRL_GO_NEXT
+#define JUMP() return KRL_GO_JUMP
+
+#define REGISTER(number) registers[number]
+#define A REGISTER(pc->a)
+#define B REGISTER(pc->b)
+#define C REGISTER(pc->c)
+#define D REGISTER(pc->d)
+
+#define FAULT(name) return KRL_FAULT_##name
+#define FAULT_IF(condition, name)                                                                  \
+    do {                                                                                           \
+        if (UNLIKELY(condition))                                                                   \
+            FAULT(name);                                                                           \
+    } while (0)
+/* What is read may have no value, unless it is known to come from another step. */
+#define READ(name, cell)                                                                           \
+    krl_cell name = (cell);                                                                        \
+    FAULT_IF(name == KRL_NOTHING, UNINITIALISED)
+
+/* ---------------------------------------------------------------------------- arithmetic */
+
+#if defined(__GNUC__)
+#define adds(a, b, result) __builtin_add_overflow(a, b, result)
+#define subtracts(a, b, result) __builtin_sub_overflow(a, b, result)
+#define multiplies(a, b, result) __builtin_mul_overflow(a, b, result)
+#else
+static inline int fits(int64_t wide, int32_t *result)
+{
+    *result = (int32_t)wide;
+    return wide != *result;
+}
+#define adds(a, b, result) fits((int64_t)(a) + (b), result)
+#define subtracts(a, b, result) fits((int64_t)(a) - (b), result)
+#define multiplies(a, b, result) fits((int64_t)(a) * (b), result)
+#endif
+
+/* The nearest INT, halves away from zero; not 0 where there is none. The sum with a half is that of
+ * doubles: that of singles would round. */
+static inline int rounds(float number, int32_t *result)
+{
+    double wide = number >= 0 ? (double)number + 0.5 : (double)number - 0.5;
+    if (wide >= 2147483648.0 || wide <= -2147483649.0)
+        return 1;
+    *result = (int32_t)wide; /* towards zero */
+    return 0;
+}
+
+#define REAL_RESULT(expression)                                                                    \
+    do {                                                                                           \
+        float result = (expression);                                                               \
+        FAULT_IF(!krl_is_finite(result), OVERFLOW);                                                \
+        A = krl_of_real(result);                                                                   \
+        NEXT();                                                                                    \
+    } while (0)
+#define INT_RESULT(operation, left_operand, right_operand)                                         \
+    do {                                                                                           \
+        int32_t result;                                                                            \
+        FAULT_IF(operation(left_operand, right_operand, &result), OVERFLOW);                       \
+        A = krl_of_int(result);                                                                    \
+        NEXT();                                                                                    \
+    } while (0)
+
+/* ---------------------------------------------------------------------------- shared forms */
+
+#define FOR_STEP(name, cell, operator)                                                             \
+    STEP(name)                                                                                     \
+    {                                                                                              \
+        READ(counter, cell);                                                                       \
+        READ(limit, B);                                                                            \
+        int32_t result;                                                                            \
+        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), OVERFLOW);                             \
+        cell = krl_of_int(result);                                                                 \
+        if (result operator krl_int_in(limit))                                                     \
+            JUMP();                                                                                \
+        NEXT();                                                                                    \
+    }
+#define INT_STEP(name, operation)                                                                  \
+    STEP(name)                                                                                     \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        INT_RESULT(operation, krl_int_in(b), krl_int_in(c));                                       \
+    }
+#define INT_STEP_K(name, operation)                                                                \
+    STEP(name)                                                                                     \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        INT_RESULT(operation, krl_int_in(b), pc->c);                                               \
+    }
+#define REAL_STEP(name, operator)                                                                  \
+    STEP(name##_REAL)                                                                              \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        REAL_RESULT(krl_real_in(b) operator krl_real_in(c));                                       \
+    }                                                                                              \
+    STEP(name##_REAL_K)                                                                            \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        REAL_RESULT(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                    \
+    }
+#define RELATION_STEPS(name, operator)                                                             \
+    STEP(name##_INT)                                                                               \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        A = krl_of_bool(krl_int_in(b) operator krl_int_in(c));                                     \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(name##_INT_K)                                                                             \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        A = krl_of_bool(krl_int_in(b) operator pc->c);                                             \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(name##_REAL)                                                                              \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        A = krl_of_bool(krl_real_in(b) operator krl_real_in(c));                                   \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(name##_REAL_K)                                                                            \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        A = krl_of_bool(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(UNLESS_##name##_INT)                                                                      \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        if (krl_int_in(b) operator krl_int_in(c))                                                  \
+            NEXT();                                                                                \
+        JUMP();                                                                                    \
+    }                                                                                              \
+    STEP(UNLESS_##name##_INT_K)                                                                    \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        if (krl_int_in(b) operator pc->c)                                                          \
+            NEXT();                                                                                \
+        JUMP();                                                                                    \
+    }                                                                                              \
+    STEP(UNLESS_##name##_REAL)                                                                     \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        if (krl_real_in(b) operator krl_real_in(c))                                                \
+            NEXT();                                                                                \
+        JUMP();                                                                                    \
+    }                                                                                              \
+    STEP(UNLESS_##name##_REAL_K)                                                                   \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        if (krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c))                             \
+            NEXT();                                                                                \
+        JUMP();                                                                                    \
+    }
+/* Two operands that are looked at as numbers of 32 bits; both BOOL, or both INT. */
+#define BIT_STEP(name, make, operator)                                                             \
+    STEP(name)                                                                                     \
+    {                                                                                              \
+        READ(b, B);                                                                                \
+        READ(c, C);                                                                                \
+        A = make(krl_int_in(b) operator krl_int_in(c));                                            \
+        NEXT();                                                                                    \
+    }
+
+/* The element at an address: its address, its value, or the place for one. */
+#define ACCESS_STEPS(suffix, base, find)                                                           \
+    STEP(INDEX_##suffix)                                                                           \
+    {                                                                                              \
+        find;                                                                                      \
+        A = krl_of_int((int32_t)((base) + place - cells));                                         \
+        NEXT();                                                                                    \
+    }
+#define ELEMENT_STEPS(get, put, base, find)                                                        \
+    STEP(get)                                                                                      \
+    {                                                                                              \
+        find;                                                                                      \
+        READ(found, (base)[place]);                                                                \
+        A = found;                                                                                 \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(put)                                                                                      \
+    {                                                                                              \
+        find;                                                                                      \
+        READ(value, A);                                                                            \
+        (base)[place] = value;                                                                     \
+        NEXT();                                                                                    \
+    }
+/* Indices count from 1; as numbers without sign, 0 and negative ones are too large. */
+#define FIND_ONE                                                                                   \
+    READ(index, B);                                                                                \
+    uint32_t number = (uint32_t)index - 1;                                                         \
+    FAULT_IF(number >= (uint32_t)pc->d, INDEX);                                                   \
+    int32_t place = pc->c + (int32_t)number
+#define FIND_WIDE                                                                                  \
+    const struct krl_array *array = KRL_ARRAY(pc->c);                                       \
+    READ(index, B);                                                                                \
+    uint32_t number = (uint32_t)index - 1;                                                         \
+    FAULT_IF(number >= (uint32_t)array->sizes[0], INDEX);                                         \
+    int32_t place = array->base + (int32_t)number * array->width
+#define FIND_TWO                                                                                   \
+    const struct krl_array *array = KRL_ARRAY(pc->c);                                       \
+    READ(index, B);                                                                                \
+    READ(other, D);                                                                                \
+    uint32_t number = (uint32_t)index - 1, behind = (uint32_t)other - 1;                           \
+    FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], INDEX);  \
+    int32_t place = array->base + ((int32_t)number * array->sizes[1] + (int32_t)behind) * array->width
+
+
+/* ---- where to go on */
+STEP(JUMP)
+{
+    JUMP();
+}
+
+STEP(JUMP_IF)
+{
+    READ(b, B);
+    if (krl_int_in(b))
+        JUMP();
+    NEXT();
+}
+
+STEP(JUMP_UNLESS)
+{
+    READ(b, B);
+    if (krl_int_in(b))
+        NEXT();
+    JUMP();
+}
+
+STEP(CASE)
+{
+    READ(b, B);
+    if (krl_int_in(b) == pc->c)
+        JUMP();
+    NEXT();
+}
+FOR_STEP(FOR_UP, A, <=)
+FOR_STEP(FOR_DOWN, A, >=)
+FOR_STEP(FOR_DATA_UP, cells[pc->a], <=)
+FOR_STEP(FOR_DATA_DOWN, cells[pc->a], >=)
+#define RELATION_STEPS_(name, operator) RELATION_STEPS(name, operator)
+KRL_COMPARISONS(RELATION_STEPS_)
+
+/* ---- moving */
+STEP(NOP)
+{
+    NEXT();
+}
+
+STEP(MOVE)
+{
+    READ(b, B);
+    A = b;
+    NEXT();
+}
+
+STEP(PASS)
+{
+    A = B;
+    NEXT();
+}
+
+STEP(SET_K)
+{
+    A = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    NEXT();
+}
+
+STEP(GET_DATA)
+{
+    READ(b, cells[pc->b]);
+    A = b;
+    NEXT();
+}
+
+STEP(PUT_DATA)
+{
+    READ(b, B);
+    cells[pc->a] = b;
+    NEXT();
+}
+
+STEP(PUT_DATA_K)
+{
+    cells[pc->a] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    NEXT();
+}
+
+STEP(REFER)
+{
+    A = krl_of_int((int32_t)(fp + pc->b - cells));
+    NEXT();
+}
+
+STEP(OFFSET)
+{
+    READ(b, B);
+    A = krl_of_int(krl_int_in(b) + pc->c);
+    NEXT();
+}
+
+STEP(LOAD)
+{
+    READ(b, B);
+    READ(found, cells[krl_int_in(b)]);
+    A = found;
+    NEXT();
+}
+
+STEP(STORE)
+{
+    READ(address, A);
+    READ(value, B);
+    machine->last = krl_int_in(address);
+    cells[krl_int_in(address)] = value;
+    NEXT();
+}
+
+STEP(STORE_K)
+{
+    READ(address, A);
+    machine->last = krl_int_in(address);
+    cells[krl_int_in(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    NEXT();
+}
+
+/* ---- elements */
+ACCESS_STEPS(LOCAL, fp, FIND_ONE)
+ACCESS_STEPS(DATA, cells, FIND_ONE)
+ACCESS_STEPS(WIDE_LOCAL, fp, FIND_WIDE)
+ACCESS_STEPS(WIDE_DATA, cells, FIND_WIDE)
+ACCESS_STEPS(TWO_LOCAL, fp, FIND_TWO)
+ACCESS_STEPS(TWO_DATA, cells, FIND_TWO)
+ELEMENT_STEPS(GET_LOCAL, PUT_LOCAL, fp, FIND_ONE)
+ELEMENT_STEPS(GET_ELEMENT_DATA, PUT_ELEMENT_DATA, cells, FIND_ONE)
+ELEMENT_STEPS(GET_WIDE_LOCAL, PUT_WIDE_LOCAL, fp, FIND_WIDE)
+ELEMENT_STEPS(GET_WIDE_DATA, PUT_WIDE_DATA, cells, FIND_WIDE)
+ELEMENT_STEPS(GET_TWO_LOCAL, PUT_TWO_LOCAL, fp, FIND_TWO)
+ELEMENT_STEPS(GET_TWO_DATA, PUT_TWO_DATA, cells, FIND_TWO)
+STEP(PUT_LOCAL_K)
+{
+    FIND_ONE;
+    fp[place] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->a);
+    NEXT();
+}
+
+STEP(PUT_ELEMENT_DATA_K)
+{
+    FIND_ONE;
+    cells[place] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->a);
+    NEXT();
+}
+
+STEP(INDEX_ANY)
+{
+    const struct krl_array *array = KRL_ARRAY(pc->c);
+    int32_t place = krl_flat_place(array->sizes, array->dimensions, &B);
+    FAULT_IF(place < 0, INDEX);
+    int32_t base = pc->tag == 0   ? krl_int_in(A)
+                   : pc->tag == 1 ? (int32_t)(fp - cells) + array->base
+                                  : array->base;
+    A = krl_of_int(base + place * array->width);
+    NEXT();
+}
+
+STEP(INDEX_VIEW)
+{
+    READ(index, B);
+    READ(base, C);
+    uint32_t number = (uint32_t)index - 1;
+    FAULT_IF(number >= (uint32_t)krl_int_in(REGISTER(pc->c + 1)), INDEX);
+    A = krl_of_int(krl_int_in(base) + (int32_t)number * pc->d);
+    NEXT();
+}
+
+STEP(INDEX_VIEW_ANY)
+{
+    int32_t sizes[KRL_MOST_DIMENSIONS];
+    READ(base, C);
+    krl_view_sizes(&C, pc->tag, sizes);
+    int32_t place = krl_flat_place(sizes, pc->tag, &A);
+    FAULT_IF(place < 0, INDEX);
+    A = krl_of_int(krl_int_in(base) + place * pc->d);
+    NEXT();
+}
+
+STEP(ROW)
+{
+    const struct krl_array *array = KRL_ARRAY(pc->c);
+    int32_t place = krl_flat_place(array->sizes, pc->b, &A + 1), width = array->width;
+    FAULT_IF(place < 0, INDEX);
+    for (int32_t i = pc->b; i < array->dimensions; i++)
+        width *= array->sizes[i];
+    A = krl_of_int(krl_int_in(A) + place * width);
+    for (int32_t i = pc->b; i < array->dimensions; i++)
+        (&A)[1 + i - pc->b] = krl_of_int(array->sizes[i]);
+    NEXT();
+}
+
+STEP(ROW_VIEW)
+{
+    int32_t sizes[KRL_MOST_DIMENSIONS], width = pc->d;
+    READ(base, C);
+    krl_view_sizes(&C, pc->tag, sizes);
+    for (int32_t i = pc->b; i < pc->tag; i++)
+        width *= sizes[i];
+    int32_t place = krl_flat_place(sizes, pc->b, &A);
+    FAULT_IF(place < 0, INDEX);
+    A = krl_of_int(krl_int_in(base) + place * width);
+    for (int32_t i = pc->b; i < pc->tag; i++)
+        (&A)[1 + i - pc->b] = krl_of_int(sizes[i]);
+    NEXT();
+}
+
+/* ---- blocks of cells; references in place always have values */
+STEP(COPY)
+{
+    machine->last = krl_int_in(A);
+    krl_copy_cells(cells + krl_int_in(A), cells + krl_int_in(B), pc->c);
+    NEXT();
+}
+
+STEP(CLEAR)
+{
+    krl_blank_cells(cells + krl_int_in(A), pc->c);
+    NEXT();
+}
+
+STEP(FILL_POSE)
+{
+    krl_cell *target = cells + krl_int_in(A);
+    machine->last = krl_int_in(A);
+    krl_copy_cells(target, cells + krl_int_in(B), pc->d);
+    krl_blank_cells(target + pc->d, pc->c - pc->d);
+    NEXT();
+}
+
+STEP(FILL_ARRAY)
+{
+    int fault = krl_fill_array(cells, &A, &B, pc->c, pc->d);
+    if (UNLIKELY(fault != KRL_FINE))
+        return fault;
+    machine->last = krl_int_in(A);
+    NEXT();
+}
+
+STEP(COPY_VIEW)
+{
+    int32_t length = pc->d;
+    for (int32_t i = 1; i <= pc->tag; i++)
+        length *= krl_int_in((&A)[i]);
+    FAULT_IF(length > pc->c, STACK);
+    krl_copy_cells(&B, cells + krl_int_in(A), length);
+    A = krl_of_int((int32_t)(fp + pc->b - cells));
+    NEXT();
+}
+
+STEP(SET_TEXT)
+{
+    machine->last = krl_int_in(A);
+    krl_set_text(cells + krl_int_in(A), krl_int_in((&A)[1]), &machine->program.texts[pc->b]);
+    NEXT();
+}
+
+STEP(COMPOSE)
+{
+    int fault = krl_compose(cells + krl_int_in(A), cells + krl_int_in(B), cells + krl_int_in(C), pc->d);
+    if (UNLIKELY(fault != KRL_FINE))
+        return fault;
+    NEXT();
+}
+
+STEP(INVERT)
+{
+    int fault = krl_invert(cells + krl_int_in(B), cells + krl_int_in(A), pc->c);
+    if (UNLIKELY(fault != KRL_FINE))
+        return fault;
+    NEXT();
+}
+
+/* ---- computing */
+INT_STEP(ADD_INT, adds)
+INT_STEP(SUB_INT, subtracts)
+INT_STEP(MUL_INT, multiplies)
+INT_STEP_K(ADD_INT_K, adds)
+INT_STEP_K(MUL_INT_K, multiplies)
+STEP(DIV_INT)
+{
+    READ(b, B);
+    READ(c, C);
+    int32_t divisor = krl_int_in(c);
+    FAULT_IF(divisor == 0, DIVISION_BY_ZERO);
+    if (UNLIKELY(divisor == -1))
+        INT_RESULT(subtracts, 0, krl_int_in(b));
+    A = krl_of_int(krl_int_in(b) / divisor);
+    NEXT();
+}
+
+STEP(DIV_INT_K) /* neither 0 nor -1 */
+{
+    READ(b, B);
+    A = krl_of_int(krl_int_in(b) / pc->c);
+    NEXT();
+}
+
+STEP(NEG_INT)
+{
+    READ(b, B);
+    INT_RESULT(subtracts, 0, krl_int_in(b));
+}
+
+STEP(NOT_BITS)
+{
+    READ(b, B);
+    A = krl_of_int(~krl_int_in(b));
+    NEXT();
+}
+BIT_STEP(AND_BITS, krl_of_int, &)
+BIT_STEP(OR_BITS, krl_of_int, |)
+BIT_STEP(EXOR_BITS, krl_of_int, ^)
+BIT_STEP(AND_BOOL, krl_of_bool, &)
+BIT_STEP(OR_BOOL, krl_of_bool, |)
+BIT_STEP(EXOR_BOOL, krl_of_bool, ^)
+STEP(AND_BITS_K)
+{
+    READ(b, B);
+    A = krl_of_int(krl_int_in(b) & pc->c);
+    NEXT();
+}
+
+STEP(NOT_BOOL)
+{
+    READ(b, B);
+    A = krl_of_bool(!krl_int_in(b));
+    NEXT();
+}
+REAL_STEP(ADD, +)
+REAL_STEP(SUB, -)
+REAL_STEP(MUL, *)
+STEP(DIV_REAL)
+{
+    READ(b, B);
+    READ(c, C);
+    FAULT_IF(krl_real_in(c) == 0, DIVISION_BY_ZERO);
+    REAL_RESULT(krl_real_in(b) / krl_real_in(c));
+}
+
+STEP(DIV_REAL_K) /* not zero */
+{
+    READ(b, B);
+    REAL_RESULT(krl_real_in(b) / krl_real_of_bits((uint32_t)pc->c));
+}
+
+STEP(NEG_REAL)
+{
+    READ(b, B);
+    A = krl_of_real(-krl_real_in(b));
+    NEXT();
+}
+
+STEP(INT_TO_REAL)
+{
+    READ(b, B);
+    A = krl_of_real((float)krl_int_in(b));
+    NEXT();
+}
+
+STEP(REAL_TO_INT)
+{
+    READ(b, B);
+    int32_t result;
+    FAULT_IF(rounds(krl_real_in(b), &result), OVERFLOW);
+    A = krl_of_int(result);
+    NEXT();
+}
+
+STEP(INT_TO_CHAR)
+{
+    READ(b, B);
+    if (UNLIKELY((uint32_t)krl_int_in(b) > 255))
+        FAULT(INADMISSIBLE);
+    A = b;
+    NEXT();
+}
+
+STEP(FUNCTION)
+{
+    float result, other = 0;
+    READ(b, B);
+    if (pc->tag == KRL_ATAN2) {
+        READ(c, C);
+        other = krl_real_in(c);
+    }
+    int fault = krl_compute((enum krl_function)pc->tag, krl_real_in(b), other, &result);
+    if (UNLIKELY(fault != KRL_FINE))
+        return fault;
+    A = krl_of_real(result);
+    NEXT();
+}
+
+STEP(TEXT)
+{
+    krl_call_text(machine, (enum krl_text_function)pc->tag, &machine->program.builtins[pc->b], &A);
+    NEXT();
+}
+
+/* ---- the rest */
+STEP(CHECK_CALL)
+{
+    FAULT_IF(machine->open >= machine->most_calls ||
+                 machine->routines[pc->b].frame > KRL_MAX_CELLS - (machine->extent + pc->c),
+             STACK);
+    NEXT();
+}
+
+STEP(FAIL)
+{
+    return pc->b;
+}
+
+STEP(REMEMBER_LOCAL)
+{
+    machine->last = (int32_t)(fp + pc->a - cells);
+    NEXT();
+}
+
+STEP(REMEMBER_DATA)
+{
+    machine->last = pc->a;
+    NEXT();
+}
+
+/* ---------------------------------------------------------------------------- calls */
+
+/* Opens the call that a step is, and notes the frame to return to. Gives the frame of the routine that
+ * is called, with its arguments; NULL where there is no room for it. */
+KRL_INLINE krl_cell *krl_enter(struct krl_machine *machine, krl_cell *const cells, krl_cell *const fp,
+                               const struct krl_step *const pc, int32_t step, int32_t statement)
+{
+    const struct krl_routine *callee = &machine->routines[pc->b];
+    int32_t extent = machine->extent + pc->c;
+    if (UNLIKELY(machine->open >= machine->most_calls || callee->frame > KRL_MAX_CELLS - extent))
+        return NULL;
+    struct krl_call *call = &machine->calls[machine->open++];
+    call->step = step + 1;
+    call->code = machine->code;
+    call->fp = (int32_t)(fp - cells);
+    call->extent = machine->extent;
+    call->statement = statement;
+    call->serial = machine->serial;
+    call->result = (int32_t)(fp + pc->a - cells);
+    machine->code = pc->b;
+    machine->extent = extent;
+    machine->serial = callee->is_owner ? ++machine->serials : 0;
+    if (pc->op == KRL_STEP_CALL) {
+        for (int32_t i = callee->received; i < callee->frame; i++)
+            (fp + pc->a)[i] = KRL_NOTHING;
+        return fp + pc->a;
+    }
+    krl_receive(machine, callee, fp + pc->d, fp + pc->a);
+    return fp + pc->d;
+}
+
+/* Ends the call that was opened last; gives what to return to. */
+KRL_INLINE const struct krl_call *krl_return(struct krl_machine *machine)
+{
+    const struct krl_call *call = &machine->calls[--machine->open];
+    machine->code = call->code;
+    machine->extent = call->extent;
+    machine->serial = call->serial;
+    return call;
+}
+
+/* Puts a result where the call has its place for it. */
+KRL_INLINE void krl_give(struct krl_machine *machine, krl_cell *const cells, krl_cell value)
+{
+    machine->top = machine->calls[machine->open - 1].result;
+    cells[machine->top++] = value;
+}
+
+#undef STEP
+#undef NEXT
+#undef JUMP
+#undef A
+#undef B
+#undef C
+#undef D
+
+#endif

@@ -1,0 +1,23 @@
+"""The folder in which programs of a user keep what can be worked out again."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+__all__ = ["user_cache"]
+
+
+def user_cache() -> Path | None:
+    """The folder of this user, which need not exist; ``None`` where there can be none."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA")
+        return Path(base, "krl", "cache") if base else None
+    if base := os.environ.get("XDG_CACHE_HOME"):
+        return Path(base, "krl")
+    try:
+        home = Path.home()
+    except RuntimeError:  # a user without a home
+        return None
+    return home / "Library" / "Caches" / "krl" if sys.platform == "darwin" else home / ".cache/krl"

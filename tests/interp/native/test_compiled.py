@@ -1,0 +1,99 @@
+"""Native code of a program asks and tells what the machine does, and is kept."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from conformance.differential.campaign import world_seed
+from conformance.differential.divergence import prepared
+from conformance.differential.runs import EXECUTORS, trace_of
+from grammar.generation.closed.programs import seeded
+from grammar.syntax.source import Source
+from interp.bench.kernels import KERNELS
+from interp.executors import Prepared, is_available
+from interp.port.requests import End, Fail, Request
+from interp.program.load import Limits, load
+
+pytestmark = pytest.mark.skipif(not is_available("compiled"), reason="there is no C compiler")
+
+DEEP = """DEF RUN()
+   $OV_PRO = DEPTH(1000)
+END
+DEFFCT INT DEPTH(N:IN)
+   DECL INT N, K
+   K = N
+   IF N == 0 THEN
+      RETURN 0
+   ENDIF
+   K = DEPTH(N - 1) + 1
+   IF (K == 300) OR (K == 700) THEN
+      $FLAG[1] = TRUE
+   ENDIF
+   RETURN K + N - N
+ENDFCT
+"""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A folder of its own for what is kept."""
+    folder = tmp_path_factory.mktemp("cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        yield folder
+
+
+def _requests(program: Prepared, executor: str, limits: Limits) -> list[Request]:
+    running = program.executor(executor, limits)
+    found: list[Request] = []
+    while not found or not isinstance(found[-1], End | Fail):
+        found.append(running.advance())
+    return found
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_as_the_machine(number: int) -> None:
+    """In a world that interferes, at random programs, every request and event is the same."""
+    program = prepared(seeded(20, number).files)
+    seed = world_seed(20, number)
+    expected = trace_of(program, EXECUTORS["native"], seed)
+    assert expected == trace_of(program, EXECUTORS["compiled"], seed)
+    assert not program.notes
+
+
+@pytest.mark.parametrize("size", [1, 7, 1000])
+@pytest.mark.parametrize("name", ["calls", "matrix", "jumps"])
+def test_slices(name: str, size: int) -> None:
+    """It stops for time to pass at the same statements, and goes on there."""
+    kernel = KERNELS[name]
+    text = f"DEF RUN()\n$OV_PRO = WORK({kernel.small // 100 + 2})\nEND\n{kernel.krl}"
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    limits = Limits(statements=3000, per_slice=size)
+    expected = _requests(program, "native", limits)
+    assert expected == _requests(program, "compiled", limits)
+
+
+def test_calls_deeper_than_those_in_c() -> None:
+    """Calls are as deep as the limits say, and stop and go on anywhere."""
+    program = Prepared(load([Source(DEEP, "run.src")], "run.src"))
+    for limits in (Limits(depth=2000, per_slice=13), Limits(depth=900, per_slice=13)):
+        expected = _requests(program, "native", limits)
+        assert expected == _requests(program, "compiled", limits)
+
+
+def test_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was compiled is not compiled again; without a compiler the machine runs the program."""
+    program = Prepared(load([Source("DEF RUN()\n$OV_PRO = 7\nEND\n", "run.src")], "run.src"))
+    program.executor("compiled", Limits())
+    kept = set(cache.rglob("*.so"))
+    program.executor("compiled", Limits())
+    assert kept == set(cache.rglob("*.so"))
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    assert isinstance(_requests(program, "compiled", Limits())[-1], End)
+    assert ["no native code: there is no C compiler; the machine in C runs the program"] == (
+        program.notes
+    )
