@@ -23,17 +23,18 @@ from typing import Any, Final
 
 from grammar.syntax.source import Source
 from interp.bench.kernels import KERNELS, Kernel
-from interp.executors import EXECUTORS, Prepared, available
+from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
 from interp.native import AVAILABLE
 from interp.port.requests import Crash, End, Fail, Write
 from interp.program.load import Limits, load
 
 __all__ = ["MEASURED", "MeasurementError", "measure_executors", "steps"]
 
-#: What is measured; the machine in C where it was built, Lua where it is installed.
-MEASURED: Final = (*EXECUTORS, "lua")
+#: What is measured; the machine in C where it was built, native code where there is a C compiler,
+#: Lua where it is installed.
+MEASURED: Final = (*EXECUTORS, COMPILED, "lua")
 #: What gets the full amount of work.
-_FAST: Final = frozenset({"native", "lua"})
+_FAST: Final = frozenset({"native", COMPILED, "lua"})
 ROUNDS = 3
 _LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
 _LUA = "lua5.4"
@@ -54,10 +55,10 @@ def measure_executors(
     """Measure; ``on_step`` is called `steps` times. `KeyError` for a kernel that there is not.
 
     In the record, ``kernels`` have the nanoseconds for a unit of work on each executor, ``None``
-    where there is none. ``vm_vs_tree``, ``native_vs_tree``, ``native_vs_vm`` and ``native_vs_lua``
-    are geometric means of how many times as fast the first is; ``request_us`` is what a request
-    costs that writes or reads, from the instruction to behind the reply, in microseconds, with the
-    statement and the loop around it.
+    where there is none. ``vm_vs_tree``, ``native_vs_tree``, ``native_vs_vm``, ``native_vs_lua`` and
+    ``compiled_vs_native`` are geometric means of how many times as fast the first is;
+    ``request_us`` is what a request costs that writes or reads, from the instruction to behind the
+    reply, in microseconds, with the statement and the loop around it.
 
     Raises `MeasurementError` where executors disagree.
     """
@@ -78,6 +79,7 @@ def measure_executors(
         "native_vs_tree": _mean(rows, "tree", "native"),
         "native_vs_vm": _mean(rows, "vm", "native"),
         "native_vs_lua": _mean(rows, "lua", "native"),
+        "compiled_vs_native": _mean(rows, "native", COMPILED),
         "request_us": requests,
     }
 
@@ -94,10 +96,9 @@ def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
     """Nanoseconds for a unit of work on each executor, and the amount that each was given."""
     few, many = _prepared(kernel, kernel.small), _prepared(kernel, kernel.full)
     timed, same_amount = {}, {}
-    for name in available():
+    for name in (*available(), *([COMPILED] if is_available(COMPILED) else [])):
         same_amount[name] = _timed(few, name, 1 if name == "tree" else rounds)
-        is_fast = name == "native"
-        timed[name] = _timed(many, name, rounds) if is_fast else same_amount[name]
+        timed[name] = _timed(many, name, rounds) if name in _FAST else same_amount[name]
     lua = _timed_lua(kernel, rounds)
     if lua is not None:
         timed["lua"] = lua

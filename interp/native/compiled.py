@@ -16,12 +16,13 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 from interp.bytecode.program import Parameter, Program, Slot, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 from interp.native.machine import Machine
+from interp.native.register_code import CALLS, Step, roles_of
 from support.files.user_cache import user_cache
 
 __all__ = ["CompiledMachine", "compiler", "keep", "library_of", "source_of"]
@@ -33,7 +34,6 @@ _HEADERS: Final = (
 )
 #: Every product and sum is rounded by itself, as by the machine (docs/adr/0013-numbers.md).
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-w")
-_CALLS: Final = ("CALL", "CALL_COPY")
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
 
@@ -108,45 +108,6 @@ class CompiledMachine(Machine):
         super()._begin(number)
 
 
-#: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
-#: one behind ``c``. What is not listed works on cells that lie one behind the other.
-_ROLES: Final = {
-    ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
-    ("", "a"): "SET_K GET_DATA REFER",
-    ("a", ""): "STORE_K CLEAR",
-    (
-        "b",
-        "",
-    ): "JUMP_IF JUMP_UNLESS CASE FOR_DATA_UP FOR_DATA_DOWN PUT_DATA RETURN_VALUE PUT_LOCAL_K "
-    "PUT_ELEMENT_DATA_K",
-    ("b", "a"): "MOVE PASS OFFSET LOAD INDEX_LOCAL INDEX_DATA GET_LOCAL GET_ELEMENT_DATA "
-    "INDEX_WIDE_LOCAL INDEX_WIDE_DATA GET_WIDE_LOCAL GET_WIDE_DATA NEG_INT NEG_REAL NOT_BITS "
-    "NOT_BOOL INT_TO_REAL REAL_TO_INT INT_TO_CHAR",
-    ("bc", "a"): "FUNCTION",
-    ("bd", "a"): "INDEX_TWO_LOCAL INDEX_TWO_DATA GET_TWO_LOCAL GET_TWO_DATA",
-    ("bce", "a"): "INDEX_VIEW",
-    (
-        "ab",
-        "",
-    ): "STORE COPY FILL_POSE INVERT PUT_LOCAL PUT_ELEMENT_DATA PUT_WIDE_LOCAL PUT_WIDE_DATA",
-    ("ab", "a"): "FOR_UP FOR_DOWN",
-    ("abc", ""): "COMPOSE",
-    ("abd", ""): "PUT_TWO_LOCAL PUT_TWO_DATA",
-}
-_ROLE_OF: Final = {name: role for role, names in _ROLES.items() for name in names.split()}
-_BINARY: Final = re.compile(
-    r"(UNLESS_)?(?:(?:EQ|NE|LT|GT|LE|GE|ADD|SUB|MUL|DIV)_(?:INT|REAL)"
-    r"|(?:AND|OR|EXOR)_(?:BITS|BOOL))(_K)?"
-)
-
-
-def _roles(name: str) -> tuple[str, str] | None:
-    match = _BINARY.fullmatch(name)
-    if match is None:
-        return _ROLE_OF.get(name)
-    return "b" if match[2] else "bc", "" if match[1] else "a"
-
-
 class _Source:
     """Writes the steps of all code objects.
 
@@ -157,7 +118,7 @@ class _Source:
 
     def __init__(self, program: Program, core: Core) -> None:
         self._program = program
-        self._steps = [_Step(*one) for one in core.steps()]
+        self._steps = [Step(*one) for one in core.steps()]
         self._arrays = core.arrays()
         self._firsts = [core.step(number, 0) for number in range(len(program.codes))]
         self._targets = {step.d for step in self._steps if step.is_jump}
@@ -228,17 +189,17 @@ class _Source:
 
     def _is_way_in(self, number: int, first: int) -> bool:
         """Whether the machine may go on here: where a statement begins, behind what stops it."""
-        is_behind = number > first and self._steps[number - 1].name in ("PYTHON", *_CALLS)
+        is_behind = number > first and self._steps[number - 1].name in ("PYTHON", *CALLS)
         return self._steps[number].line >= 0 or is_behind or number in self._targets
 
     def _label(self, number: int) -> str:
         return f"{'begin' if self._steps[number].line >= 0 else 'do'}_{number}"
 
     def _step(
-        self, number: int, step: _Step, in_frame: frozenset[int], kept: Sequence[int]
+        self, number: int, step: Step, in_frame: frozenset[int], kept: Sequence[int]
     ) -> Iterator[str]:
-        name, roles = step.name, _roles(step.name)
-        if name in _CALLS:
+        name, roles = step.name, roles_of(step.name)
+        if name in CALLS:
             end = step.a + sum(map(stack_cells, self._program.codes[step.b].parameters))
             yield _each("PUT", [one for one in kept if step.a <= one < end])
             save = _each("PUT", [one for one in kept if one < step.a])
@@ -257,34 +218,6 @@ class _Source:
                 yield f"BRANCH({name}, {number}, {written}, {self._label(step.d)})"
             else:
                 yield f"DO({name}, {number}, {written})"
-
-
-class _Step(NamedTuple):
-    """A step as `Core.steps` gives it; ``line`` is the place of the LINE that it begins, or -1."""
-
-    name: str
-    a: int
-    b: int
-    c: int
-    d: int
-    tag: int
-    line: int
-
-    @property
-    def is_jump(self) -> bool:
-        """Whether ``d`` is a step to go on at."""
-        return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_"))
-
-    def named(self, operands: str) -> set[int]:
-        """The registers that are these operands."""
-        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "e": self.c + 1}
-        return {values[one] for one in operands}
-
-    def registers(self) -> set[int]:
-        """All registers that it names by themselves."""
-        if self.name in _CALLS:
-            return {self.a}
-        return self.named("".join(_roles(self.name) or ""))
 
 
 def _each(word: str, registers: Iterable[int]) -> str:

@@ -106,18 +106,31 @@ def assemble_file(
 
 def disassemble_image(
     image: Annotated[Path, typer.Argument(metavar="IMAGE", help="An image.")],
+    steps: Annotated[
+        bool, typer.Option("--steps", help="Print what the machine in C makes of it instead.")
+    ] = False,
 ) -> None:
     """Print an image as the text that `krl asm` makes it from."""
     from interp.bytecode.assembly.disassembler import disassemble
     from interp.bytecode.image.reader import ImageError, read_image
     from interp.bytecode.verifier.verify import VerificationError, verify
+    from interp.native import AVAILABLE
 
     try:
-        program = read_image(_read(image))
+        words = _read(image)
+        program = read_image(words)
         verify(program)
     except (ImageError, VerificationError) as error:
         raise InputError(f"{image}: {error}") from error
-    typer.echo(disassemble(program), nl=False)
+    if not steps:
+        typer.echo(disassemble(program), nl=False)
+        return
+    if not AVAILABLE:
+        raise InputError("--steps: the machine in C was not built")
+    from interp.native.register_code import listing
+
+    for line in listing(program, words):
+        typer.echo(line)
 
 
 def write_image_of(program: "Program", source: Path, target: Path) -> None:

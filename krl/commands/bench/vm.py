@@ -16,12 +16,13 @@ from krl.text_table import figures
 
 __all__ = ["vm"]
 
-_HEADINGS = {"tree": "tree", "vm": "Python", "native": "C", "lua": "Lua"}
+_HEADINGS = {"tree": "tree", "vm": "Python", "native": "C", "compiled": "compiled", "lua": "Lua"}
 _AIMS = (
     ("vm_vs_tree", "machine in Python against tree", "6 times"),
     ("native_vs_tree", "machine in C against tree", "300 times"),
     ("native_vs_vm", "machine in C against Python", ""),
     ("native_vs_lua", "machine in C against Lua", "1 times"),
+    ("compiled_vs_native", "native code against machine in C", ""),
 )
 
 

@@ -1,0 +1,102 @@
+"""Register code as the machine in C made it: which registers its steps read and write; as text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+from interp.bytecode.program import Program
+from interp.native._core import Core
+
+__all__ = ["CALLS", "Step", "listing", "roles_of"]
+
+CALLS: Final = ("CALL", "CALL_COPY")
+#: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
+#: one behind ``c``. What is not listed works on cells that lie one behind the other.
+_ROLES: Final = {
+    ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
+    ("", "a"): "SET_K GET_DATA REFER",
+    ("a", ""): "STORE_K CLEAR",
+    (
+        "b",
+        "",
+    ): "JUMP_IF JUMP_UNLESS CASE FOR_DATA_UP FOR_DATA_DOWN PUT_DATA RETURN_VALUE PUT_LOCAL_K "
+    "PUT_ELEMENT_DATA_K",
+    ("b", "a"): "MOVE PASS OFFSET LOAD INDEX_LOCAL INDEX_DATA GET_LOCAL GET_ELEMENT_DATA "
+    "INDEX_WIDE_LOCAL INDEX_WIDE_DATA GET_WIDE_LOCAL GET_WIDE_DATA NEG_INT NEG_REAL NOT_BITS "
+    "NOT_BOOL INT_TO_REAL REAL_TO_INT INT_TO_CHAR",
+    ("bc", "a"): "FUNCTION",
+    ("bd", "a"): "INDEX_TWO_LOCAL INDEX_TWO_DATA GET_TWO_LOCAL GET_TWO_DATA",
+    ("bce", "a"): "INDEX_VIEW",
+    (
+        "ab",
+        "",
+    ): "STORE COPY FILL_POSE INVERT PUT_LOCAL PUT_ELEMENT_DATA PUT_WIDE_LOCAL PUT_WIDE_DATA",
+    ("ab", "a"): "FOR_UP FOR_DOWN",
+    ("abc", ""): "COMPOSE",
+    ("abd", ""): "PUT_TWO_LOCAL PUT_TWO_DATA",
+}
+_ROLE_OF: Final = {name: role for role, names in _ROLES.items() for name in names.split()}
+_BINARY: Final = re.compile(
+    r"(UNLESS_)?(?:(?:EQ|NE|LT|GT|LE|GE|ADD|SUB|MUL|DIV)_(?:INT|REAL)"
+    r"|(?:AND|OR|EXOR)_(?:BITS|BOOL))(_K)?"
+)
+
+
+def roles_of(name: str) -> tuple[str, str] | None:
+    """The operands that a step reads and writes, by their letters; ``None`` where not listed."""
+    match = _BINARY.fullmatch(name)
+    if match is None:
+        return _ROLE_OF.get(name)
+    return "b" if match[2] else "bc", "" if match[1] else "a"
+
+
+class Step(NamedTuple):
+    """A step as `Core.steps` gives it; ``line`` is the place of the LINE that it begins, or -1."""
+
+    name: str
+    a: int
+    b: int
+    c: int
+    d: int
+    tag: int
+    line: int
+
+    @property
+    def is_jump(self) -> bool:
+        """Whether ``d`` is a step to go on at."""
+        return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_"))
+
+    def named(self, operands: str) -> set[int]:
+        """The registers that are these operands."""
+        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "e": self.c + 1}
+        return {values[one] for one in operands}
+
+    def registers(self) -> set[int]:
+        """All registers that it names by themselves."""
+        if self.name in CALLS:
+            return {self.a}
+        return self.named("".join(roles_of(self.name) or ""))
+
+
+def listing(program: Program, image: bytes) -> Iterator[str]:
+    """The steps that a program without a trace executes, a line each, by code objects.
+
+    The line of the source that begins with a step stands before its name. Raises `ValueError` for
+    an image that is refused.
+    """
+    core = Core(image, 0, 0, None)
+    steps = [Step(*one) for one in core.steps()]
+    firsts = {core.step(number, 0): code for number, code in enumerate(program.codes)}
+    for number, array in enumerate(core.arrays()):
+        base, width, dimensions, *sizes = array
+        shape = ",".join(map(str, sizes[:dimensions]))
+        yield f"array {number}: from {base}, {width} cells each, [{shape}]"
+    for number, step in enumerate(steps):
+        if number in firsts:
+            code = firsts[number]
+            yield f"{code.kind.value} {code.name} {code.file}"
+        line = code.instructions[step.line].operands[0] if step.line >= 0 else ""
+        operands = f"a={step.a} b={step.b} c={step.c} d={step.d} tag={step.tag}"
+        yield f"{number:6} {line:>5}  {step.name:22} {operands}"
