@@ -36,10 +36,8 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def auto(*arguments: str | Path) -> int:
-    """Run `krl recover --auto` in this process, without the negatives of the working folder."""
-    none = Path(str(arguments[0])).parent / "negatives"
-    none.mkdir(exist_ok=True)
-    return main(["recover", "--auto", "--negatives", str(none), *map(str, arguments)])
+    """Run `krl recover --auto` in this process."""
+    return main(["recover", "--auto", *map(str, arguments)])
 
 
 def record(out: Path) -> dict[str, Any]:
