@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import zip_longest
 
 from grammar.notation.edits import (
     AddAlternative,
@@ -160,14 +161,19 @@ class Folding:
 
     def _head(self, elements: Sequence[Element]) -> str:
         """The first word of a line, or its kind where it is one of a kind; empty without any."""
-        for element in elements:
+        for element, following in zip_longest(elements, elements[1:]):
             if isinstance(element, Repeat) and element.operator != "+":
                 continue
             words = self._words(element)
-            if words and words <= self.types:
+            if words and words <= self.types and self._is_name(following):
                 return self._kind
             return min(words) if len(words) == 1 and len(elements) > 1 else ""
         return ""
+
+    def _is_name(self, element: Element | None) -> bool:
+        """Whether an element is a name: what is declared stands behind its type."""
+        names = {"NAME", self.rules.names}
+        return isinstance(element, Reference) and element.name in names
 
     def _words(self, element: Element) -> frozenset[str]:
         match element:

@@ -100,7 +100,12 @@ class OperandRules:
         found = {name: vocabulary.words_of(name) for name in within}
         lexer = self.recognizer.lexer
         words = frozenset(w for w, kind in lexer.kind_of.items() if lexer.is_keyword(kind))
-        return {n: words & some - self.named_words for n, some in found.items() if "NAME" in some}
+        return {
+            name: words & some - self.named_words
+            for name, some in found.items()
+            # a list of most words says nothing of their kind
+            if "NAME" in some and 2 * len(words & some) <= len(words)
+        }
 
     @cached_property
     def named_words(self) -> frozenset[str]:
