@@ -13,12 +13,23 @@ from support.files.atomic_write import write_atomic
 
 __all__ = ["write_conformance_page"]
 
+Json = dict[str, Any]
+
 _MAX_CASES = 5_000
 _MAX_RUNS = 400
+# The embedded data stays below this, which keeps the whole page below 5 MB.
+_MAX_DATA_CHARACTERS = 4_500_000
+#: What a result is shown without where a page would be too large.
+_WITHOUT: Json = {
+    "events": [],
+    "path": {},
+    "checks": [],
+    "findings": [],
+    "divergence": None,
+    "reason": "",
+}
 _SCRIPTS = ("page", "conform-trend", "conform-timing", "conform-path", "conform-case", "conform")
 _CHECK = ("file", "line", "text", "state", "actual")
-
-Json = dict[str, Any]
 
 
 def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
@@ -31,16 +42,16 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     Raises OSError when the folder cannot be made or written.
     """
     cases = records(record, "cases")[:_MAX_CASES]
-    data = embedded_json(
-        {
-            "verdicts": list(VERDICTS),
-            "cases": [_case(case) for case in cases],
-            "rules": {
-                shown(text(rule, "id"), 20): _rule(rule) for rule in records(record, "rules")
-            },
-            "runs": [_run(one) for one in records(record, "history")[-_MAX_RUNS:]],
-        }
-    )
+    shared = {
+        "verdicts": list(VERDICTS),
+        "rules": {shown(text(rule, "id"), 20): _rule(rule) for rule in records(record, "rules")},
+        "runs": [_run(one) for one in records(record, "history")[-_MAX_RUNS:]],
+    }
+    for has_details in (_always, _is_not_fine, _never):
+        listed = [_case(case, has_details=has_details(case)) for case in cases]
+        data = embedded_json({**shared, "cases": listed})
+        if len(data) <= _MAX_DATA_CHARACTERS:
+            break
     script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
     page = render(
         "conform.html.j2",
@@ -52,8 +63,23 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     return write_atomic(folder / "index.html", page)
 
 
-def _case(case: Record) -> Json:
-    """A case as the page's script reads it; its first result is the one it is shown by."""
+def _always(_case: Record) -> bool:
+    return True
+
+
+def _is_not_fine(case: Record) -> bool:
+    return text(case, "verdict") != "pass"
+
+
+def _never(_case: Record) -> bool:
+    return False
+
+
+def _case(case: Record, *, has_details: bool) -> Json:
+    """A case as the page's script reads it; its first result is the one it is shown by.
+
+    Without details it has its results but not what they did, nor its files.
+    """
     return {
         "name": shown(text(case, "name"), 200),
         "suite": shown(text(case, "suite"), 80),
@@ -70,9 +96,12 @@ def _case(case: Record) -> Json:
                 "name": shown(text(file, "name"), 200),
                 "lines": [shown(line, 400) for line in text(file, "text").splitlines()[:3000]],
             }
-            for file in records(case, "files")
+            for file in (records(case, "files") if has_details else ())
         ],
-        "results": [_result(one) for one in records(case, "results")],
+        "isShort": not has_details,
+        "results": [
+            _result(one if has_details else {**one, **_WITHOUT}) for one in records(case, "results")
+        ],
     }
 
 

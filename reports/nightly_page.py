@@ -1,5 +1,6 @@
 """The page of a nightly run: what changed, how its steps went, and curves over all runs."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,8 @@ _MAX_RUNS = 400
 _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
+_DATE = re.compile(r"\d{4}-\d\d-\d\d")
+_MOST_EARLIER = 30
 #: Where the pages of failed cases lie.
 _PAGES = ("conform/index.html#", "conform-arm/index.html#")
 _GOOD = ("fixed", "survey: gone cluster")
@@ -73,15 +76,16 @@ class _Failure:
 
 @dataclass(frozen=True, slots=True)
 class _NightlyView:
-    """``bench`` has words, value, that of before."""
+    """``bench`` has words, value, that of before, and the change; ``earlier`` are dates of runs."""
 
     date: str
     failures: tuple[_Failure, ...]
     figures: tuple[Figure, ...]
     changes: tuple[tuple[str, str], ...]
     steps: tuple[_Step, ...]
-    bench: tuple[tuple[str, str, str], ...]
+    bench: tuple[tuple[str, str, str, str], ...]
     runs: int
+    earlier: tuple[str, ...]
 
 
 def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
@@ -134,11 +138,21 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
         ),
         steps=tuple(_step(name, step) for name, step in nested(record, "steps").items()),
         bench=tuple(
-            (_in_words(name), _figure(value), _figure(before.get(name)))
+            (
+                _in_words(name),
+                _figure(value),
+                _figure(before.get(name)),
+                _change(value, before.get(name)),
+            )
             for name, value in nested(record, "bench").items()
             if isinstance(value, int | float)
         ),
         runs=len(runs),
+        earlier=tuple(
+            date
+            for run in reversed(runs[:-1])
+            if _DATE.fullmatch(date := text(run, "date")) and date != text(record, "date")
+        )[:_MOST_EARLIER],
     )
 
 
@@ -182,6 +196,13 @@ def _figure(value: Any) -> str:
     if not isinstance(value, int | float):
         return ""
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+
+
+def _change(value: float, before: Any) -> str:
+    """By how much a figure has changed, in per cent; empty where nothing can be said."""
+    if not isinstance(before, int | float) or not before or value == before:
+        return ""
+    return f"{100 * (value - before) / abs(before):+.1f} %"
 
 
 def _tone(change: str) -> str:

@@ -57,6 +57,7 @@ function caseSheet(one) {
   const facts = [one.phase, one.profile, one.negative ? "negative" : "", ...one.io.map((line) => `io ${line}`)].filter(Boolean).join(" · ");
   const sheet = el("div", "sheet",
     el("div", "facts", el("span", "", facts), copyButton(one.name, "Copy name")),
+    one.isShort ? el("p", "hint", `Left out, as this page would be too large: source and events. krl conform ${one.name} --html DIR shows them.`) : null,
     ...rules,
     one.unconfirmed ? el("p", "hint", `Unconfirmed: ${one.unconfirmed}`) : null,
     el("div", "duo", el("div", "", ...caseSource(one, failing)),

@@ -87,7 +87,7 @@ function walkWithArrows(body) {
   });
 }
 
-const MOST_ROWS = 200;
+const MOST_ROWS = 100;
 
 /**
  * Shows the first rows of a list that no filter hides, and a button for the others. What it returns is to

@@ -188,11 +188,53 @@ def test_the_page_of_a_night_draws_its_curves(
     assert any(title.startswith("vm.ratio") for title in titles)
     assert "Nothing failed" == browser.find_element(By.CSS_SELECTOR, ".top .grammar").text
     row = browser.find_element(By.XPATH, "//tr[th='vm.ratio']")
-    assert "vm.ratio 4 3" == row.text
+    assert "vm.ratio 4 3 +33.3 %" == row.text
     figures = browser.find_element(By.CSS_SELECTOR, ".figures").text
     assert "2 of 2" in figures
     assert "fuzzed" not in figures
     assert _is_sound(browser)
+
+
+def test_a_page_of_5000_cases_is_bounded(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """Below 5 MB: cases that pass are without their source and say so; a list is short at first."""
+    record = conform_record()
+    right, wrong = record["cases"]
+    record["cases"] = [right | {"name": f"trigger/right_{n}"} for n in range(4_999)] + [wrong]
+    page = write_conformance_page(record, tmp_path)
+    assert page.stat().st_size < 5_000_000
+    opened(page, "#case=io/wrong")
+    assert "value N 2" in browser.find_element(By.CSS_SELECTOR, ".sheet").text
+    opened(page, "#case=trigger/right_7")
+    assert "source and events" in browser.find_element(By.CSS_SELECTOR, ".sheet").text
+    narrow = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", narrow)
+    try:
+        opened(page, "")
+        shown = browser.execute_script(
+            "return [...document.querySelectorAll('.row')].filter((one) => one.offsetHeight).length"
+        )
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert shown == 100
+
+
+def test_a_nightly_page_compares_and_leads_back(
+    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
+) -> None:
+    """Each figure with its change, and links to the pages of the runs before, in their folders."""
+    runs = [
+        {"date": date, "bench": {"vm.ratio": value}}
+        for date, value in (("2031-05-05", 9.0), ("x/../y", 8.0), ("2031-05-06", 4.0))
+    ]
+    runs.append({"date": "2031-05-07", "bench": {"vm.ratio": 5.0}})
+    opened(write_nightly_page({**runs[-1], "history": runs}, tmp_path), "")
+    assert "vm.ratio 5 4 +25.0 %" == browser.find_element(By.XPATH, "//tr[th='vm.ratio']").text
+    links = browser.find_elements(By.CSS_SELECTOR, "a[href^='../']")
+    assert ["../2031-05-06/index.html", "../2031-05-05/index.html"] == [
+        one.get_dom_attribute("href") for one in links
+    ]
 
 
 def test_the_page_of_a_bad_night_says_why(

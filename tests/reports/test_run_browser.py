@@ -44,7 +44,7 @@ Shown = Callable[[Any], webdriver.Chrome]
 
 
 @cache
-def _recorded(
+def recorded(
     text: str = _PROGRAM, robot: RobotName = "kinematic", scene: Scene | None = None
 ) -> RunRecord:
     """The record of a real run."""
@@ -100,7 +100,7 @@ def _told_place(browser: webdriver.Chrome) -> list[float]:
 
 def test_the_tool_of_the_arm_is_where_the_path_has_it(shown: Shown) -> None:
     """At every tenth sample the links lead to the set-point of the tool, within 0.3 mm."""
-    record = _recorded()
+    record = recorded()
     browser = shown(record)
     path = record["path"]
     for time, place in list(zip(path["t"], path["tool"], strict=True))[::10]:
@@ -112,7 +112,7 @@ def test_the_tool_of_the_arm_is_where_the_path_has_it(shown: Shown) -> None:
 @pytest.mark.usefixtures("without_webgl")
 def test_without_webgl_the_arm_is_drawn_all_the_same(shown: Shown) -> None:
     """SVG takes over: its faces move with the slider, and the tool is at the same place."""
-    record = _recorded()
+    record = recorded()
     browser = shown(record)
     _point_at(browser, 0)
     before = find(browser, "#scene svg").get_attribute("innerHTML")
@@ -124,7 +124,7 @@ def test_without_webgl_the_arm_is_drawn_all_the_same(shown: Shown) -> None:
 
 def test_the_picture_follows_the_slider_and_the_view(shown: Shown) -> None:
     """Another moment and another direction are other pictures; the first comes back."""
-    browser = shown(_recorded())
+    browser = shown(recorded())
     scene = find(browser, "#scene")
     pictures = []
     for time, view in (
@@ -155,9 +155,9 @@ def test_what_touches_is_red_while_it_does(
     if graphics == "svg":
         request.getfixturevalue("without_webgl")
     ball = SceneObject("ball", "sphere", Pose.of(z=60), (120, 120, 120), is_held=True)
-    end = _recorded()["path"]["tool"][-1]
+    end = recorded()["path"]["tool"][-1]
     table = SceneObject("table", "box", Pose.of(*end), (300, 300, 40))
-    record = _recorded(scene=Scene((ball, table)))
+    record = recorded(scene=Scene((ball, table)))
     contact = next(one for one in record["observations"] if set(one["parts"]) == {"ball", "table"})
     browser = shown(record)
     row = browser.find_element(By.XPATH, "//div[@id='events']//tr[td='collision']")
@@ -170,7 +170,7 @@ def test_what_touches_is_red_while_it_does(
 
 def test_a_click_on_an_event_shows_its_moment_everywhere(shown: Shown) -> None:
     """Slider, clock, program and the values beside the charts are those of the event."""
-    record = _recorded()
+    record = recorded()
     browser = shown(record)
     event = next(one for one in record["events"] if one["kind"] == "blend_apex")
     browser.execute_script(
@@ -189,7 +189,7 @@ def test_a_click_on_an_event_shows_its_moment_everywhere(shown: Shown) -> None:
 
 def test_keys_play_and_step(shown: Shown) -> None:
     """Arrows go by 0.1 s, with Shift to the next motion; Space plays to the end and stops there."""
-    record = _recorded()
+    record = recorded()
     browser = shown(record)
     body = find(browser, "body")
     body.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_LEFT)
@@ -217,7 +217,7 @@ def test_keys_play_and_step(shown: Shown) -> None:
 
 def test_charts_of_one_axis_have_its_unit_and_its_limits(shown: Shown) -> None:
     """All axes are shown against their limits; the one that is chosen in degrees."""
-    record = _recorded()
+    record = recorded()
     browser = shown(record)
     titles = [strip.text for strip in find_all(browser, "#charts .strip h3")]
     for wanted in ("Program lines", "Signals", "Speed of the tool", "Position", "Acceleration"):
@@ -234,7 +234,7 @@ def test_charts_of_one_axis_have_its_unit_and_its_limits(shown: Shown) -> None:
 
 def test_a_drag_on_a_chart_enlarges_all(shown: Shown) -> None:
     """What is left of the time axis is what was chosen; a double click shows all again."""
-    browser = shown(_recorded())
+    browser = shown(recorded())
     plots = find_all(browser, "#charts .u-over")
     seen = "return [...document.querySelectorAll('#charts .cross')].map((one) => one.hidden)"
     _point_at(browser, 0)
@@ -253,7 +253,7 @@ def test_a_drag_on_a_chart_enlarges_all(shown: Shown) -> None:
 @pytest.mark.usefixtures("narrow")
 def test_a_narrow_window_shows_everything(shown: Shown) -> None:
     """At 400 pixels nothing lies beyond the edge, and the controls are in sight."""
-    browser = shown(_recorded())
+    browser = shown(recorded())
     assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
     for selector in ("#play", "#slider", "#moment", "#rate", "#scene", "#path-only", "#search"):
         box = find(browser, selector).rect
@@ -263,7 +263,7 @@ def test_a_narrow_window_shows_everything(shown: Shown) -> None:
 
 def test_a_run_that_stops_at_once_says_so(shown: Shown) -> None:
     """No time passed: the arm stands, nothing is drawn over time, and nothing breaks."""
-    record = _recorded("DEF CELL()\nHALT\nEND\n")
+    record = recorded("DEF CELL()\nHALT\nEND\n")
     browser = shown({**record, "events": []})
     assert "The arm did not move." in find(browser, "figcaption").text
     assert find(browser, "#scene canvas").is_displayed()
@@ -271,7 +271,7 @@ def test_a_run_that_stops_at_once_says_so(shown: Shown) -> None:
 
 def test_a_run_without_robot_says_how_to_see_the_arm(shown: Shown) -> None:
     """There is no empty picture, and the rest of the page works."""
-    browser = shown(_recorded(robot="none"))
+    browser = shown(recorded(robot="none"))
     assert not find_all(browser, "#scene")
     assert "--robot kinematic" in find(browser, ".stage").text
     find(browser, "body").send_keys(Keys.ARROW_RIGHT)

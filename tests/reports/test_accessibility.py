@@ -1,0 +1,135 @@
+"""All pages in a real browser: WCAG AA by axe-core, in light and dark, and narrow windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium import webdriver
+
+from grammar.comparison.backups import compare
+from grammar.syntax.source import Source
+from reports.auto_page import write_auto_page
+from reports.claims_page import write_claims_page
+from reports.conform_page import write_conformance_page
+from reports.diff_page import write_diff_page
+from reports.growth_page import write_growth_page
+from reports.nightly_page import write_nightly_page
+from reports.run_page import write_run_page
+from reports.survey_page import write_survey_page
+from tests.reports.browsing import find_all, load
+from tests.reports.test_claims_page import RECORDS
+from tests.reports.test_conform_browser import conform_record
+from tests.reports.test_run_browser import recorded
+
+axe = pytest.importorskip("axe_core_python")
+pytestmark = pytest.mark.browser
+
+Json = dict[str, Any]
+SCRIPT = next(Path(axe.__file__).parent.glob("axe*.js"))
+PAGES = (
+    "survey", "pending", "complete", "no-files", "growth", "conform", "nightly", "run", "stopped",
+    "diff", "claims", "auto",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def pages(
+    tmp_path_factory: pytest.TempPathFactory,
+    survey_record: Callable[[str], Json],
+    grown: Callable[[str], Json],
+) -> dict[str, Path]:
+    """All pages, from records as commands make them."""
+    at = tmp_path_factory.mktemp("pages")
+    (at / "run").mkdir()
+    waiting = survey_record("believable") | {"clusters": [], "greedy": [], "pending": "causes"}
+    night = {
+        "date": "2031-05-07",
+        "bench": {"vm.ratio": 4.0},
+        "failures": [{"what": "case a/b failed", "page": "conform/x.html", "command": "krl c"}],
+        "changes": ["new failure: a/b"],
+        "history": [{"date": f"2031-05-0{n}", "bench": {"vm.ratio": n}} for n in (5, 6)],
+    }
+    old, new = ([Source(f"DEF A()\n{line}\nEND\n", "a.src")] for line in ("HALT", "PTP XHOME"))
+    change = {"old": "old", "new": "new", **compare(old, new)}
+    step = {"id": "0001-for-step", "title": "FOR … STEP", "edits": ["forStatement: STEP"]}
+    grown_alone = {
+        "start": "preliminary.g4",
+        "rounds": [
+            {
+                "shown": {"parsed": 3 + n, "files": 9, "failing": 9 - n},
+                "rules": 90 + n,
+                "taken": [step],
+                "refused": [step | {"reason": "accepts negatives"}],
+            }
+            for n in range(3)
+        ],
+    }
+    return {
+        "survey": write_survey_page(survey_record("both"), at / "survey"),
+        "pending": write_survey_page(waiting, at / "pending"),
+        "complete": write_survey_page(survey_record("story"), at / "complete"),
+        "no-files": write_survey_page(survey_record("empty"), at / "no-files"),
+        "growth": write_growth_page(grown("believable"), at / "growth"),
+        "conform": write_conformance_page(conform_record(), at / "conform"),
+        "nightly": write_nightly_page(night, at / "nightly"),
+        "run": write_run_page(recorded(), at / "run" / "run.html"),
+        "stopped": write_run_page(recorded("DEF CELL()\nHALT\nEND\n"), at / "run" / "stopped.html"),
+        "diff": write_diff_page(change, at / "diff.html"),
+        "claims": write_claims_page(RECORDS, at / "claims"),
+        "auto": write_auto_page(grown_alone, at / "auto"),
+    }
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_can_be_used_by_all(
+    browser: webdriver.Chrome, pages: dict[str, Path], name: str
+) -> None:
+    """No rule of WCAG 2.1 A and AA that a program can check is broken, rows opened; nor in dark."""
+    load(browser, pages[name].as_uri())
+    for row in find_all(browser, ".row .open")[:2]:
+        browser.execute_script("arguments[0].click()", row)
+    browser.execute_script(SCRIPT.read_text(encoding="utf-8"))
+    tags = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}
+    found = _violations(browser, tags)
+    dark = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", dark)
+    try:
+        rule = {"type": "rule", "values": ["color-contrast"]}
+        found += _violations(browser, rule)
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert [] == found
+
+
+def _violations(browser: webdriver.Chrome, only: Json) -> list[str]:
+    script = (
+        "const done = arguments[1]; axe.run(document, { runOnly: arguments[0] })"
+        ".then((found) => done(found.violations.flatMap((one) => one.nodes.map("
+        "(node) => `${one.id}: ${node.html.slice(0, 150)}`))), (error) => done([String(error)]));"
+    )
+    return list(browser.execute_async_script(script, only))
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_fits_a_narrow_window(
+    browser: webdriver.Chrome, pages: dict[str, Path], name: str
+) -> None:
+    """At 400 pixels nothing is beside the window, and text stands in words and not in letters."""
+    narrow = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", narrow)
+    try:
+        load(browser, pages[name].as_uri())
+        width = browser.execute_script("return document.documentElement.scrollWidth")
+        columns = browser.execute_script(
+            "return [...document.querySelectorAll('th, td, h1, h2, h3, p, li')].filter((one) => {"
+            " const box = one.getBoundingClientRect();"
+            " return one.textContent.trim().length > 12 && box.width > 0 && box.width < 40"
+            "  && box.height > 60; }).map((one) => one.textContent.trim())"
+        )
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert width <= 400
+    assert [] == columns
