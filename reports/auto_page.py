@@ -130,7 +130,9 @@ def _taken(number: int, done: Record) -> list[_Row]:
             shown(text(step, "id"), _LONGEST),
             shown(text(step, "title"), _LONGEST),
             tuple(shown(edit, _LONGEST) for edit in texts(step, "edits")),
-            f"{counted(count(step, 'files'), 'file')}, {counted(count(step, 'origins'), 'origin')}",
+            f"{counted(count(step, 'files'), 'file')}, {counted(count(step, 'origins'), 'origin')}"
+            if count(step, "lines")
+            else "no line needs it",
         )
         for step in records(done, "taken")
     ]
