@@ -32,7 +32,7 @@ from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 
-__all__ = ["evaluate_on_path"]
+__all__ = ["Excess", "evaluate_on_path", "excesses"]
 
 Array = npt.NDArray[np.float64]
 
@@ -42,6 +42,8 @@ _ANGLE: Final = 0.01
 _SPEED: Final = 0.01
 #: Differences of set-points overestimate what they approximate by so much at most.
 _MARGIN: Final = 1.02
+#: A path of fewer rows has no acceleration.
+_FEWEST: Final = 4
 #: How far a simulated arm may be off its path where a case does not say, in mm [design section 4].
 _TRACKING: Final = 0.5
 
@@ -329,6 +331,52 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     axis = int(np.argmax(worst))
     actual = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
     return ("met" if float(worst.max()) <= _MARGIN else "unmet"), actual
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """Where a path is beyond the limits of an axis: when in µs, what is said, by which rule."""
+
+    time: int
+    text: str
+    rule: str
+
+
+def excesses(seen: Observation) -> Iterator[Excess]:
+    """What of a whole path is beyond the machine data of its axes: at most one of a kind.
+
+    Set-points keep the software limits [MOT-15], the highest speeds [MOT-06] and accelerations
+    [MOT-02] whatever a program does; nothing where machine data or path are not known.
+    """
+    path, machine = seen.path, seen.machine
+    if path is None or machine is None or len(path.times) < _FEWEST:
+        return
+    axes = (*machine.axes, *machine.externals)[: path.axes.shape[1]]
+    dynamics = [axis.dynamics for axis in axes]
+    speeds = _rates(path.times, path.axes)
+    rates = (
+        ("MOT-06", "speed", speeds, [one.velocity if one else math.inf for one in dynamics]),
+        (
+            "MOT-02",
+            "acceleration",
+            _rates(path.times[1:], speeds),
+            [one.acceleration if one else math.inf for one in dynamics],
+        ),
+    )
+    for rule, what, rows, most in rates:
+        share = np.abs(rows) / np.array(most)
+        row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
+        if not share[row, axis] <= _MARGIN:
+            text = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
+            yield Excess(int(path.times[row]), text, rule)
+    for column, one in enumerate(axes):
+        places = path.axes[:, column]
+        beyond = ~((places >= one.lower - _ANGLE) & (places <= one.upper + _ANGLE))
+        if beyond.any():
+            first = int(np.argmax(beyond))
+            text = f"{one.name} stands at {places[first]:.3f}"
+            yield Excess(int(path.times[first]), text, "MOT-15")
+            return
 
 
 def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
