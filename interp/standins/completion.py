@@ -35,8 +35,8 @@ __all__ = ["Completed", "StandIn", "complete", "summary"]
 
 _LIST: Final = "STANDIN"
 _ROUNDS: Final = 4
-#: Behind the name of its type: the value that variables of this type begin with.
-_DEFAULT: Final = "_DEFAULT"
+#: At the end of a name: the value that variables of its type begin with, LDEFAULT for instance.
+_DEFAULT: Final = "DEFAULT"
 _MOST_SHOWN: Final = 8
 _ORIGINS: Final = {
     "library": "from the library",
@@ -247,7 +247,7 @@ class _Making:
         values = {
             datum.type: self._value(datum)
             for name, datum in library.data.items()
-            if name == f"{datum.type}{_DEFAULT}"
+            if name.endswith(_DEFAULT)
         }
         signatures = Signatures(self._enumerations(), self._type, values, self._places)
         before = dict(self._texts)

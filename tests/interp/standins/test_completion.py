@@ -105,6 +105,14 @@ def test_result_of_another_release() -> None:
     assert ("end", "") == _outcome(_run(program))
 
 
+def test_motion_data_of_inline_forms() -> None:
+    """Undeclared motion data have speeds and accelerations with which the arm moves."""
+    body = "LDAT_ACT=LCPDAT1\nFDAT_ACT=FP1\nBAS (#CP_PARAMS,1 )\nLIN XP1\n"
+    body += "PDAT_ACT=PPDAT1\nBAS (#PTP_PARAMS,50 )\nPTP XP2\n"
+    run = _run(_main(body))
+    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+
+
 def test_line_at_the_beginning() -> None:
     """A program that has lost its first PTP begins with a hand that is bent: a LIN is possible."""
     run = _run(_main("LIN XP1\n"))
