@@ -17,7 +17,7 @@ __all__ = ["write_auto_page"]
 _MAX_ROUNDS = 200
 _MAX_ROWS = 400
 _LONGEST = 600
-_WIDTH, _HEIGHT, _LEFT, _BOTTOM = 640, 220, 44, 24
+_WIDTH, _HEIGHT, _LEFT, _BOTTOM = 640, 220, 68, 24
 
 
 @dataclass(frozen=True, slots=True)
