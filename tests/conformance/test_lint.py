@@ -42,7 +42,6 @@ def test_known_failures_are_about_cases() -> None:
     [
         ("control/good.src", "", "", ""),
         ("control/good.src", "a fact", "a fact.", "one sentence"),
-        ("control/good.src", "CTL-01", "CTL-01, CTL-01", "a rule stands twice"),
         ("control/good.src", ";@ phase", ";@ profile: kss99\n;@ phase", "the profile is"),
         ("control/good.src", ";@ phase", ";@ robot: marvin\n;@ phase", "the robot is"),
         ("control/good.src", ";@ phase", ";@ io: at noon\n;@ phase", "io:1: a line begins with"),
