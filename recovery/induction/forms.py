@@ -440,10 +440,13 @@ def _grouped(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ..
     return _with_index(rules, out)
 
 
-def _sequences(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
+def _sequences(
+    rules: OperandRules, sequence: Sequence[Element], within: frozenset[str] = frozenset()
+) -> list[tuple[Symbol, ...]]:
+    """The samples of elements; ``within`` are rules that are not written out once more."""
     lines: list[tuple[Symbol, ...]] = [()]
     for element in sequence:
-        lines = [(*line, *more) for line in lines for more in _samples(rules, element)]
+        lines = [(*line, *more) for line in lines for more in _samples(rules, element, within)]
         # an odd step takes both of what comes in pairs
         lines = lines[:: len(lines) // _MOST_SAMPLES | 1]
     return lines
@@ -452,12 +455,14 @@ def _sequences(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[S
 _MOST_SAMPLES = 64
 
 
-def _samples(rules: OperandRules, element: Element) -> list[tuple[Symbol, ...]]:
+def _samples(
+    rules: OperandRules, element: Element, within: frozenset[str]
+) -> list[tuple[Symbol, ...]]:
     match element:
         case Group(alternatives=alternatives):
-            return [s for a in alternatives for s in _sequences(rules, a.elements)]
+            return [s for a in alternatives for s in _sequences(rules, a.elements, within)]
         case Repeat(item=item, operator=operator):
-            once = _samples(rules, item)
+            once = _samples(rules, item, within)
             # more often than a short list, so that it stays one of any length
             more = [s * LONG_LIST for s in once] if operator != "?" else []
             return [*(() if operator == "+" else [()]), *once, *more]
@@ -465,11 +470,13 @@ def _samples(rules: OperandRules, element: Element) -> list[tuple[Symbol, ...]]:
             return [(Symbol("", Operand((), name)),)]
         case Reference(name=name) if not name[0].isupper():
             alternatives = rules.grammar.by_name[name].alternatives
-            if name in rules.reaches[name] and name in rules.ladder:
+            if name in within or (name in rules.reaches[name] and name in rules.ladder):
                 return [(Symbol("", Operand((), name)),)]
             inner = [e for a in alternatives for e in walk(a)]
             if rules.is_part(name) or any(isinstance(e, Literal) and e.text == "," for e in inner):
-                return [s for a in alternatives for s in _sequences(rules, a.elements)]
+                return [
+                    s for a in alternatives for s in _sequences(rules, a.elements, within | {name})
+                ]
             return [(Symbol("", Operand((), name)),)]
         case Reference() | Literal():
             token = rules.grammar.token_of(element)

@@ -91,3 +91,15 @@ def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) ->
 def test_a_name_with_an_index(writer: FormWriter, lines: list[str], form: str) -> None:
     """What is a name, with an index or without, is not written as a whole variable."""
     assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+def test_a_list_may_hold_itself() -> None:
+    """Samples of a rule that is a list of itself come to an end: the inner one is an operand."""
+    nested = _GRAMMAR.replace(
+        "inside : INSIDE '(' NAME index? ':' NAME ')' ;",
+        "inside : INSIDE set ;\n\nset : '(' (NAME | set) (',' (NAME | set))* ')' ;",
+    )
+    rules = OperandRules(Recognizer(read(nested)))
+    elements = rules.grammar.by_name["set"].alternatives[0].elements
+    operands = {s.operand for sample in samples_of(rules, elements) for s in sample[0].inside or ()}
+    assert "set" in {operand.rule for operand in operands if operand}
