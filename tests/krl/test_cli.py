@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 from importlib import metadata
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -56,15 +58,18 @@ def test_module_runs_as_the_command(tmp_path: Path) -> None:
     assert "krl: no corpus folder here: run this in a checkout of the workbench\n" == done.stderr
 
 
-def test_a_package_of_the_same_name_is_named(tmp_path: Path) -> None:
+def test_a_package_of_the_same_name_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Where another project's `grammar` is found first, one line says so."""
-    other = tmp_path / "grammar"
-    other.mkdir()
-    (other / "__init__.py").touch()
-    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from krl.cli import main; main([])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert ("", 1) == (done.stdout, len(done.stderr.splitlines()))
-    assert f"and is {other}, of another project" in done.stderr
+    other = ModuleSpec("grammar", None, origin=str(tmp_path / "grammar" / "__init__.py"))
+    monkeypatch.setattr(
+        "krl.extras.find_spec", lambda name: other if name == "grammar" else find_spec(name)
+    )
+    assert 2 == main([])
+    out, err = capsys.readouterr()
+    assert ("", 1) == (out, len(err.splitlines()))
+    assert f"and is {tmp_path / 'grammar'}, of another project" in err
 
 
 def test_start_is_quick() -> None:

@@ -99,9 +99,10 @@ def test_recording_is_made_from_the_list_and_evaluated(
 ) -> None:
     """``--list --json`` has the digests that a recording needs; ``import`` evaluates it."""
     listed, recording = tmp_path / "list.json", tmp_path / "recording.json"
-    assert 0 == run("data/round_half", "--list", "--json", listed)
+    assert 0 == run("data/round_up", "--list", "--json", listed)
     (case,) = json.loads(listed.read_text(encoding="utf-8"))["cases"]
-    event = {"t": None, "kind": "assign", "at": f"{case['files'][0]}:6", "name": "N", "value": 8}
+    at = f"{case['files'][0]}:6"
+    event = {"t": None, "kind": "assign", "at": at, "name": "N", "value": 8}
     told = {
         "format": "krl-recording/1",
         "controller": {"name": "KR C4", "release": "KSS 8.6"},
@@ -120,7 +121,7 @@ def test_recording_is_made_from_the_list_and_evaluated(
     event["value"] = 7
     recording.write_text(json.dumps(told), encoding="utf-8")
     assert 1 == run("import", recording)
-    assert "data/round_half" in capsys.readouterr().out
+    assert "data/round_up" in capsys.readouterr().out
 
 
 def test_a_planted_fault_is_found_and_shown_on_the_page(

@@ -453,14 +453,14 @@ def test_a_narrow_window_reads_like_a_list(
 def test_a_long_list_is_short_at_first(
     browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
 ) -> None:
-    """Two hundred clusters are shown, then all of them; a link leads to any."""
+    """A hundred clusters are shown, then all of them; a link leads to any."""
     clusters = survey_record("large")["clusters"]
     visible = "[...document.querySelectorAll('.row')].filter((row) => row.checkVisibility())"
     shown = f"return {visible}.length"
     load(browser, pages("large"))
-    assert 200 == browser.execute_script(shown)
+    assert 100 == browser.execute_script(shown)
     more = find(browser, "button.more")
-    assert f"{len(clusters) - 200:,} more" == more.text
+    assert f"{len(clusters) - 100:,} more" == more.text
     _click(browser, more)
     assert len(clusters) == browser.execute_script(shown)
     load(browser, f"{pages('large')}#cluster={clusters[431]['id']}")

@@ -14,11 +14,18 @@ CELL = Path(__file__).parents[3] / "examples" / "cell-tests"
 OPTIONS = ("-q", "-p", "krl.program_tests.pytest_plugin", "-p", "no:cacheprovider")
 
 
+@pytest.fixture
+def no_other_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the package is installed pytest would load the plug-in a second time."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+
+
+@pytest.mark.usefixtures("no_other_plugins")
 def test_the_cell_of_the_tutorial_passes_as_documented(pytester: pytest.Pytester) -> None:
     """All its tests pass; page and lcov show what ran, and what the tests leave out."""
     shutil.copytree(CELL, pytester.path / "cell")
     options = (*OPTIONS, "--junitxml=j.xml", "--krl-cov-html=cov", "--krl-lcov=cov.info")
-    result = pytester.runpytest_inprocess(*options, "cell/tests")
+    result = pytester.runpytest_subprocess(*options, "cell/tests")
     result.assert_outcomes(passed=6)
     cases = ElementTree.parse(pytester.path / "j.xml").findall(".//testcase")
     assert "two parts lie on the tray" in [case.get("name") for case in cases]
@@ -33,13 +40,14 @@ def test_the_cell_of_the_tutorial_passes_as_documented(pytester: pytest.Pytester
     assert "never executed" in page
 
 
+@pytest.mark.usefixtures("no_other_plugins")
 def test_failures_and_errors_have_no_traceback(pytester: pytest.Pytester) -> None:
     """A failure says what was expected and seen, a file that cannot be used its one line."""
     Path("work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
     text = "[[test]]\nname = 'x'\nexpect = ['out 1 never']\n"
     Path("test_work.toml").write_text(text, encoding="utf-8")
     Path("test_bad.toml").write_text("[[test]]\nnaem = 'x'\n", encoding="utf-8")
-    result = pytester.runpytest_inprocess(*OPTIONS, "--continue-on-collection-errors")
+    result = pytester.runpytest_subprocess(*OPTIONS, "--continue-on-collection-errors")
     result.assert_outcomes(failed=1, errors=1)
     result.stdout.fnmatch_lines(
         ["*test_bad.toml:2: naem is no key here*", "*expected: out 1 never", "*seen: *work.src:2*"]
