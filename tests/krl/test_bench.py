@@ -66,7 +66,7 @@ def test_growth_names_shapes_with_their_slopes(
     target = tmp_path / "growth.json"
     words = "bench growth --entry format --largest 32 --jobs 1 --shape".split()
     assert 0 == main([*words, "blank lines", "--json", str(target)])
-    assert "format    blank lines" in capsys.readouterr().out
+    assert "format: blank lines" in capsys.readouterr().out
     (row,) = json.loads(target.read_text(encoding="utf-8"))["rows"]
     assert ["format", "blank lines", 3] == [row["entry"], row["shape"], len(row["costs"])]
 

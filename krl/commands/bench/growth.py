@@ -225,8 +225,7 @@ def _print(rows: list[dict[str, Any]]) -> None:
     for row in sorted(rows, key=lambda row: -(row["time_slope"] or 9.0))[: max(10, len(steep))]:
         last = row["costs"][-1]
         table.add_row(
-            row["entry"],
-            escape(row["shape"]),
+            escape(f"{row['entry']}: {row['shape']}"),
             _slope(row["time_slope"]),
             _slope(row["memory_slope"]),
             f"{last['size'] / 1_000:,.0f} kB",
