@@ -219,9 +219,7 @@ def _print(rows: list[dict[str, Any]]) -> None:
         for row in rows
         if any(slope is None or slope > _AIM for slope in (row["time_slope"], row["memory_slope"]))
     ]
-    table = figures(
-        ("command", "shape", "time slope", "memory slope", "largest", "seconds", "peak")
-    )
+    table = figures(("command: shape", "time", "memory", "largest", "seconds", "peak"))
     for row in sorted(rows, key=lambda row: -(row["time_slope"] or 9.0))[: max(10, len(steep))]:
         last = row["costs"][-1]
         table.add_row(
