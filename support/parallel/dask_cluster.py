@@ -130,8 +130,9 @@ class _Awaited(Generic[_T]):
             except self._gone as error:
                 raise WorkersError(f"the scheduler at {self._address} has gone") from error
             except TimeoutError:
-                if self._future.done():
-                    raise
+                if self._future.done():  # it ended just now, or the task's own time was up
+                    own: _T = self._future.result()
+                    return own
                 # once may be the moment between a worker that died and the one in its place
                 deserted = 0 if self._client.ncores() else deserted + 1
                 if deserted == 2:

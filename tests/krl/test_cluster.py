@@ -221,6 +221,23 @@ def test_what_kills_workers_is_told_from_what_was_beside_it(of_two: _Cluster) ->
     assert [0, 2, 4, 6, -4, 10, 12] == done
 
 
+class _EndsLate:
+    """A future of Dask that ends right after the wait for it has ended."""
+
+    def result(self, timeout: float | None = None) -> int:
+        if timeout is not None:
+            raise TimeoutError
+        return 8
+
+    def done(self) -> bool:
+        return True
+
+
+def test_result_that_comes_as_the_wait_ends_is_taken() -> None:
+    """Patience that ran out at the wrong moment is no failure of the task."""
+    assert 8 == dask_cluster._Awaited(_EndsLate(), None, "tcp://nobody").result()
+
+
 def test_scheduler_that_goes_away_is_one_clear_line(of_two: _Cluster) -> None:
     """Work does not wait for a scheduler that was killed."""
     results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
