@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from grammar.notation.g4 import read_file
-from grammar.notation.generate import GRAMMAR
+from grammar.notation.krl_grammar import krl_grammar
 from grammar.notation.model import Grammar, Reference, walk
 from grammar.parser.lexer import regex_of
 from grammar.semantics.predefined import System
@@ -50,7 +49,7 @@ class Words:
 @cache
 def words() -> Words:
     """The words of the grammar in force, and the predefined routines."""
-    grammar = read_file(GRAMMAR)
+    grammar = krl_grammar()
     left = {text for text in grammar.literal_tokens if text[0].isalpha()}
 
     def taken(rules: str) -> tuple[str, ...]:

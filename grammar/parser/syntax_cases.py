@@ -33,8 +33,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from grammar.notation.g4 import read_file
-from grammar.notation.generate import GRAMMAR
+from grammar.notation.krl_grammar import krl_grammar
 from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sexpr import ExpressionError, Shortener, read, write
@@ -130,7 +129,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="file or folder")
     parser.add_argument("--update", action="store_true", help="write what is found into the files")
     options = parser.parse_args(arguments)
-    reader = CaseReader(Recognizer(read_file(GRAMMAR)))
+    reader = CaseReader(Recognizer(krl_grammar()))
     differing = 0
     files = [f for p in options.paths for f in (sorted(p.glob("*.txt")) if p.is_dir() else [p])]
     for path in files:

@@ -86,6 +86,7 @@ def recover(
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
+    from grammar.notation.krl_grammar import krl_grammar
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load
 
@@ -112,7 +113,7 @@ def recover(
         raise InputError("--hold-out, --resume and --strike belong to --auto")
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():
-        chosen = read_file(grammar or GRAMMAR)
+        chosen = read_file(grammar) if grammar else krl_grammar()
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
         given = negatives or (_DEFAULT_NEGATIVES if _DEFAULT_NEGATIVES.is_dir() else None)
         surveyor = _Surveyor(roots, load(given) if given else (), out, jobs, scheduler)

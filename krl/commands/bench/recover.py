@@ -25,8 +25,8 @@ def recover(
 
     One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
     """
-    from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
+    from grammar.notation.krl_grammar import krl_grammar
     from grammar.notation.model import GrammarError
     from recovery.bench.survey_speed import measure, steps
     from support.files.discovery import IngestError
@@ -35,7 +35,7 @@ def recover(
     wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
     with as_input_errors(GrammarError, IngestError):
-        grammar = read_file(GRAMMAR)
+        grammar = krl_grammar()
         with progress_bar("measuring", steps(wanted)) as advance:
             record = measure(roots, grammar, sizes=wanted, on_step=advance)
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
