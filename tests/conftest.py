@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 if TYPE_CHECKING:
     from selenium import webdriver
 
-# Where a test does not say how many examples it needs; more have found nothing more here. No test
-# depends on the clock.
-settings.register_profile("suite", max_examples=50, deadline=None)
-settings.load_profile("suite")
+# No test depends on the clock, nor on chance: who changes nothing sees the same examples again.
+# `HYPOTHESIS_PROFILE=search` looks for new ones.
+settings.register_profile(
+    "suite",
+    max_examples=50,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.register_profile("search", settings.get_profile("suite"), derandomize=False)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 _FLAGS = (
     "--headless=new",

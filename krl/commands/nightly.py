@@ -3,18 +3,13 @@
 import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
 import time
-from codecs import getincrementaldecoder
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from threading import Thread, current_thread, main_thread
-from typing import IO, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -56,6 +51,10 @@ def nightly(
     minutes: Annotated[
         float, typer.Option(min=1, metavar="N", help="How long the run may take.")
     ] = 60,
+    memory: Annotated[
+        int,
+        typer.Option(min=100, metavar="MB", help="What each process of a step may have, on Linux."),
+    ] = 8_000,
     date: Annotated[
         str | None, typer.Option(metavar="DATE", help="The name of the run; default: today.")
     ] = None,
@@ -84,7 +83,7 @@ def nightly(
         raise InputError(f"there is no step {', '.join(only or ())}")
     made: dict[str, Any] = {}
     went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
-    for step, how, seconds in _performed(steps, folder, minutes):
+    for step, how, seconds in _performed(steps, folder, minutes, memory * 1_000_000):
         before = went.pop(step.name, None)
         if seconds or not isinstance(before, dict) or "failed" in how:
             before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
@@ -150,7 +149,7 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
 
 
 def _performed(
-    steps: list[_Step], folder: Path, minutes: float
+    steps: list[_Step], folder: Path, minutes: float, memory: int
 ) -> Iterator[tuple[_Step, str, float]]:
     """Each step with how it went: ok, findings, failed with its last line, or cut off.
 
@@ -169,7 +168,7 @@ def _performed(
         _say(began - begun, f"{step.name} ({number} of {len(steps)}, at most {most / 60:.0f} min)")
         _recall(folder, step.name)
         command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
-        returned, last = _watched(command, most)
+        returned, last = _watched(command, most, memory)
         status = {FINE: "ok", FINDINGS: "findings", None: f"cut off after {most / 60:.0f} minutes"}
         how = status.get(returned, "")
         if not how or (returned is not None and not target.is_file()):
@@ -192,65 +191,29 @@ def _recall(folder: Path, name: str) -> None:
         shutil.copyfile(runs[-1], folder / kept)
 
 
-def _watched(command: list[str], seconds: float) -> tuple[int | None, str]:
-    """Run a command for some seconds at most: its status, ``None`` if cut off, and its last line.
+def _watched(command: list[str], seconds: float, memory: int) -> tuple[int | None, str]:
+    """Run a command under limits: its status, ``None`` if cut off, and its last line.
 
     On a terminal its progress is shown.
     """
+    from support.parallel.limited_process import run_limited
+
     is_seen = sys.stderr.isatty()
     size = shutil.get_terminal_size()
     terminal = {"FORCE_COLOR": "1", "COLUMNS": str(size.columns), "LINES": str(size.lines)}
-    process = subprocess.Popen(
-        command,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        env={**os.environ, **(terminal if is_seen else {})},
-    )
-    assert process.stderr is not None, "it is a pipe"
-    said: list[str] = []
-    reader = Thread(target=_pass_on, args=(process.stderr, said, is_seen), daemon=True)
-    reader.start()
-    returned: int | None = None
-    try:
-        with _termination_raises():
-            returned = process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        pass
-    finally:
-        process.kill()
-        process.wait()
-    reader.join(5)  # its workers end with it, and the pipe with them
-    lines = [line.strip() for line in re.split(r"[\r\n]", _CONTROL.sub("", "".join(said)))]
+    said = ""
+
+    def hear(text: str) -> None:
+        nonlocal said
+        said = (said + text)[-_TAIL:]
+        if is_seen:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
+    environment = {**os.environ, **(terminal if is_seen else {})}
+    returned = run_limited(command, seconds, memory, hear, environment)
+    lines = [line.strip() for line in re.split(r"[\r\n]", _CONTROL.sub("", said))]
     return returned, next((line for line in reversed(lines) if line), "")
-
-
-@contextmanager
-def _termination_raises() -> Iterator[None]:
-    """Let a signal that ends the run end the step that it is in, too."""
-    if current_thread() is not main_thread():  # only the main thread may set a handler
-        yield
-        return
-
-    def end(number: int, _frame: object) -> None:
-        raise SystemExit(128 + number)
-
-    before = signal.signal(signal.SIGTERM, end)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def _pass_on(stream: IO[bytes], said: list[str], is_seen: bool) -> None:
-    """Keep the last of what a command says, and show all of it on a terminal."""
-    decoder = getincrementaldecoder("utf-8")("replace")
-    with stream:
-        while chunk := os.read(stream.fileno(), 65_536):
-            text = decoder.decode(chunk)
-            said[:] = ["".join([*said, text])[-_TAIL:]]
-            if is_seen:
-                sys.stderr.write(text)
-                sys.stderr.flush()
 
 
 def _record(folder: Path, name: str) -> dict[str, Any] | None:

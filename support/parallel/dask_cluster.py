@@ -22,7 +22,7 @@ _PACKAGES: Final = ("support", "grammar", "interp", "recovery", "conformance")
 #: Seconds after which it is asked whether there is still a worker that could bring a result.
 _PATIENCE: Final = 20.0
 #: Seconds that a scheduler may take to accept a connection.
-_GREETING: Final = 5.0
+_GREETING: Final = 10.0
 
 
 @contextmanager
@@ -36,7 +36,7 @@ def connected(address: str) -> Iterator[Workers]:
     try:
         _greet(address)
         connect: Callable[..., Any] = Client
-        client = connect(address, timeout="5s", set_as_default=False)
+        client = connect(address, timeout=_GREETING, set_as_default=False)
     except Exception as error:  # also whatever Dask makes of a server that is no scheduler
         raise WorkersError(f"no Dask scheduler answers at {address}") from error
     with _silent("distributed.client", "distributed.utils"):

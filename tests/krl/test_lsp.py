@@ -52,7 +52,7 @@ class _Editor(LanguageClient):
         """The findings of a file, once they are as wanted."""
         while not (name in self.found and wanted(self.found[name])):
             self.news.clear()
-            await asyncio.wait_for(self.news.wait(), 60)
+            await self.news.wait()
         return self.found[name]
 
 
@@ -236,6 +236,6 @@ def test_formatting_is_that_of_krl_format(heard: _Heard) -> None:
 def test_a_message_larger_than_any_is_refused(said: bytes, answer: str) -> None:
     """The length is a claim: nothing of that size is laid out in memory."""
     command = [sys.executable, "-m", "krl", "lsp"]
-    done = subprocess.run(command, input=said, capture_output=True, check=False, timeout=60)
+    done = subprocess.run(command, input=said, capture_output=True, check=False)
     assert 2 == done.returncode
     assert done.stderr.decode().startswith(f"krl: {answer}")

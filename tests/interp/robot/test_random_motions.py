@@ -127,7 +127,7 @@ def move(driver: Driver, step: dict[str, Any]) -> None:
     deadline=None,
     derandomize=True,
     phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(steps=st.lists(STEPS, min_size=2, max_size=9))
 def test_limits_are_never_exceeded(machine: MachineData, driver: Driver, steps: list[Any]) -> None:

@@ -2,7 +2,7 @@
 
 import os
 import signal
-import socket
+import socketserver
 import threading
 import time
 from contextlib import nullcontext
@@ -54,9 +54,12 @@ def test_what_kills_is_told_from_what_was_beside_it() -> None:
 
 
 @pytest.mark.parametrize("command", ["recover corpus/programs --no-start", "conform", "fuzz"])
-def test_no_scheduler_is_one_clear_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_scheduler_is_one_clear_line(
+    monkeypatch: pytest.MonkeyPatch, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     """An address where no scheduler answers is told as that."""
     pytest.importorskip("distributed")
+    monkeypatch.setattr("support.parallel.dask_cluster._GREETING", 0.2)
     assert 2 == main([*command.split(), "--scheduler", "tcp://127.0.0.1:9"])
     assert "krl: no Dask scheduler answers at tcp://127.0.0.1:9\n" == capsys.readouterr().err
 
@@ -66,23 +69,22 @@ def test_what_answers_and_is_no_scheduler_is_told(
     monkeypatch: pytest.MonkeyPatch, answer: bytes
 ) -> None:
     """A server that says nothing, or something else than a scheduler, is not waited for."""
+
+    class Reply(socketserver.BaseRequestHandler):
+        def handle(self) -> None:
+            self.request.sendall(answer)
+            while self.request.recv(1000):  # until the caller has gone
+                pass
+
     monkeypatch.setattr("support.parallel.dask_cluster._GREETING", 0.2)
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        callers: list[socket.socket] = []
-
-        def reply() -> None:
-            callers.append(server.accept()[0])
-            callers[0].sendall(answer)
-
-        replying = threading.Thread(target=reply)
-        replying.start()
-        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        began = time.monotonic()
+    with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Reply) as server:
+        serving = threading.Thread(target=server.serve_forever, args=(0.01,))
+        serving.start()
+        address = f"tcp://127.0.0.1:{server.server_address[1]}"
         with pytest.raises(WorkersError, match=f"^no Dask scheduler answers at {address}$"):
             check_scheduler(address)
-        assert time.monotonic() - began < 5
-        replying.join()
-        callers[0].close()
+        server.shutdown()
+        serving.join()
 
 
 class _Death(Exception):

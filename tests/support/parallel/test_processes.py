@@ -36,7 +36,7 @@ def test_processes_end_with_a_killed_parent() -> None:
     assert process.stdout is not None
     assert int(process.stdout.readline()) != process.pid
     process.kill()
-    out, _ = process.communicate(timeout=60)
+    out, _ = process.communicate()
     assert b"" == out
 
 
@@ -52,5 +52,5 @@ def test_an_interrupt_ends_all_at_once() -> None:
     assert process.stdout is not None
     assert b"begun\n" == process.stdout.readline()
     os.killpg(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate()
     assert (130, b"") == (process.returncode, errors)

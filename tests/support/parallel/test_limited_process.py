@@ -1,0 +1,88 @@
+"""A command under limits: what it said, how it ended, and that nothing of it goes on."""
+
+import os
+import signal
+import subprocess
+import sys
+from threading import Event
+
+import pytest
+
+from support.parallel.limited_process import run_limited
+
+MUCH = 1 << 40
+
+
+def ignore(_text: str) -> None:
+    pass
+
+
+def python(code: str) -> list[str]:
+    return [sys.executable, "-c", code]
+
+
+def test_status_and_what_was_said_are_known() -> None:
+    """All that a command says is heard, though a piece ends within a character."""
+    said: list[str] = []
+    code = "import sys; sys.stderr.buffer.write('ä€'.encode()*50_000); sys.exit(3)"
+    assert 3 == run_limited(python(code), 600, MUCH, said.append)
+    assert "ä€" * 50_000 == "".join(said)
+
+
+def test_what_takes_too_long_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It has no status; what it said until then is known."""
+    said: list[str] = []
+    has_spoken = Event()
+    wait = subprocess.Popen.wait
+
+    def hear(text: str) -> None:
+        said.append(text)
+        has_spoken.set()
+
+    def time_is_up(process: subprocess.Popen[bytes], seconds: float | None = None) -> int:
+        if seconds is None:
+            return wait(process)
+        has_spoken.wait()
+        raise subprocess.TimeoutExpired("it", seconds)
+
+    monkeypatch.setattr(subprocess.Popen, "wait", time_is_up)
+    code = "import sys, time; print('far', end='', file=sys.stderr, flush=True); time.sleep(1e6)"
+    assert None is run_limited(python(code), 1, MUCH, hear)
+    assert ["far"] == said
+
+
+def test_time_passes() -> None:
+    """Who sleeps longer than allowed is not waited for."""
+    assert None is run_limited(python("import time; time.sleep(1e6)"), 0.01, MUCH, ignore)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there the limit holds")
+def test_memory_has_a_limit() -> None:
+    """What wants more than allowed fails, and its parent does not."""
+    said: list[str] = []
+    assert 1 == run_limited(python("bytearray(1 << 32)"), 600, 1 << 30, said.append)
+    assert "MemoryError" in "".join(said)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+def test_termination_ends_all() -> None:
+    """Who runs a command and is told to end leaves neither it nor what it has started.
+
+    All of them hold one end of a pipe, whose other end is read until nobody does. The signal comes
+    as early as can be: the command itself sends it to who runs it.
+    """
+    sleeper = "import time; time.sleep(1e6)"
+    step = (
+        "import os, signal, subprocess, sys;"
+        f" subprocess.Popen([sys.executable, '-c', {sleeper!r}]);"
+        f" os.kill(os.getppid(), signal.SIGTERM); {sleeper}"
+    )
+    run = (
+        "import sys; from support.parallel.limited_process import run_limited;"
+        f" run_limited([sys.executable, '-c', {step!r}], 1e6, {MUCH}, print)"
+    )
+    read, write = os.pipe()
+    with subprocess.Popen(python(run), stdin=write) as process, os.fdopen(read, "rb") as stream:
+        os.close(write)
+        assert b"" == stream.read()
+        assert 128 + signal.SIGTERM == process.wait()
