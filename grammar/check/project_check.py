@@ -38,7 +38,6 @@ __all__ = [
     "KnownFile",
     "Reading",
     "check_part",
-    "check_whole",
     "completed",
     "needs",
     "read_part",
@@ -169,11 +168,6 @@ class _Tree:
 
 #: By project, then by the index of the file in it.
 _KEPT: dict[int, dict[int, _Tree]] = {}
-
-
-def check_whole(contents: Sequence[Content], options: CheckOptions) -> list[FileResult]:
-    """Check all files of a project in this process."""
-    return [one.checked for one in recheck(contents, options, {})]
 
 
 def recheck(

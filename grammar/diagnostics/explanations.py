@@ -2,13 +2,12 @@
 
 ``codes.tsv`` has the sentences, as every check needs them; ``examples.toml`` the programs, which
 only an explanation needs. An example is one file or several: each begins with a line
-``-- NAME --``, which one alone may lack. A test checks every example, so that ``wrong`` has a
-finding of the code and ``right`` has none.
+``-- NAME --``, which one alone may lack: it is ``work.src`` or ``work.dat`` then. A test checks
+every example, so that ``wrong`` has a finding of the code and ``right`` has none.
 """
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,10 +17,7 @@ from typing import Any
 
 from grammar.diagnostics.codes import DiagnosticCode, by_code, by_slug
 
-__all__ = ["Explanation", "example_files", "explanation"]
-
-_HEAD = re.compile(r"^-- (\S+) --\n", re.MULTILINE)
-_DATA_LIST = re.compile(r"\s*DEFDAT\b", re.IGNORECASE)
+__all__ = ["Explanation", "explanation"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,14 +53,6 @@ def explanation(name: str) -> Explanation | None:
         known.get("source", ""),
         not known.get("missing", False),
     )
-
-
-def example_files(example: str) -> dict[str, str]:
-    """The files of an example by name; one without a name is ``work.src`` or ``work.dat``."""
-    first, *parts = _HEAD.split(example)
-    if not parts:
-        return {"work.dat" if _DATA_LIST.match(first) else "work.src": first}
-    return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
 @cache

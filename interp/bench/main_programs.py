@@ -81,8 +81,7 @@ class MainProgram:
 class Ran:
     """What came of a main program: virtual seconds, motions made, and where and why it ended.
 
-    ``at`` is where it was when its time was over. ``furthest_mm`` is how far a measured tool was
-    from its set-point at most, where the robot measures. ``inputs``: how many changes of inputs it
+    ``at`` is where it was when its time was over. ``inputs``: how many changes of inputs it
     took to fulfil its waits. ``skipped`` are motions that could not be planned where something
     stood in for what the backup lacks, ``stood_in`` what did. ``is_own_fault``: it
     stopped in a line of the backup that names nothing that stood in.
@@ -94,7 +93,6 @@ class Ran:
     at: str = ""
     reason: str = ""
     machine: str = ""
-    furthest_mm: float | None = None
     inputs: int = 0
     skipped: int = 0
     stood_in: tuple[str, ...] = ()
@@ -228,10 +226,6 @@ def run_main(
     stood_in = tuple(one.name for one in program.used_stand_ins(*starts))
     if run.machine_note:
         stood_in = (*stood_in, run.machine_note)
-    path = run.path
-    furthest = None
-    if path is not None and path.tips_measured is not None:
-        furthest = float(((path.tips_measured - path.tips) ** 2).sum(axis=1).max() ** 0.5)
     place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
     result: Result
     if outcome.ending == "time":
@@ -251,7 +245,6 @@ def run_main(
         place,
         reason,
         run.machine.name,
-        furthest,
         run.controller.automatic_inputs.count,
         len(run.controller.skipped_motions),
         stood_in,

@@ -100,7 +100,6 @@ class PlannedPoint:
     at: At
     position: Position | None
     tool: Pose
-    is_blended: bool
 
 
 @runtime_checkable
@@ -205,7 +204,6 @@ class MotionQueue:
                     motion.at,
                     target,
                     motion.settings.placement.tool,
-                    bool(motion.criteria),
                 )
             )
         if task.level is not None:

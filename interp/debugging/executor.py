@@ -45,11 +45,6 @@ class DebuggedExecutor:
         """How many calls and actions are open."""
         return self.at.depth + len(self._actions)
 
-    @property
-    def is_at_action(self) -> bool:
-        """Whether what runs is an action itself, and no routine that it has called."""
-        return bool(self._actions) and self._actions[-1][0] == self.at.depth
-
     # ----------------------------------------------------------------------- the port
 
     @property

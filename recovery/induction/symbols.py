@@ -257,15 +257,6 @@ class OperandRules:
                         found.update((left.text, word) for word in words if word[0].isupper())
         return frozenset(found)
 
-    def juxtaposes(self, sign: str) -> bool:
-        """Whether operands stand side by side between the brackets, and no expression does."""
-        rule = self.bracketed[sign]
-        called = set(self._called[rule])
-        for part in list(called):
-            if part in self._called and self.is_part(part):
-                called |= self._called.get(part, set())
-        return self.widest not in called
-
 
 def _is_optional(element: Element) -> bool:
     return isinstance(element, Repeat) and element.operator != "+"

@@ -128,8 +128,7 @@ class CartesianLimits:
 class MachineData:
     """An arm and its external axes, by the names that $machine.dat has for them.
 
-    ``coupling`` holds $COUP_COMP as factors by pairs of axes, those that are not zero: how the
-    motor of the second turns when the first does. ``singul_pos`` is $SINGUL_POS [POS-08].
+    ``singul_pos`` is $SINGUL_POS [POS-08].
     ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``carrier`` is the external
     kinematic system that the robot stands on [#ERSYS], ``tables`` those that carry bases, by names
     such as #EASYS, each from the root that EK gives it. ``torques`` are the most that the robot
@@ -150,7 +149,6 @@ class MachineData:
     dh_4: WristLink
     dh_5: WristLink
     tflwp: Pose
-    coupling: Mapping[tuple[int, int], float]
     singul_pos: tuple[int, int, int]
     velocity: CartesianLimits
     acceleration: CartesianLimits
@@ -282,7 +280,6 @@ class _Reader:
             dh_4=self._link("$DH_4", 90.0),
             dh_5=self._link("$DH_5", -90.0),
             tflwp=self._frame("$TFLWP"),
-            coupling=self._coupling(),
             singul_pos=(self._singular(1), self._singular(2), self._singular(3)),
             velocity=self._cartesian("$VEL_MA", CartesianLimits(3.0, 400.0, 400.0)),
             acceleration=self._cartesian("$ACC_MA", CartesianLimits(10.0, 1000.0, 1000.0)),
@@ -393,11 +390,6 @@ class _Reader:
             acceleration = velocity / _RUN_UP_TIME
         filtered = self._number("$DEF_FLT_PTP", default=0.0) / 1000.0
         return Dynamics(velocity, acceleration, acceleration / (filtered or _FILTER_TIME))
-
-    def _coupling(self) -> Mapping[tuple[int, int], float]:
-        pairs = ((i, j) for i in _numbers(ROBOT_AXES) for j in _numbers(ROBOT_AXES) if i != j)
-        factors = {(i, j): self._fraction(f"$COUP_COMP[{i},{j}]") for i, j in pairs}
-        return {pair: factor for pair, factor in factors.items() if factor}
 
     def _singular(self, number: int) -> int:
         return self._integer(f"$SINGUL_POS[{number}]", default=0)

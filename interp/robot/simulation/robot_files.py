@@ -279,7 +279,6 @@ def _machine(
         dh_4=WristLink(0.0, 0.0, 0.0),
         dh_5=WristLink(0.0, 0.0, 0.0),
         tflwp=IDENTITY,
-        coupling={},
         singul_pos=(0, 0, 0),
         velocity=CartesianLimits(3.0, 400.0, 400.0),
         acceleration=CartesianLimits(10.0, 1000.0, 1000.0),

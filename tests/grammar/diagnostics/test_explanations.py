@@ -1,23 +1,29 @@
 """Every code is explained by a program that has a finding of it, and by one that has none."""
 
+import re
+
 import pytest
 
 from grammar.check.framework import check_project
-from grammar.check.project_check import CheckOptions, Content, check_whole
+from grammar.check.project_check import CheckOptions, Content, recheck
 from grammar.check.suppression_comments import apply_suppressions
 from grammar.diagnostics.codes import by_code
-from grammar.diagnostics.explanations import example_files, explanation
+from grammar.diagnostics.explanations import explanation
 
 #: What no short program shows: other bytes than text, sizes, and 256 routines.
 WITHOUT = {"KRL002", "KRL003", "KSS2710"}
+
+HEAD = re.compile(r"^-- (\S+) --\n", re.MULTILINE)
 
 
 def found_in(example: str, *, is_complete: bool) -> set[str]:
     """The codes of all findings in the files of an example."""
     options = CheckOptions(stops=True, is_complete=is_complete)
-    files = example_files(example)
+    first, *parts = HEAD.split(example)
+    names = parts[::2] or ["work.dat" if first.lstrip().startswith("DEFDAT") else "work.src"]
+    files = dict(zip(names, parts[1::2] or [first], strict=True))
     contents = [Content(name, "", text.encode()) for name, text in files.items()]
-    results = check_whole(contents, options)
+    results = [one.checked for one in recheck(contents, options, {})]
     all_ = check_project(one.findings for one in results)
     found = set()
     for name, result in zip(files, results, strict=True):

@@ -125,7 +125,6 @@ def test_points() -> None:
     assert [(1, "PTP"), (2, "PTP"), (3, "LIN"), (4, "LIN")] == [
         (one.number, one.kind) for one in points
     ]
-    assert [False, False, True, False] == [one.is_blended for one in points]
     position = points[2].position
     assert isinstance(position, Position)
     assert pytest.approx((500, -100, 600)) == position.flange.position

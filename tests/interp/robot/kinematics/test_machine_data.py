@@ -37,7 +37,6 @@ def test_what_is_not_said(machine_text: Callable[..., str]) -> None:
     assert CartesianLimits(10.0, 1000.0, 1000.0) == machine.acceleration
     assert (0, 0, 0) == machine.singul_pos
     assert () == machine.externals
-    assert {} == machine.coupling
 
 
 def test_speed_follows_from_motor_and_gear(machine_text: Callable[..., str]) -> None:
@@ -97,12 +96,6 @@ def test_limits_that_are_none(machine_text: Callable[..., str]) -> None:
     """Two software limits that leave no room are not in use."""
     axis = read_machine(machine_text("$SOFTN_END[4]=0.0", "$SOFTP_END[4]=0.0")).axes[3]
     assert (-math.inf, math.inf) == (axis.lower, axis.upper)
-
-
-def test_coupling(machine_text: Callable[..., str]) -> None:
-    """Axes that turn the motors of others are told as factors; the rest is left out."""
-    lines = "$COUP_COMP[4,5]={N -1,D 80}", "$COUP_COMP[4,6]={N 0,D 1}"
-    assert {(4, 5): -0.0125} == read_machine(machine_text(*lines)).coupling
 
 
 @pytest.mark.parametrize(("up", "elbow"), [(0.0, 0.0), (35.0, 4.763642), (-41.0, -5.575494)])
