@@ -166,6 +166,13 @@ def _summary(record: Record) -> str:
     files = record["files"]
     nouns = {"names": "name", "routines": "routine", "points": "point", "data": "other item"}
     found = [counted(len(record[key]), noun) for key, noun in nouns.items() if record[key]]
-    counts = ", ".join(found) or "nothing"
-    noise = f"; {files['noise']:,} differ in comments and layout only" if files["noise"] else ""
-    return f"{files['old']:,} and {files['new']:,} files: {counts} changed{noise}"
+    said = [
+        f"{counted(len(files[key]), 'file')} {key}"
+        for key in ("added", "removed", "moved")
+        if files[key]
+    ]
+    if found or not said:
+        said.append(f"{', '.join(found) or 'nothing'} changed")
+    if files["noise"]:
+        said.append(f"{files['noise']:,} differ in comments and layout only")
+    return f"{files['old']:,} and {files['new']:,} files: {'; '.join(said)}"

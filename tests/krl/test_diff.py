@@ -42,6 +42,16 @@ def test_the_same_is_no_difference(
     assert "2 and 2 files: nothing changed" == capsys.readouterr().out.strip()
 
 
+def test_file_that_went_is_counted(
+    states: tuple[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Data that went with its file is no silence in the summary."""
+    Path(states[1], "a.dat").unlink()
+    Path(states[1], "a.src").write_text(OLD, encoding="utf-8")
+    assert 1 == main(["diff", *states])
+    assert capsys.readouterr().out.endswith("2 and 1 files: 1 file removed\n")
+
+
 def test_archives_files_and_nothing_are_compared(
     states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
