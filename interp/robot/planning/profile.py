@@ -124,8 +124,8 @@ class SpeedProfile:
             beyond = start + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)) - position
             first, last = (first, dt) if beyond >= 0.0 else (dt, last)
             slope = speed + dt * (acceleration + dt * jerk / 2)
-            following = dt - beyond / slope if slope > 0.0 else first
-            if not first < following < last:
+            following = dt - beyond / slope if slope > 0.0 else -1.0
+            if not first <= following <= last:
                 following = (first + last) / 2
             if abs(following - dt) < _INSTANT:
                 break

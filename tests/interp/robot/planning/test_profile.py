@@ -69,6 +69,12 @@ def test_back_from_position_to_time(share: float) -> None:
     assert 700.0 * share == pytest.approx(profile.state(time)[0], abs=1e-8)
 
 
+def test_a_time_that_is_found_at_once_is_kept() -> None:
+    """The time of a position is exact to rounding, also where the first guess was."""
+    profile = SpeedProfile(500.0, ((1.25, 0.0, 0.0),))
+    assert 500.0 == pytest.approx(profile.state(profile.time_at(500.0))[0], abs=1e-12)
+
+
 def test_positions_beyond_the_ends() -> None:
     """What is never reached has the time of the nearest end."""
     profile = travel(700.0, 0.0, 0.0, 0.0, BOUNDS)
