@@ -1,6 +1,7 @@
 """What all pages share: rendered from a template into one file that loads nothing."""
 
 from collections.abc import Sequence
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -19,6 +20,22 @@ def render(template: str, *, script: str, styles: Sequence[str], data: Markup, v
     ``data`` is what the script reads, as `reports.embedding.embedded_json` made it; ``view`` is
     what the template shows. Foreign text is escaped.
     """
+    return (
+        _environment()
+        .get_template(template)
+        .render(
+            view=view,
+            data=data,
+            style=inline_source("\n".join(map(source, styles))),
+            script=inline_source(script),
+            script_hash=script_hash(script),
+        )
+    )
+
+
+@cache
+def _environment() -> Environment:
+    """One for all pages: it compiles each template once."""
     environment = Environment(
         loader=FunctionLoader(source),
         autoescape=True,
@@ -29,13 +46,7 @@ def render(template: str, *, script: str, styles: Sequence[str], data: Markup, v
     )
     environment.filters["counted"] = counted
     environment.filters["thousands"] = "{:,}".format
-    return environment.get_template(template).render(
-        view=view,
-        data=data,
-        style=inline_source("\n".join(map(source, styles))),
-        script=inline_source(script),
-        script_hash=script_hash(script),
-    )
+    return environment
 
 
 def source(name: str) -> str:

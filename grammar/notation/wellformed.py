@@ -47,7 +47,8 @@ def problem(grammar: Grammar) -> str | None:
         what = "recursive tokens" if cycle[0][0].isupper() else "left recursion"
         line = _line(grammar, names.index(cycle[0]))
         return f"{line}: {what} through {' → '.join(cycle)}"
-    endless = next((n for n, c in shortest_lengths(grammar).items() if c == math.inf), None)
+    finite = _rules_that_match(grammar, leaf=True)
+    endless = next((name for name in names if name not in finite), None)
     if endless is None:
         return None
     line = _line(grammar, names.index(endless))
@@ -81,27 +82,27 @@ def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
     return None
 
 
-def _nullable_rules(grammar: Grammar) -> frozenset[str]:
-    """Names of the rules that match nothing at all."""
+def _rules_that_match(grammar: Grammar, *, leaf: bool) -> frozenset[str]:
+    """Names of the rules that match some finite text, or without a ``leaf`` the empty one."""
     found: set[str] = set()
 
-    def empty(element: Element) -> bool:
+    def matches(element: Element) -> bool:
         match element:
-            case Reference(name=name):
+            case Reference(name=name) if name != "EOF":
                 return name in found
             case Group(alternatives=alternatives):
-                return any(all(map(empty, a.elements)) for a in alternatives)
+                return any(all(map(matches, a.elements)) for a in alternatives)
             case Repeat(item=item, operator=operator):
-                return operator != "+" or empty(item)
+                return operator != "+" or matches(item)
             case _:
-                return False
+                return leaf
 
     grown = True
     while grown:
         grown = False
         for rule in grammar.rules:
             if rule.name not in found and any(
-                all(map(empty, a.elements)) for a in rule.alternatives
+                all(map(matches, a.elements)) for a in rule.alternatives
             ):
                 found.add(rule.name)
                 grown = True
@@ -113,7 +114,7 @@ def _left_recursion(grammar: Grammar) -> list[str] | None:
 
     Lexer rules may not be recursive at all.
     """
-    nullable = _nullable_rules(grammar)
+    nullable = _rules_that_match(grammar, leaf=False)
 
     def leading(elements: tuple[Element, ...]) -> Iterator[str]:
         for element in elements:
