@@ -1,11 +1,14 @@
 """What a program is run with: the options that commands have in common, and what comes of them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
+from functools import wraps
+from inspect import Parameter, signature
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
@@ -23,23 +26,11 @@ __all__ = [
     "Executor",
     "ExecutorOption",
     "FileArgument",
-    "IoOption",
-    "MachineOption",
-    "MaxTimeOption",
-    "MjcfOption",
-    "Motion",
-    "MotionOption",
-    "ProfileOption",
     "Robot",
-    "RobotOption",
-    "RoutineOption",
     "RunOptions",
-    "SceneOption",
-    "StrictOption",
-    "SubmitOption",
-    "UrdfOption",
     "expected_errors",
     "prepared_run",
+    "with_run_options",
 ]
 
 _AUTO = "auto"
@@ -76,107 +67,120 @@ FileArgument = Annotated[
     Path,
     typer.Argument(metavar="FILE", help="The program; archive.zip/path/name.src in an archive."),
 ]
-RoutineOption = Annotated[
-    str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
-]
 ExecutorOption = Annotated[
     Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
-]
-RobotOption = Annotated[Robot, typer.Option(help="What moves.")]
-ProfileOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="NAME",
-        help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
-    ),
-]
-IoOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--io",
-        metavar="SCRIPT",
-        help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
-        "Default: auto in a terminal, else nothing.",
-    ),
-]
-SubmitOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="NAME",
-        help="A routine of the project for the submit; with --io auto its SPS by default.",
-    ),
-]
-MachineOption = Annotated[
-    Path | None,
-    typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
-]
-UrdfOption = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
-]
-MjcfOption = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
-]
-SceneOption = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
-]
-MotionOption = Annotated[
-    Motion,
-    typer.Option(help="Plan motions as they come, or as the paper did in batches."),
-]
-MaxTimeOption = Annotated[
-    float | None,
-    typer.Option(
-        "--max-time",
-        "--until",
-        min=0.0,
-        metavar="S",
-        help="Stop after so much virtual time; default: 3600, with --io auto 600.",
-    ),
-]
-StrictOption = Annotated[
-    bool,
-    typer.Option(
-        "--strict",
-        help="Run nothing while the checker finds an error; nothing stands in.",
-    ),
 ]
 
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """The options, as the command line or a client has given them."""
+    """What a program is run with, as the command line or a client has given it.
 
-    file: Path
-    routine: str | None = None
-    executor: Executor | None = None
-    robot: Robot = Robot.NONE
-    profile: str | None = None
-    io_script: Path | None = None
-    submit: str | None = None
-    machine: Path | None = None
-    urdf: Path | None = None
-    mjcf: Path | None = None
-    scene: Path | None = None
-    motion: Motion = Motion.LOOKAHEAD
-    max_time: float | None = None
-    strict: bool = False
-    is_full: bool = False
-    is_told: bool = False
+    `with_run_options` makes an option of each field.
+    """
+
+    routine: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
+    ] = None
+    executor: ExecutorOption = None
+    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE
+    profile: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
+        ),
+    ] = None
+    io: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="SCRIPT",
+            help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
+            "Default: auto in a terminal, else nothing.",
+        ),
+    ] = None
+    submit: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="A routine of the project for the submit; with --io auto its SPS by default.",
+        ),
+    ] = None
+    machine: Annotated[
+        Path | None,
+        typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
+    ] = None
+    urdf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
+    ] = None
+    mjcf: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
+    ] = None
+    scene: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
+    ] = None
+    motion: Annotated[
+        Motion,
+        typer.Option(help="Plan motions as they come, or as the paper did in batches."),
+    ] = Motion.LOOKAHEAD
+    max_time: Annotated[
+        float | None,
+        typer.Option(
+            "--max-time",
+            "--until",
+            min=0.0,
+            metavar="S",
+            help="Stop after so much virtual time; default: 3600, with --io auto 600.",
+        ),
+    ] = None
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict",
+            help="Run nothing while the checker finds an error; nothing stands in.",
+        ),
+    ] = False
 
 
-def prepared_run(options: RunOptions, *, is_terminal: bool) -> "tuple[CheckedProgram, RunSetup]":
+def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
+    """The command for the command line, with an option a field in place of its ``options``."""
+    hints = get_type_hints(RunOptions, include_extras=True)
+    made = [
+        Parameter(one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=hints[one.name])
+        for one in fields(RunOptions)
+    ]
+    own = signature(command, eval_str=True)
+
+    @wraps(command)
+    def called(*words: Any, **given: Any) -> int:
+        of_options = {one.name: given.pop(one.name) for one in made if one.name in given}
+        return command(*words, options=RunOptions(**of_options), **given)
+
+    spliced = ([one] if one.name != "options" else made for one in own.parameters.values())
+    vars(called)["__signature__"] = own.replace(parameters=list(chain.from_iterable(spliced)))
+    return called
+
+
+def prepared_run(
+    file: Path,
+    options: RunOptions,
+    *,
+    is_terminal: bool,
+    is_full: bool = False,
+    is_told: bool = False,
+) -> "tuple[CheckedProgram, RunSetup]":
     """The program and its setup; says on stderr what was left out and what was assumed.
 
-    In a terminal inputs are automatic by default. Raises `InputError`, and within `expected_errors`
-    what it turns into that.
+    In a terminal inputs are automatic by default. ``is_full`` and ``is_told`` are those of the
+    setup. Raises `InputError`, and within `expected_errors` what it turns into that.
     """
     from interp.controller.automatic_inputs import OPERATOR
     from interp.controller.input_script import Script
     from interp.controller.profile import Profile
     from interp.session import RunSetup, available, submit_of
 
-    chosen, file = options.io_script, options.file
+    chosen = options.io
     is_auto = str(chosen) == _AUTO or (chosen is None and is_terminal)
     if is_auto:
         script = Script.read(OPERATOR, _AUTO)
@@ -198,8 +202,8 @@ def prepared_run(options: RunOptions, *, is_terminal: bool) -> "tuple[CheckedPro
         script=script,
         routine=options.routine,
         submit=submit,
-        is_full=options.is_full,
-        is_told=options.is_told,
+        is_full=is_full,
+        is_told=is_told,
         motion=options.motion.value,
         until=round(seconds * 1e6),
         is_tolerant=not options.strict,

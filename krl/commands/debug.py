@@ -11,54 +11,23 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.run_options import (
-    ExecutorOption,
-    IoOption,
-    MachineOption,
-    MaxTimeOption,
-    MjcfOption,
-    Motion,
-    MotionOption,
-    ProfileOption,
-    Robot,
-    RobotOption,
-    RoutineOption,
-    RunOptions,
-    SceneOption,
-    StrictOption,
-    SubmitOption,
-    UrdfOption,
-    expected_errors,
-    prepared_run,
-)
+from krl.run_options import RunOptions, expected_errors, prepared_run, with_run_options
 
 if TYPE_CHECKING:
-    from interp.controller.trace import TraceEvent
     from interp.debugging.debugger import Debugger
-    from interp.session import RunResult
     from krl.debug_prompt import Prompt
 
 __all__ = ["debug"]
 
 
+@with_run_options
 def debug(
     file: Annotated[
         Path | None,
         typer.Argument(metavar="[FILE]", help="The program; with --dap the client may name it."),
     ] = None,
-    routine: RoutineOption = None,
-    executor: ExecutorOption = None,
-    robot: RobotOption = Robot.NONE,
-    profile: ProfileOption = None,
-    io_script: IoOption = None,
-    submit: SubmitOption = None,
-    machine: MachineOption = None,
-    urdf: UrdfOption = None,
-    mjcf: MjcfOption = None,
-    scene: SceneOption = None,
-    motion: MotionOption = Motion.LOOKAHEAD,
-    max_time: MaxTimeOption = None,
-    strict: StrictOption = False,
+    *,
+    options: RunOptions,
     dap: Annotated[
         bool,
         typer.Option("--dap", help="Serve an editor: the Debug Adapter Protocol over stdio."),
@@ -76,57 +45,33 @@ def debug(
     Exit status 1 where the run has ended by a fault, or a command from a file was wrong.
     docs/debugging.md says more.
     """
-    options = RunOptions(
-        file=file or Path(),
-        routine=routine,
-        executor=executor,
-        robot=robot,
-        profile=profile,
-        io_script=io_script,
-        submit=submit,
-        machine=machine,
-        urdf=urdf,
-        mjcf=mjcf,
-        scene=scene,
-        motion=motion,
-        max_time=max_time,
-        strict=strict,
-    )
     if dap:
         from krl.debug_adapter.server import serve
 
-        serve(options, port)
+        serve(file, options, port)
         return FINE
     if port is not None:
         raise InputError("--port: only with --dap")
     if file is None:
         raise InputError("name a program: krl debug FILE")
-    return _at_prompt(options)
+    return _at_prompt(file, options)
 
 
-def _at_prompt(options: RunOptions) -> int:
+def _at_prompt(file: Path, options: RunOptions) -> int:
     with expected_errors():
         from interp.debugging.debugger import Debugger
-        from interp.executors import Prepared
-        from interp.session import run_program
         from krl.debug_prompt import Prompt
+        from krl.debugged_run import debugged_run
         from krl.run_notes import run_notes
 
         is_terminal = sys.stdin.isatty() and sys.stdout.isatty()
-        program, setup = prepared_run(options, is_terminal=is_terminal)
+        program, setup = prepared_run(file, options, is_terminal=is_terminal)
         prompt = Prompt(program, is_terminal=is_terminal)
         debugger = Debugger(program, prompt.stopped, lambda text: typer.echo(one_line(text)))
-        prepared = Prepared(program, setup.routine)
-
-        def begin() -> "RunResult":
-            def take(event: "TraceEvent") -> None:
-                if event.kind == "message" and not debugger.is_repeating:
-                    typer.echo(one_line(f"message: {event.fields.get('text')}"))
-
-            return run_program(prepared, setup, take=take, debugger=debugger)
-
         with _pausing(debugger, prompt):
-            done = debugger.run(begin)
+            done = debugged_run(
+                program, setup, debugger, lambda text: typer.echo(one_line(f"message: {text}"))
+            )
         if done is None:
             return FINDINGS if prompt.has_failed else FINE
         for line in run_notes(done, program, setup):

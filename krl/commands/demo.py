@@ -40,7 +40,7 @@ def demo(
     script = program.with_suffix(".io")
     words = f"krl run {program} --robot mujoco --io {script} --submit {_SUBMIT} --html {html}"
     typer.echo(one_line(words), err=True)
-    status = run(program, robot=Robot.MUJOCO, io_script=script, submit=_SUBMIT, html=html)
+    status = run(program, robot=Robot.MUJOCO, io=script, submit=_SUBMIT, html=html)
     if opened:
         webbrowser.open(html.absolute().as_uri())
     return status

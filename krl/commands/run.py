@@ -17,25 +17,12 @@ from krl.output_files import check_files
 from krl.progress import progress_bar
 from krl.run_notes import run_notes
 from krl.run_options import (
-    ExecutorOption,
     FileArgument,
-    IoOption,
-    MachineOption,
-    MaxTimeOption,
-    MjcfOption,
-    Motion,
-    MotionOption,
-    ProfileOption,
     Robot,
-    RobotOption,
-    RoutineOption,
     RunOptions,
-    SceneOption,
-    StrictOption,
-    SubmitOption,
-    UrdfOption,
     expected_errors,
     prepared_run,
+    with_run_options,
 )
 from support.files.atomic_write import atomic_path
 
@@ -54,14 +41,11 @@ class Level(StrEnum):
     FULL = "full"
 
 
+@with_run_options
 def run(
     file: FileArgument,
-    routine: RoutineOption = None,
-    executor: ExecutorOption = None,
-    robot: RobotOption = Robot.NONE,
-    profile: ProfileOption = None,
-    io_script: IoOption = None,
-    submit: SubmitOption = None,
+    *,
+    options: RunOptions,
     trace: Annotated[
         Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace here.")
     ] = None,
@@ -78,17 +62,10 @@ def run(
     video: Annotated[
         Path | None, typer.Option(metavar="FILE.gif", help="Film the MuJoCo arm; .webp goes too.")
     ] = None,
-    machine: MachineOption = None,
-    urdf: UrdfOption = None,
-    mjcf: MjcfOption = None,
-    scene: SceneOption = None,
     observations: Annotated[
         Path | None,
         typer.Option(metavar="FILE.jsonl", help="Write contacts and excessive torques here."),
     ] = None,
-    motion: MotionOption = Motion.LOOKAHEAD,
-    max_time: MaxTimeOption = None,
-    strict: StrictOption = False,
 ) -> int:
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
@@ -99,28 +76,16 @@ def run(
     be planned for want of it are skipped.
     """
     with expected_errors():
-        _check_targets(trace, path, html, video, robot)
+        _check_targets(trace, path, html, video, options.robot)
         check_files(observations)
         is_watched = trace is not None or html is not None
-        options = RunOptions(
-            file=file,
-            routine=routine,
-            executor=executor,
-            robot=robot,
-            profile=profile,
-            io_script=io_script,
-            submit=submit,
-            machine=machine,
-            urdf=urdf,
-            mjcf=mjcf,
-            scene=scene,
-            motion=motion,
-            max_time=max_time,
-            strict=strict,
+        program, setup = prepared_run(
+            file,
+            options,
+            is_terminal=sys.stdout.isatty(),
             is_full=is_watched and trace_level is Level.FULL,
             is_told=is_watched,
         )
-        program, setup = prepared_run(options, is_terminal=sys.stdout.isatty())
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html, video)
         if observations is not None:

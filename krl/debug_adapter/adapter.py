@@ -6,14 +6,15 @@ until a request lets it go on; only meanwhile is it looked into.
 
 import contextlib
 import io
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
-from typing import Final
+from typing import Any, Final, get_args, get_type_hints
 
-from interp.controller.trace import TaskName, TraceEvent
+from interp.controller.trace import TaskName
 from interp.debugging.client import (
     Back,
     Breakpoint,
@@ -30,18 +31,17 @@ from interp.debugging.conditions import parsed
 from interp.debugging.debugger import Debugger
 from interp.debugging.hits import is_hit
 from interp.debugging.value_text import value_text
-from interp.executors import Prepared
-from interp.port.requests import At
 from interp.program.load import CheckedProgram
-from interp.session import RunResult, RunSetup, run_program
+from interp.session import RunResult, RunSetup
 from interp.values.faults import RuntimeFailure
 from krl.debug_adapter.arguments import Arguments, Refused
 from krl.debug_adapter.connection import Connection, Json
+from krl.debug_adapter.files import ProgramFiles
 from krl.debug_adapter.variables import Variables
+from krl.debugged_run import debugged_run
 from krl.errors import InputError, one_line
-from krl.program_loading import project_root
 from krl.run_notes import run_notes
-from krl.run_options import Executor, Motion, Robot, RunOptions, expected_errors, prepared_run
+from krl.run_options import RunOptions, expected_errors, prepared_run
 
 __all__ = ["Adapter"]
 
@@ -73,6 +73,11 @@ _REASONS: Final = {
     "refused": "step",
     "ended": "pause",
 }
+#: Arguments of launch by the fields of the options: what each is called there, and its type.
+_OPTIONS: Final[Mapping[str, tuple[str, type[Any]]]] = {
+    name: (re.sub("_(.)", lambda found: found[1].upper(), name), next(iter(get_args(kind)), kind))
+    for name, kind in get_type_hints(RunOptions).items()
+}
 _TASKS: Final[tuple[TaskName, ...]] = ("robot", "submit")
 #: The thread that shows where the arm is, which is the main run.
 _ARM: Final = 3
@@ -81,12 +86,12 @@ _FRAMES: Final = 10_000
 
 
 class Adapter:
-    """Serves one client. ``defaults`` are options of the command line, for what launch lacks."""
+    """Serves one client, with what the command line says where its launch says nothing."""
 
-    def __init__(self, connection: Connection, defaults: RunOptions) -> None:
+    def __init__(self, connection: Connection, file: Path | None, options: RunOptions) -> None:
         self._connection = connection
-        self._defaults = defaults
-        self._options = defaults
+        self._file = file
+        self._options = options
         self._stops_on_entry = self._stops_at_end = False
         self._commands: SimpleQueue[Command] = SimpleQueue()
         self._stopped = Event()
@@ -96,6 +101,7 @@ class Adapter:
         self._watches: dict[str, Watch] = {}
         self._is_stopping_at_faults = True
         self._lines_first_1 = True
+        self._files: ProgramFiles | None = None
         self._program: CheckedProgram
         self._setup: RunSetup
         self._debugger: Debugger
@@ -136,12 +142,13 @@ class Adapter:
         said = io.StringIO()
         try:
             with contextlib.redirect_stderr(said), expected_errors():
-                self._program, self._setup = prepared_run(self._options, is_terminal=False)
+                assert self._file is not None
+                found = prepared_run(self._file, self._options, is_terminal=False)
+                self._program, self._setup = found
                 self._program.start(self._setup.routine)
         finally:
             self._output(said.getvalue(), "console")
-        root = project_root(self._options.file)
-        self._root = root if root.is_dir() else Path()
+        self._files = ProgramFiles(self._file, self._program)
 
     def _begin(self) -> None:
         self._thread = Thread(target=self._run, daemon=True)
@@ -177,17 +184,13 @@ class Adapter:
         self._watches.clear()
         self._put_breakpoints()
         debugger.stops_at_faults = self._is_stopping_at_faults
-        prepared = Prepared(self._program, self._setup.routine)
-
-        def begin() -> RunResult:
-            def take(event: TraceEvent) -> None:
-                if event.kind == "message" and not debugger.is_repeating:
-                    self._output(f"{event.fields.get('text')}\n", "console")
-
-            return run_program(prepared, self._setup, take=take, debugger=debugger)
-
         with expected_errors():
-            return debugger.run(begin)
+            return debugged_run(
+                self._program,
+                self._setup,
+                debugger,
+                lambda text: self._output(f"{text}\n", "console"),
+            )
 
     def _client(self, debugger: Debugger, stop: Stop) -> Command:
         """Wait for what the client wants, on the thread of the program."""
@@ -257,28 +260,12 @@ class Adapter:
         """Read the program; it begins with configurationDone."""
         if self._thread is not None:
             raise Refused("a program has been launched already")
-        given = self._defaults
-        program = arguments.text("program")
-        options = replace(
-            given,
-            file=Path(program) if program else given.file,
-            routine=arguments.text("routine") or given.routine,
-            executor=arguments.choice("executor", Executor, given.executor),
-            robot=arguments.choice("robot", Robot, given.robot) or Robot.NONE,
-            profile=arguments.text("profile") or given.profile,
-            io_script=arguments.path("io") or given.io_script,
-            submit=arguments.text("submit") or given.submit,
-            machine=arguments.path("machine") or given.machine,
-            urdf=arguments.path("urdf") or given.urdf,
-            mjcf=arguments.path("mjcf") or given.mjcf,
-            scene=arguments.path("scene") or given.scene,
-            motion=arguments.choice("motion", Motion, given.motion) or Motion.LOOKAHEAD,
-            max_time=arguments.get("maxTime", float, given.max_time or 0.0) or None,
-            strict=arguments.get("strict", bool, given.strict),
-        )
-        if options.file == Path():
+        program = arguments.path("program") or self._file
+        if program is None:
             raise Refused("launch names no program")
-        self._options = options
+        given = {name: arguments.of(kind, key) for name, (key, kind) in _OPTIONS.items()}
+        said = {name: value for name, value in given.items() if value is not None}
+        self._file, self._options = program, replace(self._options, **said)
         self._stops_on_entry = arguments.get("stopOnEntry", bool, False)
         self._stops_at_end = arguments.get("stopAtEnd", bool, False)
         self._load()
@@ -287,7 +274,7 @@ class Adapter:
 
     def configuration_done(self, _arguments: Arguments) -> Json:
         """Begin."""
-        if not hasattr(self, "_program") or self._thread is not None:
+        if self._files is None or self._thread is not None:
             raise Refused("there is no program to begin")
         return {"then": self._begin}
 
@@ -311,9 +298,8 @@ class Adapter:
 
     def set_breakpoints(self, arguments: Arguments) -> Json:
         """Those of one file, in place of all it had; each at the next line with a statement."""
-        self._launched()
         source = arguments.inner("source")
-        file = self._file(source.text("path") or source.text("name") or "")
+        file = self._launched().named(source.text("path") or source.text("name") or "")
         lines = self._debugger.lines(file)
         found: list[Json] = []
         made: list[Breakpoint] = []
@@ -356,11 +342,10 @@ class Adapter:
 
     def breakpoint_locations(self, arguments: Arguments) -> Json:
         """The lines of a range at which a program can stop."""
-        self._launched()
-        source = arguments.inner("source")
+        file = self._launched().named(arguments.inner("source").text("path") or "")
         first = self._line_of(arguments.get("line", int, 0))
         last = self._line_of(arguments.get("endLine", int, arguments.get("line", int, 0)))
-        lines = self._debugger.lines(self._file(source.text("path") or ""))
+        lines = self._debugger.lines(file)
         there = [self._line_for(line) for line in lines if first <= line <= last]
         return {"breakpoints": [{"line": line} for line in there]}
 
@@ -368,7 +353,7 @@ class Adapter:
         """Whether to stop at faults."""
         filters = arguments.values.get("filters")
         self._is_stopping_at_faults = isinstance(filters, list) and "faults" in filters
-        if hasattr(self, "_debugger"):
+        if self._files is not None:
             self._debugger.stops_at_faults = self._is_stopping_at_faults
         return {}
 
@@ -441,8 +426,7 @@ class Adapter:
 
     def goto_targets(self, arguments: Arguments) -> Json:
         """The statement of a line, which `goto` may name."""
-        self._launched()
-        file = self._file(arguments.inner("source").text("path") or "")
+        file = self._launched().named(arguments.inner("source").text("path") or "")
         line = self._line_of(arguments.get("line", int, 0))
         if line not in self._debugger.lines(file):
             return {"targets": []}
@@ -457,13 +441,14 @@ class Adapter:
 
     def threads(self, _arguments: Arguments) -> Json:
         """The programs, and the main run."""
-        tasks = self._debugger.tasks if hasattr(self, "_debugger") else ()
+        tasks = () if self._files is None else self._debugger.tasks
         found = [{"id": _TASKS.index(one) + 1, "name": one} for one in tasks or ("robot",)]
         return {"threads": [*found, {"id": _ARM, "name": "arm (main run)"}]}
 
     def stack_trace(self, arguments: Arguments) -> Json:
         """What is open, the innermost first; of the arm, the motion it is in."""
         self._wait_for_stop()
+        files = self._launched()
         thread = arguments.get("threadId", int, 1)
         if thread == _ARM:
             running = self._debugger.arm.running
@@ -481,7 +466,7 @@ class Adapter:
                     "name": name,
                     "line": self._line_for(at.line),
                     "column": 1 if self._lines_first_1 else 0,
-                    "source": self._source(at),
+                    "source": files.source(at.file),
                 }
                 for number, (name, at) in shown
             ],
@@ -533,19 +518,19 @@ class Adapter:
 
     def source(self, arguments: Arguments) -> Json:
         """The text of a file that lies in an archive, or stands in for one that is missing."""
-        self._launched()
         number = arguments.get("sourceReference", int, 0)
         number = arguments.inner("source").get("sourceReference", int, number)
-        units = list(self._program.units.values())
-        if not 1 <= number <= len(units):
+        text = self._launched().text(number)
+        if text is None:
             raise Refused("there is no such file")
-        return {"content": units[number - 1].source.text}
+        return {"content": text}
 
     # ----------------------------------------------------------------------- places
 
-    def _launched(self) -> None:
-        if not hasattr(self, "_program"):
+    def _launched(self) -> ProgramFiles:
+        if self._files is None:
             raise Refused("no program has been launched")
+        return self._files
 
     def _task(self, arguments: Arguments) -> TaskName:
         number = arguments.get("threadId", int, 1)
@@ -570,28 +555,6 @@ class Adapter:
 
     def _line_for(self, line: int) -> int:
         return line if self._lines_first_1 else line - 1
-
-    def _file(self, path: str) -> str:
-        """The path of a file within the project, from the client's."""
-        given = path.replace("\\", "/").upper()
-        for unit in self._program.units.values():
-            own = unit.module.path
-            if (self._root / own).as_posix().upper() == given or own.upper() == given:
-                return own
-        resolved = Path(path).resolve().as_posix().upper()
-        for unit in self._program.units.values():
-            if (self._root / unit.module.path).resolve().as_posix().upper() == resolved:
-                return unit.module.path
-        return path
-
-    def _source(self, at: At) -> Json:
-        path = self._root / at.file
-        name = at.file.rpartition("/")[2]
-        if path.is_file():
-            return {"name": name, "path": str(path)}
-        units = list(self._program.units.values())
-        found = [number for number, one in enumerate(units, 1) if one.module.path == at.file]
-        return {"name": name, "path": at.file, "sourceReference": found[0] if found else 0}
 
 
 _Handler = Callable[[Adapter, Arguments], Json]

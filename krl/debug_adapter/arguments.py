@@ -38,11 +38,19 @@ class Arguments:
         text = self.text(name)
         return None if text is None else Path(text)
 
-    def choice(self, name: str, kind: type[_E], default: _E | None) -> _E | None:
+    def of(self, kind: type[Any], name: str) -> Any:
+        """An argument of a type, a path or a word too; ``None`` where it is missing."""
+        if issubclass(kind, Path):
+            return self.path(name)
+        if issubclass(kind, Enum):
+            return self.choice(name, kind)
+        return self.get(name, kind, None)
+
+    def choice(self, name: str, kind: type[_E]) -> _E | None:
         """One of some words; raises `Refused` for another one."""
         text = self.text(name)
         if text is None:
-            return default
+            return None
         try:
             return kind(text)
         except ValueError:

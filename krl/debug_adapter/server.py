@@ -4,6 +4,7 @@ import contextlib
 import os
 import socket
 import sys
+from pathlib import Path
 from typing import BinaryIO, cast
 
 import typer
@@ -16,30 +17,30 @@ from krl.run_options import RunOptions
 __all__ = ["serve"]
 
 
-def serve(options: RunOptions, port: int | None) -> None:
+def serve(file: Path | None, options: RunOptions, port: int | None) -> None:
     """Serve the client at the other end of standard input and output, or those of a port in turn.
 
     Only this machine reaches the port.
     """
     with expected_extras(*ARM):
         if port is None:
-            _serve_standard(options)
+            _serve_standard(file, options)
             return
         with socket.create_server(("127.0.0.1", port)) as server:
             typer.echo(f"listening on 127.0.0.1:{server.getsockname()[1]}", err=True)
             while True:
                 client, _ = server.accept()
                 with contextlib.suppress(ConnectionError), client, client.makefile("rwb") as stream:
-                    Adapter(_connection(stream), options).serve()
+                    Adapter(_connection(stream), file, options).serve()
 
 
-def _serve_standard(options: RunOptions) -> None:
+def _serve_standard(file: Path | None, options: RunOptions) -> None:
     # Nothing but messages may be written there.
     with (
         os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out,
         contextlib.redirect_stdout(sys.stderr),
     ):
-        Adapter(Connection(cast(BinaryIO, sys.stdin.buffer), out), options).serve()
+        Adapter(Connection(cast(BinaryIO, sys.stdin.buffer), out), file, options).serve()
 
 
 def _connection(stream: object) -> Connection:

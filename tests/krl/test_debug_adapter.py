@@ -128,7 +128,7 @@ def client() -> Iterator[Client]:
     """A client of an adapter that serves a socket."""
     ours, theirs = socket.socketpair()
     there = cast(BinaryIO, theirs.makefile("rwb"))
-    thread = Thread(target=Adapter(Connection(there, there), RunOptions(Path())).serve)
+    thread = Thread(target=Adapter(Connection(there, there), None, RunOptions()).serve)
     thread.start()
     here = cast(BinaryIO, ours.makefile("rwb"))
     yield Client(here, here)
