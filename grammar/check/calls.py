@@ -116,7 +116,7 @@ def _check(
 
     checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
     if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:
-        message = f"{parameter.name} is passed :OUT, and there is no variable to change"
+        message = f"the parameter {parameter.name} is :OUT, so it needs a variable here"
         checker.report("nothing-to-change", argument, message)
 
 

@@ -150,7 +150,7 @@ def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     ways = flow_graph(routine.node, lambda switch: _is_exhaustive(context, switch))
     if ways.end in ways.reached():
         name = routine.node.name
-        message = f"{name.text} can end without RETURN"
+        message = f"{name.text} can reach ENDFCT without RETURN, and has no result then"
         # The controller accepts it, and files that it is delivered with have it.
         yield context.finding("return-missing", name, message, severity="note")
 
@@ -183,5 +183,6 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
     assert before is not None, "the first statement of a block that is reached is reached"
     assert before.statement is not None
     source = context.source
-    message = f"never reached: line {line_of(source, before.statement)} does not go on to here"
+    line = line_of(source, before.statement)
+    message = f"this is never reached: nothing goes on behind line {line}"
     return context.finding("unreachable", head(source, step.statement), message)

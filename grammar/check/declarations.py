@@ -10,7 +10,7 @@ from grammar.check.context import Context, RoutineBody
 from grammar.check.expressions import type_checker
 from grammar.check.signals import check_signal
 from grammar.check.type_checker import TypeChecker
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.semantics.assignability import declarable
 from grammar.semantics.scopes import NotFound
 from grammar.semantics.symbols import Kind
@@ -43,9 +43,10 @@ def _check_name(checker: TypeChecker) -> None:
     module, table = checker.context.module, checker.context.table
     if not module.is_misnamed:
         return
-    what = "the data list" if table.is_data else "the first routine"
-    message = f"{what} of {module.name} has another name, {table.name}"
-    checker.report("module-name", table.span, message)
+    what = "data list" if table.is_data else "first routine"
+    message = f"the {what} is called {table.name}, and the file {module.name}"
+    fix = Fix("give both the same name")
+    checker.report("module-name", table.span, message, fix=fix)
 
 
 def _check_use(checker: TypeChecker) -> None:
@@ -56,8 +57,9 @@ def _check_use(checker: TypeChecker) -> None:
         return
     lists = map(context.project.data_of, context.project.modules)
     if not any(one is not None and one.path == module.path for one in lists):
-        message = f"{table.name} is not PUBLIC, and no program is called so"
-        checker.report("orphan-data-list", table.span, message)
+        message = f"nothing can use this data list: no program is called {table.name}"
+        fix = Fix("PUBLIC behind its name would open it to others")
+        checker.report("orphan-data-list", table.span, message, fix=fix)
 
 
 # ------------------------------------------------------------------------------- declarations
@@ -165,5 +167,6 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
         names = ", ".join(node.name.text for node in undeclared)
         what = "the parameter" if len(undeclared) == 1 else "the parameters"
         verb = "is" if len(undeclared) == 1 else "are"
-        message = f"{what} {names} {verb} not declared"
-        checker.report("parameter-undeclared", undeclared[0], message)
+        message = f"{what} {names} {verb} not declared in the routine"
+        fix = Fix("declare each with its type, DECL INT NAME for instance, before any instruction")
+        checker.report("parameter-undeclared", undeclared[0], message, fix=fix)

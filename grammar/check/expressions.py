@@ -114,8 +114,8 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
         is_given = array.element == UNKNOWN or (
             place >= 1 and (found is None or found.module is None)
         )
-        reach = f"to {size}" if size is not None else "upwards"
-        message = f"the index {place} lies outside the array, which reaches from 1 {reach}"
+        reach = "the first element has 1" if place < 1 else f"the last element has {size}"
+        message = f"the index {place} lies outside the array: {reach}"
         checker.report("index-out-of-range", given, message, is_unconfirmed=is_given)
 
 

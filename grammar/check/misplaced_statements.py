@@ -46,11 +46,13 @@ def _declarations(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
             continue
         if placed.inside is not None:
             yield context.finding(
-                "misplaced-declaration", statement, "a declaration inside a block"
+                "misplaced-declaration",
+                statement,
+                "declarations come first, and not inside a block",
             )
         elif first is not None:
             line = context.source.place(first.span[0])[0]
-            message = f"a declaration behind the instruction on line {line}"
+            message = f"declarations come first, and line {line} is an instruction"
             yield context.finding("misplaced-declaration", statement, message)
 
 

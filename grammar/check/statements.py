@@ -137,7 +137,7 @@ class _Routine:
         self.needs(lambda _to, value: selector(value), "wrong-selector", node.selector)
         chosen = self.context.types[node.selector]
         is_known = bool(selector(chosen))
-        seen: set[object] = set()
+        seen: dict[object, ast.Node] = {}
         for branch in node.branches:
             for label in branch.values:
                 if is_known:
@@ -145,10 +145,11 @@ class _Routine:
                 else:
                     self.checker.infer(label)
                 value = constant(self.context, label)
-                if value is not None and (type(value), value) in seen:
-                    message = "this constant stands in an earlier CASE"
+                first = seen.setdefault((type(value), value), label)
+                if value is not None and first is not label:
+                    line = self.context.source.place(first.span[0])[0]
+                    message = f"the CASE of line {line} has this constant, so this one never runs"
                     self.checker.report("case-twice", label, message)
-                seen.add((type(value), value))
 
     def returned(self, node: ast.Return) -> None:
         """RETURN has a value in functions, and in these only [CTL-09]."""

@@ -15,12 +15,12 @@ from functools import cache, partial
 from grammar.check.context import Context
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
-from grammar.diagnostics.typos import Typos
+from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
-from grammar.semantics.types import SCALARS
+from grammar.semantics.types import SCALARS, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
@@ -145,8 +145,18 @@ def _is_declared(context: Context, name: str) -> bool:
 
 
 @cache
+def _open_components() -> Typos:
+    """The components of those structures of the controller that may have more of them."""
+    types = System.load().types.values()
+    known = (one for one in types if isinstance(one, Structure) and one.is_open)
+    names = (member.name for one in known for member in one.members)
+    return Typos(names, 3, series=Series.DIGITS)
+
+
+@cache
 def _system_typos() -> Typos:
-    return Typos(name for name in System.load().variables if name.startswith("$"))
+    names = (name for name in System.load().variables if name.startswith("$"))
+    return Typos(names, 3, series=Series.DIGITS)
 
 
 def _data_missing(context: Context) -> Iterator[Diagnostic]:
@@ -237,14 +247,22 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
-    """The components of unknown structures, but for those that geometric types have."""
-    places: dict[str, list[ast.Name]] = {}
-    for name in context.resolution.unknown_members:
-        places.setdefault(name.key, []).append(name)
-    for some in places.values():
-        region = Region.of(context.source, some[0].span)
-        path = context.source.path
-        yield UnresolvedName(None, some[0].text, path, region, len(some), is_system=False)
+    """The components of structures that are unknown, or of which more may exist than are known."""
+    open_ = [
+        use.name
+        for use in context.resolution.open_uses
+        if use.space is None and isinstance(use.answer, MaybeElsewhere)
+    ]
+    path = context.source.path
+    for names, known in ((context.resolution.unknown_members, None), (open_, _open_components())):
+        places: dict[str, list[ast.Name]] = {}
+        for name in names:
+            places.setdefault(name.key, []).append(name)
+        for some in places.values():
+            first = some[0]
+            near = known.meant(first.text) if known else ()
+            region = Region.of(context.source, first.span)
+            yield UnresolvedName(None, first.text, path, region, len(some), False, near)
 
 
 def _others(
@@ -270,8 +288,8 @@ def _others(
 
 #: What is written in every program, so that one slip away from it there is nothing else.
 _WORDS_OF_KRL = {
-    Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 3, is_series=False),
-    Space.VALUE: Typos(("TRUE", "FALSE"), is_series=False),
+    Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 2, series=Series.NONE),
+    Space.VALUE: Typos(("TRUE", "FALSE"), 3, series=Series.NONE),
 }
 
 
@@ -295,6 +313,8 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
     bare = name.rstrip("0123456789")
     if name.startswith("$") and bare != name and bare.upper() in context.system.variables:
         return (bare,)
+    if name.startswith("$") and (meant := _system_typos().meant(name)):
+        return meant
     if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
         return meant
     return own(space).meant(name) or context.project.typos[space].meant(name)
@@ -306,7 +326,8 @@ def _own_typos(context: Context, space: Space) -> Typos:
     data = context.project.data_of(context.module)
     if data is not None and data.table is not None:
         tables.append(data.table.table)
-    return Typos(name for table in tables for name in _names(table, space))
+    names = (name for table in tables for name in _names(table, space))
+    return Typos(names, series=Series.DIGITS)
 
 
 def _is_all_read(context: Context, use: Use) -> bool:
@@ -335,10 +356,18 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
     usual = {
-        space: Typos(name for (at, name), n in counts.items() if at is space and n > _MOST_SLIPS)
+        space: Typos(name for (at, name), n in counts.items() if at is space and n > 1)
         for space in _SLUGS
     }
-    meant = {key: some[0].near or usual[key[0]].meant(key[1]) for key, some in uses.items()}
+    meant = {
+        (space, name): some[0].near
+        or tuple(
+            near
+            for near in usual[space].meant(name)
+            if counts[space, near.upper()] > counts[space, name]
+        )
+        for (space, name), some in uses.items()
+    }
     series = Counter(name for names in meant.values() for name in names)
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)

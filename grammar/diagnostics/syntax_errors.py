@@ -259,7 +259,7 @@ def _signs(site: ErrorSite) -> _Mistake | None:
         return _Mistake("the text is not closed", Fix('write " behind it'))
     if text == "'":
         fix = Fix("write 'B101' or 'H1F'; texts stand in double quotation marks")
-        return _Mistake("what stands behind ' is no number in bits", fix)
+        return _Mistake("' begins a binary or hexadecimal number, and none follows", fix)
     if text == "#" and place > 0 and site.word(place + 1)[:1].isalpha():
         fix = site.swap(f"#{site.tokens[place + 1][0]}", place, place + 1)
         return _Mistake("a constant follows its # without a blank", fix, is_unconfirmed=True)
@@ -330,7 +330,7 @@ def _declarations(site: ErrorSite) -> _Mistake | None:
     """Declarations with what belongs elsewhere, or without what they need."""
     text, rule, is_data = site.text, site.failure.rule, _is_data(site)
     if not is_data and text == "=" and rule == "declaration":
-        message = "an initial value in a routine"
+        message = "a routine has no initial values"
         fix = Fix("assign behind the declarations, or declare it in the data list")
         return _Mistake(message, fix, slug="initial-outside-data-list")
     if not is_data and text == "CONST" and site.expects("REAL"):

@@ -47,9 +47,7 @@ __all__ = [
     "target",
 ]
 
-_ROUNDED = Verdict(
-    True, ("ARI-03",), "a REAL is rounded when an INT receives it", is_lossless=False
-)
+_ROUNDED = Verdict(True, ("ARI-03",), "this REAL value is rounded to an INT", is_lossless=False)
 
 
 # ---------------------------------------------------------------------------------- values
@@ -78,7 +76,7 @@ def initial(to: Type, value: Type) -> Verdict:
 
 
 def _refused(to: Type, value: Type) -> Verdict:
-    return Verdict(False, ("ARI-11",), f"{to} cannot receive {value}", 1446)
+    return Verdict(False, ("ARI-11",), f"{to} is expected here, and this is {value}", 1446)
 
 
 def _to_scalar(to: Scalar, value: Type) -> Verdict:

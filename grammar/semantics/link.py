@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
-from grammar.diagnostics.typos import Typos
+from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.package_scope import PackageScope, called_packages
 from grammar.semantics.predefined import System
@@ -148,15 +148,13 @@ class Project:
     @cached_property
     def typos(self) -> Mapping[Space, Typos]:
         """What names may be slips of, by space: all that is seen from everywhere."""
-        return {
-            space: Typos(
-                (
-                    *(found[0].symbol.name for found in names.values()),
-                    *self._globals.system.names(space),
-                )
-            )
-            for space, names in self._names.items()
-        }
+        made = {}
+        for space, names in self._names.items():
+            known = [found[0] for found in names.values()]
+            made[space] = Typos(one.symbol.name for one in known if one.module)
+            made[space].add((one.symbol.name for one in known if not one.module), Series.DIGITS)
+            made[space].add(self._globals.system.names(space), Series.DIGITS)
+        return made
 
     def imported(self, found: Found) -> Answer:
         """What an IMPORT stands for: data of another list, which has to be PUBLIC [ADV-05]."""

@@ -86,7 +86,7 @@ def test_first_finding_is_on_the_line_of_the_negative(negative: Negative) -> Non
         ("HALT $OUT[1] = TRUE", "a second statement on this line", None),
         ("DECL INT WHILE", "WHILE is a keyword and cannot be a name", None),
         ('TEXT[] = "OPEN', "the text is not closed", None),
-        ("DECL INT N = 5", "an initial value in a routine", None),
+        ("DECL INT N = 5", "a routine has no initial values", None),
     ],
 )
 def test_usual_mistakes(line: str, message: str | None, better: str | None) -> None:

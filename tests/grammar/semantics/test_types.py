@@ -276,7 +276,7 @@ def test_texts_are_passed_in() -> None:
     assert declarable(TEXTS, is_out=False)
     assert passable(NAME, Text(3), is_out=False, is_variable=False)
     refused = passable(NAME, INT, is_out=False, is_variable=False)
-    assert (2274, "CHAR[8] cannot receive INT") == (refused.message, refused.reason)
+    assert (2274, "CHAR[8] is expected here, and this is INT") == (refused.message, refused.reason)
 
 
 def test_bits_of_a_letter() -> None:
