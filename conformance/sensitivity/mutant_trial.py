@@ -134,12 +134,20 @@ def equivalent() -> Mapping[tuple[str, ...], str]:
 
 
 def _that_may_notice(mutant: Mutant, reaches: Sequence[Reach]) -> tuple[Reach, ...]:
+    """The cases that run its lines: first one of each way through its module, then a second.
+
+    Cases that run the same lines of a module mostly notice the same there.
+    """
     uses = uses_of(mutant)
-    return tuple(
-        replace(one, lines={})  # they are large, and no longer needed
-        for one in reaches
-        if any(one.has(module, lines) for module, lines in uses.items())
-    )
+    turns: Counter[frozenset[int]] = Counter()
+    found = []
+    for one in reaches:
+        if any(one.has(module, lines) for module, lines in uses.items()):
+            way = one.lines.get(mutant.module, frozenset())
+            turns[way] += 1
+            # the lines are large, and no longer needed
+            found.append((turns[way], replace(one, lines={})))
+    return tuple(one for _, one in sorted(found, key=itemgetter(0)))
 
 
 # ------------------------------------------------------------------------- one mutant, one process
