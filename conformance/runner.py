@@ -8,11 +8,14 @@ robot, and of the first robot: whatever the rule, executors that differ have fai
 from __future__ import annotations
 
 import os
+import signal
+import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from platform import node
-from typing import Final
+from typing import Final, NoReturn
 
 from conformance.evaluation.evaluator import Check, evaluate
 from conformance.evaluation.execution import FRONT, Setup, missing, observe
@@ -27,6 +30,8 @@ __all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
 
 #: So many cases go to a process at once.
 _SHARE: Final = 8
+#: So many seconds of computing an executor may take for a case; all of them take a few at most.
+_COMPUTING: Final = 60.0
 
 Observe = Callable[[Case, Setup], Observation]
 
@@ -65,8 +70,13 @@ def run_case(
     known: KnownFailures = KnownFailures(),  # noqa: B008 - frozen
     see: Observe = observe,
     absent: Callable[[Setup], str] = missing,
+    most: float = _COMPUTING,
 ) -> CaseResult:
-    """Run one case. ``see`` observes it, ``absent`` says why there is no such setup."""
+    """Run one case. ``see`` observes it, ``absent`` says why there is no such setup.
+
+    An executor that takes more than ``most`` seconds of computing has failed, whatever the case is
+    about; only the main thread of a process of a POSIX system is measured.
+    """
     wanted = setups if case.phase == "run" else (Setup(FRONT, "none"),)
     results: list[Result] = []
     for setup in wanted:
@@ -75,7 +85,7 @@ def run_case(
             results.append(Result(setup.executor, setup.robot, "skipped", lacking, (), 0.0))
             continue
         begun = time.perf_counter()
-        seen = _seen(see, case, setup)
+        seen = _seen(see, case, setup, most)
         checks = _checks(case, seen)
         listed = known.reason(case.name, setup.executor, setup.robot)
         verdict, reason = verdict_of(checks, listed)
@@ -85,13 +95,40 @@ def run_case(
     return CaseResult(case, tuple(results))
 
 
-def _seen(see: Observe, case: Case, setup: Setup) -> Observation:
+class _ComputingOver(BaseException):
+    """A case takes too long; nothing that runs cases catches it."""
+
+
+@contextmanager
+def _computing_at_most(seconds: float) -> Iterator[None]:
+    """Raise `_ComputingOver` when so much time of the processor is used up within the context."""
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or not hasattr(signal, "setitimer"):
+        yield
+        return
+    before = signal.signal(signal.SIGPROF, _end_computing)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def _end_computing(_signal: int, _frame: object) -> NoReturn:
+    raise _ComputingOver
+
+
+def _seen(see: Observe, case: Case, setup: Setup, most: float) -> Observation:
     """What was seen; an exception is a defect of ours and no reason to lose the other cases."""
     try:
-        return see(case, setup)
+        with _computing_at_most(most):
+            return see(case, setup)
+    except _ComputingOver:
+        reason = f"{case.name} takes more than {most:g} seconds of computing"
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        return Observation(ending="crash", note=reason, robot=setup.robot)
+    return Observation(ending="crash", note=reason, robot=setup.robot)
 
 
 def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:

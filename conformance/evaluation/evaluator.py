@@ -3,7 +3,8 @@
 Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
 settle it (a path without a robot, times that were not measured). `evaluate` adds what every case
 expects implicitly: that the front end reports no other error, that an output of which it expects a
-change changes only as it says, that the program ends, that no axis goes beyond its machine data.
+change changes only as it says, that the program ends, that no axis goes beyond its machine data,
+and that events stand in an order that is possible. A crash has failed whatever a case is about.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Literal
 
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path, excesses
+from conformance.evaluation.run_laws import violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation
@@ -53,8 +55,12 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
     ]
     ended = evaluate_ending(case.expectations, seen, case.main)
     every = chain(_unsaid_outputs(case, seen), ended) if is_run else _unsaid(case, seen)
-    limits = _unsaid_limits(case, seen)
-    return [*said, *(replace(one, is_sure=case.may_fail) for one in every), *limits]
+    always = chain(_unsaid_limits(case, seen), _unsaid_laws(case, seen))
+    return [
+        *said,
+        *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
+        *always,
+    ]
 
 
 def _unsaid_limits(case: Case, seen: Observation) -> Iterator[Check]:
@@ -67,6 +73,15 @@ def _unsaid_limits(case: Case, seen: Observation) -> Iterator[Check]:
         text = "set-points keep the limits of the axes"
         actual = f"{one.text} at {one.time / 1e6:.3f} s"
         yield Check(file, line, text, "unmet", actual, basis=one.rule)
+
+
+def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
+    """Events stand in an order that no program can change."""
+    if not seen.is_exact:  # of a recording not all events are known
+        return
+    for one in violations(seen):
+        file = one.event.file or case.main
+        yield Check(file, one.event.line, one.law, "unmet", one.actual, basis=one.rule)
 
 
 def _said_all(case: Case, seen: Observation) -> list[Check]:

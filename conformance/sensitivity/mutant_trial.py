@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import signal
 import tomllib
 import warnings
 from collections import Counter
@@ -202,7 +201,6 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
     import resource  # not on every system
 
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
-    signal.signal(signal.SIGPROF, _end_case)
     reached, runs, changed = len(cases), 0, ""
     setups = [_SETUP]
     if mutant.package in _APART and not missing(_IN_C):
@@ -232,31 +230,18 @@ def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
 
 def _noticed(case: Case, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
     """How a case notices the mutant that is in place, why, and the digest of what was seen."""
-    unsure: Fate = "red" if case.may_fail else "soft"
-    signal.setitimer(signal.ITIMER_PROF, _SECONDS * len(setups))
-    try:
-        results = run_case(case, setups, KnownFailures()).results
-    except _TimeOver:
-        return unsure, f"more than {_SECONDS * len(setups)} seconds of computing", ""
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
+    results = run_case(case, setups, KnownFailures(), most=_SECONDS).results
     seen = results[0].observation
     digest = seen_digest(seen) if seen else ""
     bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)
     if bad:
         return ("red" if bad[0].verdict == "fail" else "soft"), bad[0].reason, digest
     is_seen = any(one.verdict == "pass" for one in results)
-    return (None, "", digest) if is_seen else (unsure, "it was skipped", digest)
+    if is_seen:
+        return None, "", digest
+    return ("red" if case.may_fail else "soft"), "it was skipped", digest
 
 
 def _grave(result: Result) -> bool:
     """What comes first in order: that it failed."""
     return result.verdict != "fail"
-
-
-class _TimeOver(BaseException):
-    """A case takes too long; nothing that runs cases catches it."""
-
-
-def _end_case(_signal: int, _frame: object) -> NoReturn:
-    raise _TimeOver

@@ -86,7 +86,7 @@ _SOURCES = """\
 | S5 | machine data of several robots |
 | S6 | a public list of 445 system variables with descriptions |
 | T1 to T20 | manuals and texts of KUKA College, transcribed or translated on public pages |
-| F1 to F3 | threads of robot-forum.com on blending, triggers and synchronous axes (14422, 34556, 24428) |
+| F1 to F3 | robot-forum.com on blending (14422), triggers (34556), synchronous axes (24428) |
 | D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
 | D2 to D4 | programs in public repositories |
 | X1 to X7 | pages of unknown or machine-written origin, named where they contradict |

@@ -147,6 +147,19 @@ def test_exception_of_an_executor_is_a_failed_case(make: MakeCase) -> None:
     assert any("ZeroDivisionError: in the executor" in one.actual for one in result.checks)
 
 
+def test_executor_that_never_ends_is_a_failed_case_with_its_name(make: MakeCase) -> None:
+    """It has failed though nothing but an unconfirmed rule is at stake."""
+
+    def see(_case: Case, _setup: Setup) -> Observation:
+        while True:
+            pass
+
+    case = make(("CTL-01", "CTL-02"))
+    (result,) = run_case(case, [TREE], NOTHING_KNOWN, see, most=0.05).results
+    reason = "line 0: no crash; seen: control/fact takes more than 0.05 seconds of computing"
+    assert ("fail", reason) == (result.verdict, result.reason)
+
+
 def test_run_that_goes_on_differs_from_one_that_ended() -> None:
     """A longer trace differs where the shorter one is over."""
     one = Observation(events=(Event(0, "robot", "line", "a.src", 2),), ending="end")

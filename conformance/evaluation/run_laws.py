@@ -1,0 +1,122 @@
+"""What holds in every run, whatever its program does: the order of events in a trace.
+
+A law needs no expectation, so that a case notices what goes wrong beside what it is about. Where no
+rule of KRL says it, docs/trace.md does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from conformance.evaluation.observation import Event, Observation
+
+__all__ = ["Violation", "violations"]
+
+#: $ADVANCE is at most 5 [ADV-01]; the motion under way is none of them.
+_MOST_AHEAD: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """An event that breaks a law: the law, what was seen, and the rule of KRL that says it."""
+
+    event: Event
+    law: str
+    actual: str
+    rule: str = ""
+
+
+def violations(seen: Observation) -> Iterator[Violation]:
+    """The first violation of each law in a run whose events are all known."""
+    for law in (_in_time, _changes, _levels, _motions, _ahead):
+        found = next(law(seen.events), None)
+        if found is not None:
+            yield found
+
+
+def _in_time(events: Sequence[Event]) -> Iterator[Violation]:
+    now = 0
+    for one in events:
+        if one.time is not None and one.time < now:
+            yield Violation(one, "events stand in the order of their times", f"{one.time} us")
+        now = one.time or now
+
+
+def _changes(events: Sequence[Event]) -> Iterator[Violation]:
+    """Inputs and outputs are reported where they change."""
+    values: dict[tuple[object, object], object] = {}
+    for one in events:
+        if one.kind in ("in", "out", "anout"):
+            key = one.fields.get("signal"), one.fields.get("number")
+            value = one.fields.get("value")
+            if key in values and values[key] == value:
+                text = f"{key[0]}[{key[1]}] is {value} already"
+                yield Violation(one, "signals are reported where they change", text)
+            values[key] = value
+
+
+def _levels(events: Sequence[Event]) -> Iterator[Violation]:
+    """Routines of interrupts nest, each with a higher priority than what it interrupts."""
+    levels: dict[str, list[object]] = {}
+    for one in events:
+        priority = one.fields.get("priority")
+        under_way = levels.setdefault(one.task, [])
+        if one.kind == "interrupt_enter":
+            if under_way and not _is_higher(priority, under_way[-1]):
+                law, actual = "an interrupt interrupts lower ones", f"{priority}: {under_way}"
+                yield Violation(one, law, actual, "INT-05")
+            under_way.append(priority)
+        elif one.kind == "interrupt_leave":
+            if not under_way or under_way.pop() != priority:
+                yield Violation(one, "what was entered last is left first", str(priority))
+        elif one.kind == "end" and under_way:
+            yield Violation(one, "no interrupt is under way at the end", str(under_way))
+
+
+def _is_higher(priority: object, other: object) -> bool:
+    return not isinstance(priority, int) or not isinstance(other, int) or priority < other
+
+
+def _motions(events: Sequence[Event]) -> Iterator[Violation]:
+    """Up to a BRAKE motions begin in the order in which they are planned, one behind the other."""
+    planned = started = 0
+    is_moving = False
+    blending: object = None
+    for one in events:
+        number = one.fields.get("motion")
+        fits = True
+        match one.kind:
+            case "motion_planned":
+                fits, planned = number == planned + 1, planned + 1
+            case "motion_start" if isinstance(number, int):
+                fits = started < number <= (planned or number) and not is_moving
+                started = number
+                is_moving = True
+            case "motion_end":
+                fits, is_moving = is_moving and number == started, False
+            case "blend_start":
+                fits, blending = is_moving and number == started, number
+            case "blend_apex":
+                fits = blending == number
+            case "blend_end" if isinstance(number, int):
+                fits, blending = blending == number - 1, None
+            case "brake":  # the path is left, and others may come before it is gone on
+                return
+        if not fits:
+            yield Violation(one, "motions follow one another", f"{one.kind} {number}")
+
+
+def _ahead(events: Sequence[Event]) -> Iterator[Violation]:
+    """The advance run is at most so many motions ahead of the robot."""
+    planned = started = 0
+    for one in events:
+        number = one.fields.get("motion")
+        if one.kind == "motion_planned" and isinstance(number, int):
+            planned = number
+            if planned - max(started, 1) > _MOST_AHEAD:
+                law, actual = f"at most {_MOST_AHEAD} motions are planned ahead", str(number)
+                yield Violation(one, law, actual, "ADV-01")
+        elif one.kind == "motion_start" and isinstance(number, int):
+            started = number
