@@ -97,6 +97,9 @@ static inline int rounds(float number, int32_t *result)
 
 /* ---------------------------------------------------------------------------- shared forms */
 
+#define READ_BOTH                                                                                  \
+    READ(b, B);                                                                                    \
+    READ(c, C)
 #define FOR_STEP(name, cell, operator)                                                             \
     STEP(name)                                                                                     \
     {                                                                                              \
@@ -112,8 +115,7 @@ static inline int rounds(float number, int32_t *result)
 #define INT_STEP(name, operation)                                                                  \
     STEP(name)                                                                                     \
     {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
+        READ_BOTH;                                                                                 \
         INT_RESULT(operation, krl_int_in(b), krl_int_in(c));                                       \
     }
 #define INT_STEP_K(name, operation)                                                                \
@@ -125,8 +127,7 @@ static inline int rounds(float number, int32_t *result)
 #define REAL_STEP(name, operator)                                                                  \
     STEP(name##_REAL)                                                                              \
     {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
+        READ_BOTH;                                                                                 \
         REAL_RESULT(krl_real_in(b) operator krl_real_in(c));                                       \
     }                                                                                              \
     STEP(name##_REAL_K)                                                                            \
@@ -134,69 +135,32 @@ static inline int rounds(float number, int32_t *result)
         READ(b, B);                                                                                \
         REAL_RESULT(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                    \
     }
-#define RELATION_STEPS(name, operator)                                                             \
-    STEP(name##_INT)                                                                               \
+/* What gives a BOOL, and the jump unless it holds. */
+#define RELATION_STEP(name, read, holds)                                                           \
+    STEP(name)                                                                                     \
     {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        A = krl_of_bool(krl_int_in(b) operator krl_int_in(c));                                     \
+        read;                                                                                      \
+        A = krl_of_bool(holds);                                                                    \
         NEXT();                                                                                    \
     }                                                                                              \
-    STEP(name##_INT_K)                                                                             \
+    STEP(UNLESS_##name)                                                                            \
     {                                                                                              \
-        READ(b, B);                                                                                \
-        A = krl_of_bool(krl_int_in(b) operator pc->c);                                             \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(name##_REAL)                                                                              \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        A = krl_of_bool(krl_real_in(b) operator krl_real_in(c));                                   \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(name##_REAL_K)                                                                            \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        A = krl_of_bool(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                \
-        NEXT();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_INT)                                                                      \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        if (krl_int_in(b) operator krl_int_in(c))                                                  \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_INT_K)                                                                    \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        if (krl_int_in(b) operator pc->c)                                                          \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_REAL)                                                                     \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
-        if (krl_real_in(b) operator krl_real_in(c))                                                \
-            NEXT();                                                                                \
-        JUMP();                                                                                    \
-    }                                                                                              \
-    STEP(UNLESS_##name##_REAL_K)                                                                   \
-    {                                                                                              \
-        READ(b, B);                                                                                \
-        if (krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c))                             \
+        read;                                                                                      \
+        if (holds)                                                                                 \
             NEXT();                                                                                \
         JUMP();                                                                                    \
     }
+#define RELATION_STEPS(name, operator)                                                             \
+    RELATION_STEP(name##_INT, READ_BOTH, krl_int_in(b) operator krl_int_in(c))                     \
+    RELATION_STEP(name##_INT_K, READ(b, B), krl_int_in(b) operator pc->c)                          \
+    RELATION_STEP(name##_REAL, READ_BOTH, krl_real_in(b) operator krl_real_in(c))                  \
+    RELATION_STEP(name##_REAL_K, READ(b, B),                                                       \
+                  krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c))
 /* Two operands that are looked at as numbers of 32 bits; both BOOL, or both INT. */
 #define BIT_STEP(name, make, operator)                                                             \
     STEP(name)                                                                                     \
     {                                                                                              \
-        READ(b, B);                                                                                \
-        READ(c, C);                                                                                \
+        READ_BOTH;                                                                                 \
         A = make(krl_int_in(b) operator krl_int_in(c));                                            \
         NEXT();                                                                                    \
     }
@@ -278,8 +242,7 @@ FOR_STEP(FOR_UP, A, <=)
 FOR_STEP(FOR_DOWN, A, >=)
 FOR_STEP(FOR_DATA_UP, cells[pc->a], <=)
 FOR_STEP(FOR_DATA_DOWN, cells[pc->a], >=)
-#define RELATION_STEPS_(name, operator) RELATION_STEPS(name, operator)
-KRL_COMPARISONS(RELATION_STEPS_)
+KRL_COMPARISONS(RELATION_STEPS)
 
 /* ---- moving */
 STEP(NOP)
@@ -526,8 +489,7 @@ INT_STEP_K(ADD_INT_K, adds)
 INT_STEP_K(MUL_INT_K, multiplies)
 STEP(DIV_INT)
 {
-    READ(b, B);
-    READ(c, C);
+    READ_BOTH;
     int32_t divisor = krl_int_in(c);
     FAULT_IF(divisor == 0, DIVISION_BY_ZERO);
     if (UNLIKELY(divisor == -1))
@@ -579,8 +541,7 @@ REAL_STEP(SUB, -)
 REAL_STEP(MUL, *)
 STEP(DIV_REAL)
 {
-    READ(b, B);
-    READ(c, C);
+    READ_BOTH;
     FAULT_IF(krl_real_in(c) == 0, DIVISION_BY_ZERO);
     REAL_RESULT(krl_real_in(b) / krl_real_in(c));
 }
