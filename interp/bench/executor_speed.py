@@ -1,9 +1,9 @@
-"""How fast the executors compute: kernels on each of them, beside Lua, and the cost of a request.
+"""How fast the executors compute: kernels on each of them and in other languages; a request's cost.
 
-Each kernel runs on every executor for the time that it takes, the processor's time and not that of
-the clock on the wall, and the best of some rounds counts. What is slow gets less to do; what is
-compared is the time for a unit of work, so that amounts need not be the same. Every executor must
-come to the same result where the amount is the same, and Lua to that of the machine in C.
+All do the same work, ``WORK(N)``, as many rounds, one after the other in each round, and the best
+round counts: by the processor's time, not that of the clock on the wall. N is found with the tree
+interpreter, and what is fast does the work several times in a round. All must come to the same
+result. What comes before the first statement is measured by itself.
 
 The full trace is off and a slice is a million statements, so that nothing but computing is
 measured; what a request costs is measured by itself.
@@ -16,55 +16,64 @@ import math
 import platform
 import shutil
 import subprocess
+import sys
+import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final
 
 from grammar.syntax.source import Source
-from interp.bench.kernels import KERNELS, Kernel
+from interp.bench.kernels import Kernel, kernels_in
 from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
 from interp.native import AVAILABLE
 from interp.port.requests import Crash, End, Fail, Write
 from interp.program.load import Limits, load
+from interp.values.faults import LinkError
 
 __all__ = ["MEASURED", "MeasurementError", "measure_executors", "steps"]
 
-#: What is measured; the machine in C where it was built, native code where there is a C compiler,
-#: Lua where it is installed.
-MEASURED: Final = (*EXECUTORS, COMPILED, "lua")
-#: What gets the full amount of work.
-_FAST: Final = frozenset({"native", COMPILED, "lua"})
 ROUNDS = 3
 _LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
-_LUA = "lua5.4"
+#: The tree takes at least so many seconds for the work of a kernel, where any amount takes so long.
+_LEAST = 0.05
+_MOST: Final = 1_000_000  # as an amount
+#: What is fast does the work so often in a round.
+_REPEATS: Final = 200
+_FAST: Final = frozenset({"native", COMPILED, "lua", "luajit", "c"})
+_PATIENCE: Final = 600  # seconds for a program in another language
 #: Where the result of a kernel goes.
 _RESULT = "$OV_PRO"
 _REQUESTS = 20_000
 
 
 class MeasurementError(Exception):
-    """Executors do not come to the same result; the message says which."""
+    """A kernel cannot be measured, or executors do not come to the same; the message says which."""
 
 
 def measure_executors(
-    names: Sequence[str] = tuple(KERNELS),
+    kernels: Sequence[Kernel] | None = None,
     rounds: int = ROUNDS,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Measure; ``on_step`` is called `steps` times. `KeyError` for a kernel that there is not.
+    """Measure, by default the kernels of this project; ``on_step`` is called `steps` times.
 
-    In the record, ``kernels`` have the nanoseconds for a unit of work on each executor, ``None``
-    where there is none. ``vm_vs_tree``, ``native_vs_tree``, ``native_vs_vm``, ``native_vs_lua`` and
-    ``compiled_vs_native`` are geometric means of how many times as fast the first is;
-    ``request_us`` is what a request costs that writes or reads, from the instruction to behind the
-    reply, in microseconds, with the statement and the loop around it.
+    In the record, ``kernels`` have the ``amount`` N and as ``ns`` the nanoseconds that ``WORK(N)``
+    takes on each executor, ``None`` where there is none; ``load_ms``, ``translate_ms`` and
+    ``start_ms`` are what it takes to check the source, to make verified bytecode of it, and to make
+    each executor. ``vm_vs_tree`` and so on are geometric means of how many times as fast the first
+    is; ``request_us`` is what a request costs that writes or reads, from the instruction to behind
+    the reply, in microseconds, with the statement and the loop around it.
 
-    Raises `MeasurementError` where executors disagree.
+    Raises `MeasurementError` where executors disagree or a kernel fails.
     """
     rows = []
-    for name in names:
-        rows.append(_measured(KERNELS[name], rounds))
+    for kernel in kernels_in().values() if kernels is None else kernels:
+        try:
+            rows.append(_measured(kernel, rounds))
+        except (LinkError, OSError, subprocess.SubprocessError) as error:
+            raise MeasurementError(f"{kernel.name}: {error}") from error
         on_step()
     requests = {name: _request_cost(name, rounds) for name in available()}
     on_step()
@@ -72,7 +81,8 @@ def measure_executors(
         "rounds": rounds,
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
-        "lua": _lua_version(),
+        "lua": _version("lua"),
+        "luajit": _version("luajit"),
         "native": AVAILABLE,
         "kernels": rows,
         "vm_vs_tree": _mean(rows, "tree", "vm"),
@@ -80,127 +90,208 @@ def measure_executors(
         "native_vs_vm": _mean(rows, "vm", "native"),
         "native_vs_lua": _mean(rows, "lua", "native"),
         "compiled_vs_native": _mean(rows, "native", COMPILED),
+        "c_vs_compiled": _mean(rows, COMPILED, "c"),
         "request_us": requests,
     }
 
 
-def steps(names: Sequence[str] = tuple(KERNELS)) -> int:
+def steps(kernels: Sequence[Kernel]) -> int:
     """How often `measure_executors` calls ``on_step``."""
-    return len(names) + 1
+    return len(kernels) + 1
 
 
 # ------------------------------------------------------------------------------- kernels
 
 
-def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
-    """Nanoseconds for a unit of work on each executor, and the amount that each was given."""
-    few, many = _prepared(kernel, kernel.small), _prepared(kernel, kernel.full)
-    timed, same_amount = {}, {}
-    for name in (*available(), *([COMPILED] if is_available(COMPILED) else [])):
-        same_amount[name] = _timed(few, name, 1 if name == "tree" else rounds)
-        timed[name] = _timed(many, name, rounds) if name in _FAST else same_amount[name]
-    lua = _timed_lua(kernel, rounds)
-    if lua is not None:
-        timed["lua"] = lua
-    _check(kernel, same_amount)
-    _check(kernel, {name: one for name, one in timed.items() if name in _FAST})
-    amounts = {name: kernel.full if name in _FAST else kernel.small for name in timed}
-    return {
-        "name": kernel.name,
-        "unit": kernel.unit,
-        "amounts": amounts,
-        "ns": {
-            name: 1e9 * timed[name].seconds / kernel.work(amounts[name]) if name in timed else None
-            for name in MEASURED
-        },
-    }
-
-
 @dataclass(frozen=True, slots=True)
 class _Timed:
-    """The best of some runs, and what the kernel gave."""
+    """The seconds that the work took, and what the kernel gave."""
 
     seconds: float
     result: int
 
 
-def _prepared(kernel: Kernel, amount: int) -> Prepared:
-    """A program that does so much work."""
-    begin = f"DEF RUN()\n{_RESULT} = WORK({amount})\nEND\n"
-    return Prepared(load([Source(begin + kernel.krl, "run.src")], "run.src"))
-
-
-def _timed(program: Prepared, executor: str, rounds: int) -> _Timed:
-    best, result = math.inf, 0
-    for _ in range(rounds):
-        running = program.executor(executor, _LIMITS)
-        gc.collect()
-        began = time.process_time()
-        request = running.advance()
-        while not isinstance(request, End | Fail | Crash):
-            if isinstance(request, Write):
-                result = request.value
-            request = running.advance()
-        best = min(best, time.process_time() - began)
-        if not isinstance(request, End):
-            raise MeasurementError(f"{executor}: {request}")
-    return _Timed(best, result)
-
-
-def _check(kernel: Kernel, timed: Mapping[str, _Timed]) -> None:
-    """All have come to the same result."""
-    results = {name: one.result for name, one in timed.items()}
+def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
+    """The row of a kernel."""
+    amount = _amount(kernel)
+    began = time.process_time()
+    once = _prepared(kernel, amount, 1)
+    loaded = time.process_time()
+    assert once.verified
+    translated = time.process_time()
+    often = _prepared(kernel, amount, _REPEATS)
+    start: dict[str, float] = {}
+    best: dict[str, _Timed] = {}
+    with tempfile.TemporaryDirectory(prefix="krl-bench-") as work:
+        foreign = dict(_foreign(kernel, amount, Path(work)))
+        for _ in range(rounds):
+            for name in (*available(), *([COMPILED] if is_available(COMPILED) else [])):
+                seconds, timed = _run(often if name in _FAST else once, name)
+                repeats = _REPEATS if name in _FAST else 1
+                timed = _Timed(timed.seconds / repeats, timed.result)
+                start[name] = min(seconds, start.get(name, math.inf))
+                best[name] = _better(kernel, name, timed, best)
+            for name, command in foreign.items():
+                best[name] = _better(kernel, name, _run_foreign(command), best)
+    results = {name: one.result for name, one in best.items()}
     if len(set(results.values())) > 1:
         raise MeasurementError(f"{kernel.name}: the results differ: {results}")
+    return {
+        "name": kernel.name,
+        "amount": amount,
+        "ns": {name: 1e9 * best[name].seconds if name in best else None for name in MEASURED},
+        "load_ms": 1e3 * (loaded - began),
+        "translate_ms": 1e3 * (translated - loaded),
+        "start_ms": {name: 1e3 * seconds for name, seconds in start.items()},
+    }
+
+
+def _better(kernel: Kernel, name: str, timed: _Timed, best: Mapping[str, _Timed]) -> _Timed:
+    before = best.get(name, timed)
+    if before.result != timed.result:
+        raise MeasurementError(f"{kernel.name}: {name} gives {before.result}, then {timed.result}")
+    return min(before, timed, key=lambda one: one.seconds)
+
+
+def _amount(kernel: Kernel) -> int:
+    """The first of 1, 2, 3, 4, 6, 9, … for which the tree takes `_LEAST`, or the last to work."""
+    amount, working = 1, 0
+    while amount <= _MOST:
+        try:
+            _, timed = _run(_prepared(kernel, amount, 1), "tree")
+        except MeasurementError:
+            if working == 0:
+                raise
+            return working
+        working = amount
+        if timed.seconds >= _LEAST:
+            break
+        amount = max(amount + 1, amount * 3 // 2)
+    return working
+
+
+def _prepared(kernel: Kernel, amount: int, repeats: int) -> Prepared:
+    """A program that does so much work so often."""
+    begin = f"""DEF KRL_BENCH()
+   DECL INT ROUND, RESULT
+   RESULT = 0
+   FOR ROUND = 1 TO {repeats}
+      RESULT = WORK({amount})
+   ENDFOR
+   {_RESULT} = RESULT
+END
+"""
+    return Prepared(load([Source(begin + kernel.krl, "krl_bench.src")], "krl_bench.src"))
+
+
+def _run(program: Prepared, executor: str) -> tuple[float, _Timed]:
+    """Make an executor and run the program; the seconds of both."""
+    gc.collect()
+    began = time.process_time()
+    running = program.executor(executor, _LIMITS)
+    ready, result = time.process_time(), 0
+    request = running.advance()
+    while not isinstance(request, End | Fail | Crash):
+        if isinstance(request, Write):
+            result = request.value
+        request = running.advance()
+    ended = time.process_time()
+    if not isinstance(request, End):
+        raise MeasurementError(f"{executor}: {request}")
+    return ready - began, _Timed(ended - ready, result)
 
 
 def _mean(rows: Sequence[Mapping[str, Any]], slow: str, fast: str) -> float | None:
-    """How many times as fast one is as the other: the geometric mean over all kernels."""
+    """How many times as fast one is as the other: the geometric mean over all with both."""
     pairs = [(row["ns"][slow], row["ns"][fast]) for row in rows]
-    if not pairs or any(None in pair for pair in pairs):
-        return None
-    return math.exp(sum(math.log(one / other) for one, other in pairs) / len(pairs))
+    ratios = [one / other for one, other in pairs if one and other]
+    return math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else None
 
 
-# ------------------------------------------------------------------------------- Lua
+# ------------------------------------------------------------------------------- other languages
 
-_LUA_DRIVER = """
-local work = assert(load(io.read("a")))()
-local best, result = math.huge, 0
-for _ = 1, {rounds} do
-   collectgarbage()
-   local began = os.clock()
+_IN_LUA = """
+local work = assert(loadfile("{file}"))()
+collectgarbage()
+local began, result = os.clock(), 0
+for _ = 1, {repeats} do
    result = work({amount})
-   best = math.min(best, os.clock() - began)
 end
-print(string.format("%.9f %d", best, result))
+print(string.format("%.9f %d", os.clock() - began, result))
 """
+_IN_PYTHON = """
+import runpy, time
+work = runpy.run_path("{file}")["work"]
+began = time.process_time()
+result = work({amount})
+print(time.process_time() - began, result)
+"""
+_IN_C = """
+#include <stdio.h>
+#include <time.h>
+int work(int n);
+int main(void)
+{{
+    int result = 0;
+    clock_t began = clock();
+    for (int i = 0; i < {repeats}; i++)
+        result = work({amount});
+    printf("%.9f %d\\n", (double)(clock() - began) / CLOCKS_PER_SEC, result);
+    return 0;
+}}
+"""
+#: Programs of other languages by their usual names.
+_COMMANDS: Final[Mapping[str, tuple[str, ...]]] = {
+    "lua": ("lua5.4", "lua"),
+    "luajit": ("luajit",),
+    "c": ("cc", "gcc", "clang"),
+}
+#: What is measured; the machine in C where it was built, the others where they are installed.
+MEASURED: Final = (*EXECUTORS, COMPILED, *_COMMANDS, "python")
 
 
-def _timed_lua(kernel: Kernel, rounds: int) -> _Timed | None:
-    """The same in Lua, by the processor's time as well; ``None`` where it is not installed."""
-    if shutil.which(_LUA) is None:
-        return None
-    driver = _LUA_DRIVER.format(rounds=rounds, amount=kernel.full)
+def _foreign(kernel: Kernel, amount: int, work: Path) -> Iterator[tuple[str, list[str]]]:
+    """The commands that run the kernel in other languages and print seconds and result."""
+
+    def driver(template: str, file: Path) -> str:
+        return template.format(file=file.resolve().as_posix(), amount=amount, repeats=_REPEATS)
+
+    for name in ("lua", "luajit"):
+        if (command := _found(name)) and (file := kernel.beside(".lua")):
+            yield name, [command, "-e", driver(_IN_LUA, file)]
+    if (command := _found("c")) and (file := kernel.beside(".c")):
+        main, made = work / "main.c", work / "kernel"
+        main.write_text(driver(_IN_C, file), encoding="utf-8")
+        _output([command, "-O2", str(main), str(file), "-o", str(made), "-lm"])
+        yield "c", [str(made)]
+    if file := kernel.beside(".py"):
+        yield "python", [sys.executable, "-c", driver(_IN_PYTHON, file)]
+
+
+def _run_foreign(command: Sequence[str]) -> _Timed:
+    """Seconds for the work once, and its result."""
+    seconds, result = _output(command).split()
+    repeats = 1 if command[0] == sys.executable else _REPEATS
+    return _Timed(max(float(seconds), 1e-9) / repeats, int(result))
+
+
+def _output(command: Sequence[str]) -> str:
     ended = subprocess.run(
-        [_LUA, "-e", driver],
-        input=kernel.lua,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-        timeout=600,
+        command, capture_output=True, encoding="utf-8", check=False, timeout=_PATIENCE
     )
     if ended.returncode:
-        raise MeasurementError(f"{kernel.name}: {_LUA} says {ended.stderr.strip()}")
-    seconds, result = ended.stdout.split()
-    return _Timed(float(seconds), int(result))
+        told = ended.stderr.strip().splitlines()
+        raise OSError(f"{Path(command[0]).name} says {told[0] if told else 'nothing'}")
+    return ended.stdout
 
 
-def _lua_version() -> str | None:
-    if shutil.which(_LUA) is None:
-        return None
-    told = subprocess.run([_LUA, "-v"], capture_output=True, encoding="utf-8", check=False)
-    return " ".join(told.stdout.split()[:2])
+def _found(name: str) -> str | None:
+    return next(filter(None, map(shutil.which, _COMMANDS[name])), None)
+
+
+def _version(name: str) -> str | None:
+    command = _found(name)
+    return " ".join(_output([command, "-v"]).split()[:2]) if command else None
 
 
 # ------------------------------------------------------------------------------- requests

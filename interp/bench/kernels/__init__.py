@@ -1,73 +1,44 @@
-"""Kernels for `interp.bench.executor_speed`: small programs in KRL, and the same in Lua.
+"""Kernels for `interp.bench.executor_speed`: small programs in KRL and in other languages.
 
-Each file ``NAME.src`` has a function ``WORK`` that takes an amount and gives a number by which it
-can be told whether the work was done right; ``NAME.lua`` returns such a function. `KERNELS` says
-how much work an amount is, and how much is enough to be measured on a fast machine.
+A kernel is a file ``NAME.src`` with a function ``DEFFCT INT WORK(N:IN)``, whose result tells
+whether the work was done right. Beside it lie what does the same: ``NAME.lua``, a chunk that
+returns a function; ``NAME.py`` with a function ``work``; ``NAME.c`` with ``int work(int n)``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib import resources
-from types import MappingProxyType
+from pathlib import Path
 
-__all__ = ["KERNELS", "Kernel"]
+__all__ = ["HERE", "Kernel", "kernels_in"]
+
+#: The kernels of this project.
+HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """A kernel: ``full`` is the amount that is measured, ``small`` one for slow machines.
-
-    ``work`` gives the work of an amount, counted in ``unit``.
-    """
+    """A kernel: its name, its file in KRL."""
 
     name: str
-    unit: str
-    full: int
-    small: int
-    work: Callable[[int], int]
+    file: Path
 
     @property
     def krl(self) -> str:
-        """The source of ``WORK`` in KRL."""
-        return self._text("src")
+        """The source in KRL, as ISO 8859-1 where it is no UTF-8."""
+        data = self.file.read_bytes()
+        try:
+            return data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            return data.decode("latin-1")
 
-    @property
-    def lua(self) -> str:
-        """The same as a chunk in Lua that returns the function."""
-        return self._text("lua")
-
-    def _text(self, ending: str) -> str:
-        file = resources.files(__package__).joinpath(f"{self.name}.{ending}")
-        return file.read_text(encoding="utf-8")
-
-
-def _calls_of_fibonacci(number: int) -> int:
-    """How often the function is called in all."""
-    calls, before = 1, 1
-    for _ in range(number - 1):
-        calls, before = calls + before + 1, calls
-    return calls
+    def beside(self, ending: str) -> Path | None:
+        """The same in another language, if it is there."""
+        file = self.file.with_suffix(ending)
+        return file if file.is_file() else None
 
 
-def _same(amount: int) -> int:
-    return amount
-
-
-#: All kernels by name, in the order of the table that shows them.
-KERNELS: Mapping[str, Kernel] = MappingProxyType(
-    {
-        kernel.name: kernel
-        for kernel in (
-            Kernel("sieve", "element", 10, 1, lambda rounds: rounds * 81_900),
-            Kernel("loop", "pass", 5_000_000, 20_000, _same),
-            Kernel("fibonacci", "call", 30, 16, _calls_of_fibonacci),
-            Kernel("matrix", "product", 150, 20, lambda size: size**3),
-            Kernel("texts", "letter pair", 5_000, 10, lambda lines: lines * 40),
-            Kernel("structures", "move", 5_000, 5, lambda steps: steps * 100),
-            Kernel("jumps", "pass", 5_000_000, 20_000, _same),
-            Kernel("calls", "pass", 1_000_000, 2_000, _same),
-        )
-    }
-)
+def kernels_in(folder: Path = HERE) -> dict[str, Kernel]:
+    """All kernels of a folder by name, in the order of the alphabet."""
+    files = sorted(file for file in folder.iterdir() if file.suffix.lower() == ".src")
+    return {file.stem: Kernel(file.stem, file) for file in files}

@@ -5,7 +5,7 @@ local function work(n)
       goto done
    end
    i = i + 1
-   if i & 1 == 1 then
+   if i % 2 == 1 then
       goto again
    end
    even = even + 1

@@ -16,7 +16,7 @@ local function work(n)
          c[i][j] = sum
       end
    end
-   return math.tointeger(c[n][1])
+   return math.floor(c[n][1])
 end
 
 return work

@@ -2,14 +2,14 @@ local function work(n)
    local flags, count = {}, 0
    for _ = 1, n do
       count = 0
-      for i = 1, 81900 do
+      for i = 1, 8190 do
          flags[i] = true
       end
-      for i = 1, 81900 do
+      for i = 1, 8190 do
          if flags[i] then
             local prime = i + i + 1
             local k = i + prime
-            while k <= 81900 do
+            while k <= 8190 do
                flags[k] = false
                k = k + prime
             end

@@ -7,7 +7,7 @@ local function work(n)
          sum = sum + #line - k
       end
    end
-   return sum // n + #line
+   return math.floor(sum / n) + #line
 end
 
 return work

@@ -1,6 +1,8 @@
-"""`krl bench vm`: how fast the executors compute, beside Lua."""
+"""`krl bench vm`: how fast the executors compute, beside other languages."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from statistics import median
 from typing import Annotated, Any
 
 import typer
@@ -16,42 +18,63 @@ from krl.text_table import figures
 
 __all__ = ["vm"]
 
-_HEADINGS = {"tree": "tree", "vm": "Python", "native": "C", "compiled": "compiled", "lua": "Lua"}
+_HEADINGS = {
+    "tree": "tree",
+    "vm": "Python",
+    "native": "C",
+    "compiled": "compiled",
+    "lua": "Lua",
+    "luajit": "LuaJIT",
+    "c": "C -O2",
+    "python": "CPython",
+}
 _AIMS = (
     ("vm_vs_tree", "machine in Python against tree", "6 times"),
     ("native_vs_tree", "machine in C against tree", "300 times"),
     ("native_vs_vm", "machine in C against Python", ""),
     ("native_vs_lua", "machine in C against Lua", "1 times"),
     ("compiled_vs_native", "native code against machine in C", ""),
+    ("c_vs_compiled", "C -O2 against native code", "≤ 3 times"),
 )
 
 
 def vm(
     kernels: Annotated[
         str,
-        typer.Option(metavar="NAME,…", help="Which kernels; default: all of them."),
+        typer.Option(
+            metavar="NAME,…|DIR", help="Which kernels; or all of a folder. Default: all of ours."
+        ),
     ] = "",
     rounds: Annotated[
-        int, typer.Option(min=1, max=100, metavar="N", help="The best of so many runs counts.")
+        int, typer.Option(min=1, max=100, metavar="N", help="The best of so many rounds counts.")
     ] = 3,
     json_file: JsonOption = None,
 ) -> int:
-    """Measure the executors: KRL kernels on each of them and in Lua 5.4, and what a request costs.
+    """Measure the executors: KRL kernels on each of them and in other languages; a request's cost.
 
-    Slow executors get less of the same work; the figures are times for a unit of it.
+    A kernel is NAME.src with DEFFCT INT WORK(N:IN); NAME.lua (a chunk that returns a function),
+    NAME.py (a function work) or NAME.c (int work(int n)) beside it do the same in Lua 5.4 and
+    LuaJIT, Python, and C with -O2. The figures are microseconds for
+    one WORK(N), with the same N for all.
     """
     from interp.bench.executor_speed import MeasurementError, measure_executors, steps
-    from interp.bench.kernels import KERNELS
+    from interp.bench.kernels import HERE, kernels_in
 
     check_files(json_file)
-    names = [name.strip() for name in kernels.split(",") if name.strip()] or list(KERNELS)
-    unknown = [name for name in names if name not in KERNELS]
+    is_folder = bool(kernels) and Path(kernels).is_dir()
+    found = kernels_in(Path(kernels) if is_folder else HERE)
+    if is_folder and not found:
+        raise InputError(f"--kernels {kernels}: there is no .src file in it")
+    names = [name.strip() for name in kernels.split(",") if name.strip()]
+    names = list(found) if is_folder or not names else names
+    unknown = [name for name in names if name not in found]
     if unknown:
         raise InputError(
-            f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(KERNELS)}"
+            f"--kernels {kernels}: there is no {unknown[0]}, only {', '.join(found)}, or a folder"
         )
-    with as_input_errors(MeasurementError), progress_bar("measuring", steps(names)) as advance:
-        record = measure_executors(names, rounds, on_step=advance)
+    chosen = [found[name] for name in names]
+    with as_input_errors(MeasurementError), progress_bar("measuring", steps(chosen)) as advance:
+        record = measure_executors(chosen, rounds, on_step=advance)
     record = {"bench": "vm", **record}
     write_json(record, json_file, indent=1)
     _print(record)
@@ -63,13 +86,14 @@ def _print(record: Mapping[str, Any]) -> None:
     lua = record["lua"] or "no Lua 5.4 here"
     missing = "" if record["native"] else "; the machine in C was not built"
     console.print(f"Python {record['python']}, {lua}{missing}", soft_wrap=True)
-    table = figures(("ns", *_HEADINGS.values(), "C/tree", "C/Lua"))
+    shown = [name for name in _HEADINGS if any(row["ns"][name] for row in record["kernels"])]
+    table = figures(("µs for WORK(N)", "N", *map(_HEADINGS.__getitem__, shown), "C/Lua"))
     for row in record["kernels"]:
         ns = row["ns"]
         table.add_row(
-            f"{row['name']}, {row['unit']}",
-            *(_figure(ns[name]) for name in _HEADINGS),
-            _ratio(ns["tree"], ns["native"]),
+            row["name"],
+            f"{row['amount']:,}",
+            *(_figure(ns[name]) for name in shown),
             _ratio(ns["lua"], ns["native"]),
         )
     console.print(table)
@@ -83,10 +107,20 @@ def _print(record: Mapping[str, Any]) -> None:
         told = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
         summary.add_row(f"a request: {_HEADINGS[name]}", told, "")
     console.print(summary)
+    before = (f"{label} {ms:.1f} ms" for label, ms in _before_running(record["kernels"]))
+    console.print(f"before it runs: {', '.join(before)}", soft_wrap=True)
+
+
+def _before_running(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, float]]:
+    """What comes before the first statement of a kernel, in milliseconds; medians."""
+    yield "check", median(row["load_ms"] for row in rows)
+    yield "bytecode", median(row["translate_ms"] for row in rows)
+    for name in rows[0]["start_ms"]:
+        yield f"start of {_HEADINGS[name]}", median(row["start_ms"][name] for row in rows)
 
 
 def _figure(ns: float | None) -> str:
-    return "–" if ns is None else f"{ns:,.{0 if ns >= 100 else 1}f}"
+    return "–" if ns is None else f"{ns / 1e3:,.{0 if ns >= 1e5 else 1}f}"
 
 
 def _ratio(slow: float | None, fast: float | None) -> str:

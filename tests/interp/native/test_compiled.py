@@ -13,7 +13,7 @@ from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, trace_of
 from grammar.generation.closed.programs import seeded
 from grammar.syntax.source import Source
-from interp.bench.kernels import KERNELS
+from interp.bench.kernels import kernels_in
 from interp.executors import Prepared, is_available
 from interp.port.requests import End, Fail, Request
 from interp.program.load import Limits, load
@@ -66,15 +66,14 @@ def test_as_the_machine(number: int) -> None:
 
 
 @pytest.mark.parametrize("size", [1, 7, 1000])
-@pytest.mark.parametrize("name", ["calls", "matrix", "jumps"])
+@pytest.mark.parametrize("name", kernels_in())
 def test_slices(name: str, size: int) -> None:
     """It stops for time to pass at the same statements, and goes on there."""
-    kernel = KERNELS[name]
-    text = f"DEF RUN()\n$OV_PRO = WORK({kernel.small // 100 + 2})\nEND\n{kernel.krl}"
+    text = f"DEF RUN()\n$OV_PRO = WORK(9)\nEND\n{kernels_in()[name].krl}"
     program = Prepared(load([Source(text, "run.src")], "run.src"))
     limits = Limits(statements=3000, per_slice=size)
-    expected = _requests(program, "native", limits)
-    assert expected == _requests(program, "compiled", limits)
+    expected = repr(_requests(program, "native", limits))  # a budget that is exhausted is no value
+    assert expected == repr(_requests(program, "compiled", limits))
 
 
 def test_calls_deeper_than_those_in_c() -> None:
