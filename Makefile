@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism test check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism test lock audit check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -27,6 +27,8 @@ help:
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
+	@echo 'make lock         choose versions and hashes for work on the project anew (needs uv)'
+	@echo 'make audit        known weaknesses and licences of what it needs (needs uv)'
 	@echo 'make bench        measure the tools; records go to reports/out/bench (ARGS="PATH")'
 	@echo 'make clean        remove .venv, caches and reports/out'
 
@@ -82,6 +84,16 @@ bench: $(DEV)
 	@$(BIN)/krl bench blends --json reports/out/bench/blends.json
 	@$(BIN)/krl bench conform --json reports/out/bench/conform.json
 
+lock:
+	@UV_CUSTOM_COMPILE_COMMAND='make lock' uv pip compile --quiet --upgrade --universal --generate-hashes \
+		--python-version 3.11 --extra dev --output-file requirements-dev.txt pyproject.toml
+
+# py-opw-kinematics is under the MIT licence, which its metadata does not say.
+audit: $(DEV)
+	@uvx pip-audit@2.10.1 --disable-pip --require-hashes --requirement requirements-dev.txt
+	@uvx pip-licenses@5.5.5 --python $(BIN)/python --from=mixed --partial-match --summary \
+		--allow-only='MIT;BSD;Apache;ISC;MPL;Mozilla;PSF' --ignore-packages krl-workbench py-opw-kinematics
+
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -94,9 +106,9 @@ $(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
 	@$(BIN)/pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
-$(DEV): $(BASE)
+$(DEV): $(BASE) requirements-dev.txt
 	@echo 'adding what work on the project needs: tests, linters, the arm (some 600 MB); one to three minutes, once'
-	@$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-dev.txt
 	@# Hypothesis works out its table of characters once here, not in each process of the tests (200 MB).
 	@$(BIN)/python -c 'from hypothesis import find, strategies; find(strategies.characters(), bool)'
 	@touch $@

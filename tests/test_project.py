@@ -6,12 +6,14 @@ import re
 import shutil
 import subprocess
 import tomllib
+from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
+from packaging.requirements import Requirement
 
 from krl.commands.app import app
 
@@ -31,9 +33,10 @@ TOP_LEVEL = {
         "Makefile",
         "README.md",
     ),
-    *("pyproject.toml", "corpus", "docs", "tests"),
+    *("pyproject.toml", "requirements-dev.txt", "corpus", "docs", "tests"),
     *PACKAGES,
 }
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 MAKE_TARGETS = set("setup recover conformance nightly fuzz test check grammar bench".split())
 
 needs_git = pytest.mark.skipif(
@@ -151,6 +154,43 @@ def test_git_leaves_krl_alone(name: str) -> None:
 def test_git_ignores_what_is_not_ours(name: str) -> None:
     """Fetched files and written pages cannot be committed by accident."""
     assert name == _git("check-ignore", "--", name).strip()
+
+
+def _asked_for(extra: str) -> Iterator[Requirement]:
+    """What the project needs with an extra, extras of its own followed."""
+    project = PROJECT["project"]
+    for line in [*project["dependencies"], *project["optional-dependencies"][extra]]:
+        asked = Requirement(line)
+        if asked.name == project["name"]:
+            for one in asked.extras:
+                yield from _asked_for(one)
+        else:
+            yield asked
+
+
+def test_locked_versions_are_those_asked_for() -> None:
+    """`make lock` was run since pyproject.toml asked for something else; all of it has hashes."""
+    locked = (ROOT / "requirements-dev.txt").read_text(encoding="utf-8")
+    pins = re.findall(r"^([a-z0-9-]+)==(\S+)(.*(?:\n .*)*)", locked, re.MULTILINE)
+    assert [] == [name for name, _, hashes in pins if "--hash=sha256:" not in hashes]
+    assert len(re.findall(r"^[a-z0-9]", locked, re.MULTILINE)) == len(pins)
+    versions = {name: version for name, version, _ in pins}
+    unmet = [
+        str(asked)
+        for asked in _asked_for("dev")
+        if not asked.specifier.contains(versions.get(asked.name, "0"))
+    ]
+    assert [] == unmet
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_actions_are_pinned_and_may_do_little(workflow: Path) -> None:
+    """Each action of others is named by digest, and no workflow may write as a whole."""
+    text = workflow.read_text(encoding="utf-8")
+    used = re.findall(r"uses: (\S+)", text)
+    assert [] == [name for name in used if not re.fullmatch(r"[^@]+@[0-9a-f]{40}", name)]
+    (permissions,) = re.findall(r"^permissions: (.*)$", text, re.MULTILINE)
+    assert permissions in ("{}", "{ contents: read }")
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")

@@ -290,3 +290,16 @@ def test_nothing_is_missing(capsys: pytest.CaptureFixture[str], backup: Path) ->
     """With --complete a routine that no file has is an error."""
     found = records(capsys, "--no-cache", "--complete", str(backup / "backup"))
     assert ["KRL301", "KRL102"] == [one["code"] for one in found if one["severity"] == "error"]
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [("", (0, 0, 0)), ("INT N\nN = 1\nN = N", (0, 1, 0)), ("N = = 1", (1, 1, 0))],
+)
+def test_what_fails_a_check_can_be_chosen(
+    tmp_path: Path, body: str, expected: tuple[int, int, int]
+) -> None:
+    """Errors only, warnings too, or nothing."""
+    (tmp_path / "a.src").write_text(f"DEF A()\n{body}\nEND\n", encoding="utf-8")
+    words = ["check", "--no-cache", str(tmp_path), "--fail-on"]
+    assert expected == tuple(main([*words, which]) for which in ("error", "any", "never"))

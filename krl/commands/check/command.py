@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -32,6 +33,17 @@ __all__ = ["check"]
 
 #: Findings that are no faults: why the robot stops.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
+
+
+class FailOn(StrEnum):
+    """Which findings make a check fail."""
+
+    ERROR = "error"
+    ANY = "any"
+    NEVER = "never"
+
+
+_FAILING = {FailOn.ERROR: {"error"}, FailOn.ANY: {"error", "warning"}, FailOn.NEVER: set[str]()}
 
 
 def check(
@@ -91,6 +103,10 @@ def check(
     no_settings: Annotated[
         bool, typer.Option("--no-settings", help="Take no notice of any krl.toml.")
     ] = False,
+    fail_on: Annotated[
+        FailOn,
+        typer.Option(help="Which findings give exit status 1; any: errors and warnings."),
+    ] = FailOn.ANY,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
     ] = None,
@@ -105,7 +121,8 @@ def check(
 ) -> int:
     """Check programs: syntax, names, types, control flow, and what is not allowed where.
 
-    Exit status 1 where there are errors or warnings; notes alone leave it 0. A comment
+    Exit status 1 where there are errors or warnings, or as --fail-on has it; notes alone leave it
+    0. A comment
     '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl explain
     CODE' says what a code means.
     """
@@ -148,7 +165,8 @@ def check(
             for _ in changes(paths):
                 check_.run(format_, out, verbose)
         return FINE
-    return check_.run(format_, out, verbose)
+    found = check_.run(format_, out, verbose)
+    return FINDINGS if found & _FAILING[fail_on] else FINE
 
 
 def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Settings:
@@ -179,8 +197,11 @@ class _Check:
     jobs: int | None
     cache: Path | None
 
-    def run(self, format_: Format, out: Path | None, is_verbose: bool) -> int:
-        """Check, write the findings that are new, and say on stderr what there was."""
+    def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
+        """Check, write the findings that are new, and say on stderr what there was.
+
+        Gives their severities.
+        """
         report, kept = self._found()
         more = ""
         if self.baseline is not None:
@@ -191,7 +212,7 @@ class _Check:
             kept = new
         write(kept, report, format_, out, is_verbose=is_verbose)
         sum_up(kept, report, more)
-        return FINDINGS if any(one.severity != "note" for one in kept) else FINE
+        return {one.severity for one in kept}
 
     def make_baseline(self, file: Path) -> int:
         """Write all findings down as known."""

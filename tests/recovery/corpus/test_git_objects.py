@@ -91,6 +91,14 @@ def test_what_is_no_repository_is_an_error(tmp_path: Path) -> None:
         reader.read("HEAD", "a.src", 10)
 
 
+@pytest.mark.parametrize("transport", ["http", "git", "ssh", "ext"])
+def test_only_https_is_spoken(transport: str, tmp_path: Path) -> None:
+    """Git refuses any other way to a server before it calls there, whatever else allows it."""
+    url = "ext::true" if transport == "ext" else f"{transport}://127.0.0.1:9/cell"
+    with pytest.raises(GitError, match=f"transport '{transport}' not allowed"):
+        fetch_commit(url, "0" * 40, tmp_path / "new")
+
+
 def test_missing_git_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without git, both reading and fetching say so."""
     monkeypatch.setenv("PATH", str(tmp_path))
