@@ -23,7 +23,7 @@ help:
 	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
-	@echo 'make determinism  run each command ten times in different ways and compare its records'
+	@echo 'make determinism  run each command twenty times in different ways and compare its records'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'

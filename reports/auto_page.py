@@ -8,7 +8,7 @@ from typing import Any
 from reports.embedding import embedded_json
 from reports.number_format import Figure, counted, percent, share
 from reports.page import render
-from reports.record_fields import Record, count, nested, records, text, texts
+from reports.record_fields import Record, count, nested, number, records, text, texts
 from reports.sanitizing import shown
 from support.files.atomic_write import write_atomic
 
@@ -78,7 +78,10 @@ def _view(record: Record) -> _View:
     taken = [row for n, done in enumerate(rounds, 1) for row in _taken(n, done)]
     refused = _refused(last, len(rounds))
     figures.append(Figure("steps taken", f"{len(taken):,}", counted(len(rounds), "round")))
-    figures.append(Figure("rules", f"{count(last, 'rules'):,}"))
+    minutes = number(record, "seconds") / 60
+    rules = count(record, "rules") or count(last, "rules")
+    figures.append(Figure("rules", f"{rules:,}", f"grown in {minutes:.1f} minutes"))
+    figures += _target(nested(record, "target"))
     curves = [
         _Curve(key, _points([nested(done, key) for done in rounds]))
         for _, key in _HALVES
@@ -109,6 +112,24 @@ def _figure(name: str, reading: Record) -> Figure:
     parsed, files = _of(reading)
     note = f"{parsed:,} of {files:,}; {counted(count(reading, 'failing'), 'line')} fail"
     return Figure(name, percent(parsed, files), note, share(parsed, files))
+
+
+def _target(target: Record) -> list[Figure]:
+    """How what has grown compares with the grammar it was to become."""
+    name = shown(text(target, "name"), _LONGEST)
+    labels = {
+        "shown": f"of the files shown that {name} parses",
+        "held": f"of the files held out that {name} parses",
+        "sentences_rejected": f"of its random sentences {name} rejects",
+        "negatives_accepted": "of the negatives accepted",
+    }
+    found = []
+    for key, label in labels.items():
+        some, every = (count(nested(target, key), part) for part in ("count", "of"))
+        if every:
+            note = f"{some:,} of {every:,}"
+            found.append(Figure(label, percent(some, every), note, share(some, every)))
+    return found
 
 
 def _points(readings: Sequence[Record]) -> str:

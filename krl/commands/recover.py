@@ -75,6 +75,12 @@ def recover(
     seed: Annotated[
         int, typer.Option(metavar="N", help="With --auto: draws the origins held out.")
     ] = 1,
+    target: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="With --auto: compare what has grown with this .g4 at the end."
+        ),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="With --auto: go on from what DIR holds.")
     ] = False,
@@ -104,13 +110,14 @@ def recover(
             out,
             json_file,
             rejected,
+            target,
             fraction=hold_out,
             seed=seed,
             strike=strike or (),
             resume=resume,
         )
-    if hold_out or resume or strike:
-        raise InputError("--hold-out, --resume and --strike belong to --auto")
+    if hold_out or resume or strike or target:
+        raise InputError("--hold-out, --target, --resume and --strike belong to --auto")
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():
         chosen = read_file(grammar) if grammar else krl_grammar()

@@ -17,12 +17,14 @@ from krl.output_files import write_json
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
+    from recovery.induction.comparison import Share
     from recovery.induction.growth_record import Growth
     from recovery.negatives.negatives import Negative
 
 __all__ = ["recover_auto"]
 
-# Generated negatives by which edits are tried, and their seed, which is none of the benches'.
+# Generated negatives by which edits are tried, drawn evenly from more; their seed is none of the
+# benches' and not that of the measurement.
 _NEGATIVES = 1_500
 _SEED = 11
 
@@ -34,6 +36,7 @@ def recover_auto(
     out: Path,
     json_file: Path | None,
     negatives: "Sequence[Negative]",
+    target: Path | None,
     *,
     fraction: float,
     seed: int,
@@ -42,17 +45,21 @@ def recover_auto(
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
-    Everything is written after each round, so that what was done stays when it is interrupted.
+    Everything is written after each round, so that what was done stays when it is interrupted. At
+    the end what has grown is compared with ``target``.
     """
+    from grammar.notation.g4 import read_file
+    from recovery.induction.comparison import compared
     from recovery.induction.corpus_lines import held_out, read_files
     from recovery.induction.rounds import Induction
-    from recovery.negatives.generate import generate
+    from recovery.negatives.generate import evenly, generate
     from recovery.negatives.negatives import NegativeSet
 
     if not 0 <= fraction < 1:
         raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
     began = time.monotonic()
     with expected_errors():
+        goal = read_file(target) if target else None
         files = read_files(roots)
         growth, struck = _begun(start, out, strike, resume=resume)
     shown, held, origins = held_out(files, fraction, seed)
@@ -60,7 +67,8 @@ def recover_auto(
         raise InputError("nothing that was named is KRL source")
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
-    every = NegativeSet((*negatives, *generate(count=_NEGATIVES, seed=_SEED)))
+    generated = evenly(generate(count=4 * _NEGATIVES, seed=_SEED), _NEGATIVES)
+    every = NegativeSet((*negatives, *generated))
     induction = Induction(growth.grammar, shown, held, every, struck=struck)
     record: dict[str, Any] = {
         "start": name,
@@ -81,6 +89,13 @@ def recover_auto(
             typer.echo("stopped at the limit of rounds; --resume goes on", err=True)
     except KeyboardInterrupt:
         typer.echo(f"interrupted; {out} holds what was done, --resume goes on", err=True)
+    record["rules"] = sum(not rule.is_lexer for rule in growth.grammar.rules)
+    if target and goal:
+        record["target"] = {
+            "name": target.name,
+            **compared(growth.grammar, goal, shown, held),
+        }
+        _say_target(record)
     page = _write(growth, record, out, json_file, struck, began)
     typer.echo(f"{out / 'grammar.g4'}: {len(growth.constructs)} steps; {page}")
     return FINE
@@ -127,6 +142,20 @@ def _say(number: int, growth: "Growth") -> None:
         + (f", {_share(last['held'])} of those held out" if last["held"]["files"] else "")
         + f"; {len(last['taken'])} steps taken"
     )
+
+
+def _say_target(record: dict[str, Any]) -> None:
+    name, target = record["target"]["name"], record["target"]
+    held = f", {_part(target['held'])} of those held out" if target["held"]["of"] else ""
+    typer.echo(
+        f"of the files that {name} parses: {_part(target['shown'])} of those shown{held}\n"
+        f"random sentences that {name} rejects: {_part(target['sentences_rejected'])}; "
+        f"negatives accepted: {_part(target['negatives_accepted'])}; {record['rules']} rules"
+    )
+
+
+def _part(share: "Share") -> str:
+    return f"{share['count']:,} of {share['of']:,}"
 
 
 def _share(reading: dict[str, int]) -> str:

@@ -143,6 +143,9 @@ class Inference:
         self._operator_lines = {n for ns in (*infix.values(), *prefix.values()) for n in ns}
         self._operators |= infix.keys() | prefix.keys()
         for text, members in infix.items():
+            heads = {self._text(self.tokens[n][0]) for n in members}
+            if text[0] != "'" and len(heads) == 1 and None not in heads:
+                continue  # a word of one statement, as STEP is
             for edits, level in self._as_infix(text):
                 breadth = _LEVEL * (len(self.rules.ladder) - level)
                 title = f"{text} between operands"

@@ -40,6 +40,8 @@ from recovery.induction.literals import split_literals
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.negatives.negatives import Negative, NegativeSet
+from recovery.negatives.tokens import RESERVED
+from recovery.negatives.tokens import lines as tokens_of
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.keywords import Vocabulary
 from recovery.survey.failing_line import source_lines
@@ -437,7 +439,7 @@ class Induction:
         wider = edited(recognizer, alone)
         if wider is None:
             return "does not fit the grammar"
-        accepted = [n for n in rejected.accepted(wider) if _is_read_anew(recognizer, n)]
+        accepted = [n for n in rejected.accepted(wider) if _is_read_anew(recognizer, wider, n)]
         if len(accepted) > (0 if is_strict else gain / _GAIN_PER_NEGATIVE):
             return f"accepts {len(accepted)} programs that must be rejected: {accepted[0].reason}"
         return ""
@@ -649,13 +651,17 @@ def _line_gain(
     return mended + _ADVANCED * advanced, result.mended | result.advanced
 
 
-def _is_read_anew(recognizer: Recognizer, negative: Negative) -> bool:
-    """Whether a negative was rejected at the line that is wrong.
+def _is_read_anew(recognizer: Recognizer, wider: Recognizer, negative: Negative) -> bool:
+    """Whether a negative was rejected at the line that is wrong, all words of which are known.
 
-    One that was rejected at another line has told nothing about the wrong one so far.
+    One that was rejected at another line has told nothing about the wrong one so far; nor has one
+    that misuses a word which both grammars take for a name.
     """
     if negative.line is None:
         return True
+    wrong = tokens_of(negative.text)[negative.line - 1]
+    if not RESERVED.intersection(wrong.kinds) <= wider.lexer.kind_of.keys():
+        return False
     kinds = recognizer.kinds(negative.text)
     _, failed = recognizer.run(recognizer.start, kinds)
     return failed is None or kinds[:failed].count(recognizer.line_kind) + 1 == negative.line

@@ -10,8 +10,9 @@ doubled, moved or exchanged.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Container, Iterator, Sequence
-from itertools import cycle
+from collections import defaultdict
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from itertools import cycle, islice, zip_longest
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from recovery.negatives.fragments import fragment_pool
@@ -19,7 +20,7 @@ from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, SourceToken, line
 
-__all__ = ["generate"]
+__all__ = ["evenly", "generate"]
 
 #: One spoilt version of a program, or nothing where the way does not fit.
 _Mutation = Callable[[list[str], random.Random], list[str] | None]
@@ -54,6 +55,15 @@ def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator
             failures = 0
             seen.add(tokens)
             yield Negative(None, text, found.fact, "parse", line=found.line)
+
+
+def evenly(negatives: Iterable[Negative], count: int) -> list[Negative]:
+    """Up to ``count`` of them, of each reason as many as of another as far as there are so many."""
+    by_reason: dict[str, list[Negative]] = defaultdict(list)
+    for negative in negatives:
+        by_reason[negative.reason].append(negative)
+    rows = zip_longest(*by_reason.values())
+    return list(islice((n for row in rows for n in row if n), count))
 
 
 # ------------------------------------------------------------------------------------ neighbours
@@ -184,6 +194,19 @@ def _line_behind_end(program: list[str], chance: random.Random) -> list[str] | N
     return [*program, chance.choice(program[1:])]
 
 
+def _other_module(program: list[str], _: random.Random) -> list[str] | None:
+    """The lines of a routine in a data list, those of a data list in a routine."""
+    if line(program[-1]).lead == "ENDDAT":
+        return ["DEF NEG()", *program[1:-1], "END"]
+    return ["DEFDAT NEG", *program[1:-1], "ENDDAT"]
+
+
+def _operand_as_parameter(program: list[str], chance: random.Random) -> list[str] | None:
+    at = program[0].find("(")
+    operand = chance.choice(("7", "TRUE", "A.B", "A + 1", "#ON", "{X 1}", "A, 7", "F(A)", "INT A"))
+    return _replaced(program, 0, f"{program[0][:at]}({operand})") if at > 0 else None
+
+
 def _joined_lines(program: list[str], chance: random.Random) -> list[str] | None:
     at = chance.randrange(len(program) - 1)
     joined = f"{program[at]} {program[at + 1].lstrip()}"
@@ -300,6 +323,8 @@ def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | No
 # The ways that show most about a grammar come more often.
 _MUTATIONS: tuple[_Mutation, ...] = (
     *[_without_needed] * 8,
+    *[_other_module] * 3,
+    _operand_as_parameter,
     *[_joined_lines, _other_closer, _stray_line, _swapped_sign, _second_equals, _tail] * 2,
     _without_line,
     _doubled_line,

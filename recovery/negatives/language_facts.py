@@ -11,6 +11,7 @@ and the own and the open corpus, whose valid files break none of them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -198,8 +199,20 @@ def _trigger(line: SourceLine) -> str | None:
 
 
 def _routine(line: SourceLine) -> str | None:
-    is_whole = "(" in line.kinds and line.kinds[-1] == ")"
-    return None if is_whole else "the head of a routine ends with its parentheses"
+    if "(" not in line.kinds or line.kinds[-1] != ")":
+        return "the head of a routine ends with its parentheses"
+    depth = 0
+    parameters = []  # without what their indices hold
+    for kind in line.kinds[line.kinds.index("(") + 1 : -1]:
+        depth -= kind == "]"
+        if not depth and kind != "]":
+            parameters.append(kind)
+        depth += kind == "["
+    wrong = not _PARAMETERS.fullmatch(" ".join(parameters))
+    return "a parameter is a name with its size and mode" if wrong else None
+
+
+_PARAMETERS = re.compile(r"(?:name(?: \[)?(?: : name)?(?: , (?!$)|$))*")
 
 
 def _goto(line: SourceLine) -> str | None:
@@ -290,12 +303,40 @@ def _blocks(program: Sequence[SourceLine]) -> Violation | None:
     """The first line at which blocks do not match."""
     open_blocks: list[_Block] = []
     for number, line in enumerate(program, 1):
-        fact = _enter(_block_word(line), open_blocks) if line.tokens else None
+        if not line.tokens:
+            continue
+        fact = _enter(_block_word(line), open_blocks)
+        if fact is None and open_blocks:
+            fact = _misplaced(line, is_data=open_blocks[0].opener == "DEFDAT")
         if fact:
             return Violation(number, fact)
     if open_blocks:
         return Violation(len(program), f"{BLOCKS[open_blocks[-1].opener].closer} closes its block")
     return None
+
+
+# Lines that begin with such a word are statements, unless it is a name there.
+_STATEMENTS = _MOTIONS | frozenset(
+    "CONTINUE EXIT GOTO HALT INTERRUPT RESUME RETURN TRIGGER WAIT".split()
+)
+_DEFINING = frozenset("ENUM IMPORT SIGNAL STRUC".split())
+
+
+def _misplaced(line: SourceLine, *, is_data: bool) -> str | None:
+    """What a line has that belongs to the other of routine and data list [SCO-03, SCO-04]."""
+    head, behind = line.kinds[0], line.kinds[1:2]
+    if is_data:
+        is_call = head == "name" and behind == ("(",)
+        is_named = behind in (("=",), ("[",), (".",))
+        is_statement = is_call or (line.lead in _STATEMENTS and not is_named)
+        return "a data list has no statements" if is_statement else None
+    ahead = _words(line)[: _words(line).index(line.lead)] if line.lead else []
+    is_variable = "DECL" in ahead or line.lead == "CONST" or "type" in line.kinds[: len(ahead) + 1]
+    if not is_variable or line.lead in _DEFINING or behind == ("=",):
+        return None
+    if "GLOBAL" in ahead or line.lead == "CONST":
+        return "the variables of a routine are neither global nor constant"
+    return "only a data list gives initial values" if "=" in line.kinds else None
 
 
 def _block_word(line: SourceLine) -> str:

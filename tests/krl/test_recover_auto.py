@@ -10,6 +10,8 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from krl.cli import main
+from recovery.induction.comparison import compared
+from recovery.induction.corpus_lines import read_files
 from recovery.ledger.ledger import Ledger, in_force
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
@@ -51,7 +53,8 @@ def record(out: Path) -> dict[str, Any]:
 def out(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with a third of the origins held out."""
     folder = tmp_path_factory.mktemp("out")
-    assert auto(corpus, "--hold-out", "0.33", "--seed", "3", "--out", folder) == 0
+    options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR)
+    assert auto(corpus, *options, "--out", folder) == 0
     return folder
 
 
@@ -62,6 +65,31 @@ def test_both_halves_parse_in_the_end(out: Path) -> None:
         (last["shown"]["parsed"], last["shown"]["files"]),
         (last["held"]["parsed"], last["held"]["files"]),
     )
+
+
+def test_the_grown_grammar_is_compared_with_the_target(out: Path) -> None:
+    """Of the files that the target parses all are read, and most random sentences are its own."""
+    target = record(out)["target"]
+    assert ("KRL.g4", {"count": 8, "of": 8}, {"count": 4, "of": 4}) == (
+        target["name"],
+        target["shown"],
+        target["held"],
+    )
+    assert (1_000, 10_000) == (
+        target["sentences_rejected"]["of"],
+        target["negatives_accepted"]["of"],
+    )
+    grown = read_file(out / "grammar.g4")
+    assert record(out)["rules"] == sum(not rule.is_lexer for rule in grown.rules)
+    page = (out / "index.html").read_text("utf-8")
+    assert "of its random sentences KRL.g4 rejects" in page
+
+
+def test_what_the_target_rejects_is_counted(corpus: Path) -> None:
+    """Most sentences of a wider grammar are none of a narrow target, which reads no file here."""
+    found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), read_files([corpus]), ())
+    assert {"count": 0, "of": 0} == found["shown"]
+    assert 500 < found["sentences_rejected"]["count"] < 1_000
 
 
 def test_the_ledger_gives_the_grammar(out: Path) -> None:
@@ -81,7 +109,8 @@ def test_the_page_shows_steps(out: Path) -> None:
 
 def test_the_same_every_time(corpus: Path, out: Path, tmp_path: Path) -> None:
     """The same files and seed give the same record, times apart."""
-    assert auto(corpus, "--hold-out", "0.33", "--seed", "3", "--out", tmp_path) == 0
+    options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR)
+    assert auto(corpus, *options, "--out", tmp_path) == 0
     timed = {"seconds", "generated"}
     one, other = ({k: v for k, v in record(o).items() if k not in timed} for o in (out, tmp_path))
     assert one == other
@@ -130,6 +159,8 @@ def test_an_interrupted_run_keeps_what_was_done(
         (["--auto", "--hold-out", "1"], "--hold-out 1"),
         (["--auto", "--resume", "--out", "nowhere"], "nothing to go on from"),
         (["--resume"], "belong to --auto"),
+        (["--target", "KRL.g4"], "belong to --auto"),
+        (["--auto", "--target", "nowhere.g4"], "nowhere.g4"),
     ],
 )
 def test_wrong_usage(

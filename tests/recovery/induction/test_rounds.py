@@ -54,6 +54,21 @@ def test_unseen_lines(growth: Growth, text: str, accepted: bool) -> None:
     assert accepted == Recognizer(growth.grammar).accepts(text)
 
 
+def test_a_word_of_one_statement_is_no_operator(
+    toy: Grammar, toy_files: tuple[CorpusFile, ...]
+) -> None:
+    """Between operands a word of several kinds of line is an operator, that of one is its own."""
+    more = tuple(
+        CorpusFile(
+            f"{o}/more.toy", f"COUNT {o} UPTO 3\nMOVE {o} OVER 2\nY := {o} OVER 4\n", frozenset({o})
+        )
+        for o in ("A", "B", "C")
+    )
+    recognizer = Recognizer(_grown(toy, (*toy_files, *more)).grammar)
+    texts = ("COUNT D UPTO 4\n", "Y := 1 OVER D\n", "Y := 1 UPTO D\n")
+    assert [True, True, False] == [recognizer.accepts(text) for text in texts]
+
+
 def test_the_ledger_replays(growth: Growth) -> None:
     """The constructs, replayed on the start, give the grammar byte for byte."""
     assert growth.grammar.text == in_force(growth.start, growth.constructs).text

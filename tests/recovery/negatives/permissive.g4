@@ -12,22 +12,23 @@ routine
     : 'GLOBAL'? 'DEF' name '(' parameters? ')' eol line* 'END'
     | 'GLOBAL'? 'DEFFCT' type size? name '(' parameters? ')' eol line* 'ENDFCT'
     ;
-dataList : 'DEFDAT' name 'PUBLIC'? eol (declaration eol | external eol | assignment eol)* 'ENDDAT' ;
+dataList : 'DEFDAT' name 'PUBLIC'? eol ((data | definition | external | assignment) eol)* 'ENDDAT' ;
+data : 'DECL'? 'GLOBAL'? 'CONST'? type item (',' item)* ;
 eol : NEWLINE+ ;
 
 parameters : parameter (',' parameter)* ;
 parameter : name size? (':' ('IN' | 'OUT'))? ;
 
-line : (declaration | external | statement) eol ;
+line : (local | definition | external | statement) eol ;
+local : 'DECL'? type name size? (',' name size?)* ;
 external
     : ('EXT' | 'EXTP') name '(' formals? ')'
     | ('EXTFCT' | 'EXTFCTP') type size? name '(' formals? ')'
     ;
 formals : formal (',' formal)* ;
 formal : type? name size? (':' ('IN' | 'OUT'))? | type size? (':' ('IN' | 'OUT'))? ;
-declaration
-    : 'DECL'? 'GLOBAL'? 'CONST'? type item (',' item)*
-    | 'DECL'? 'GLOBAL'? 'ENUM' name constant (',' constant)*
+definition
+    : 'DECL'? 'GLOBAL'? 'ENUM' name constant (',' constant)*
     | 'DECL'? 'GLOBAL'? 'STRUC' name type word size? (',' type? word size?)*
     | 'DECL'? 'GLOBAL'? 'SIGNAL' name (path ('TO' path)? | 'FALSE')
     | 'CHANNEL' ':' name ':' name path

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from grammar.notation.g4 import read_file
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.fragments import fragment_pool
-from recovery.negatives.generate import generate
+from recovery.negatives.generate import evenly, generate
 from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import lines
@@ -104,6 +104,15 @@ a predefined type is no operand"""
 def test_every_row_of_the_table_gives_a_reason(negatives: tuple[Negative, ...]) -> None:
     """Each reason of the table of neighbours is the reason of some negative."""
     assert set() == set(adjacent().values()) - {negative.reason for negative in negatives}
+
+
+def test_reasons_are_drawn_evenly(negatives: tuple[Negative, ...]) -> None:
+    """Of each reason as many come as there are, up to a bound that is the same for all."""
+    every = Counter(n.reason for n in negatives)
+    drawn = Counter(n.reason for n in evenly(negatives, 1_000))
+    assert 1_000 == drawn.total()
+    most = max(drawn.values())
+    assert [] == [r for r in every if drawn[r] < min(every[r], most - 1)]
 
 
 @settings(max_examples=15, deadline=None)

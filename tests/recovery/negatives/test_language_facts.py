@@ -157,6 +157,36 @@ def test_broken_facts_are_named(body: str, line: int, fact: str) -> None:
     assert found.fact.startswith(fact)
 
 
+@pytest.mark.parametrize(
+    ("text", "fact"),
+    [
+        ("DEFDAT NEG\n HALT\nENDDAT\n", "a data list has no statements"),
+        ("DEFDAT NEG\n LIN P\nENDDAT\n", "a data list has no statements"),
+        ("DEFDAT NEG\n WORK()\nENDDAT\n", "a data list has no statements"),
+        ("DEFDAT NEG\n EXT WORK()\n SPTP=3\n CONTINUE=1\n INT I=3\nENDDAT\n", None),
+        ("DEF NEG()\n INT I=3\nEND\n", "only a data list gives initial values"),
+        ("DEF NEG()\n DECL E6POS P={X 1}\nEND\n", "only a data list gives initial values"),
+        (
+            "DEF NEG()\n DECL GLOBAL INT I\nEND\n",
+            "the variables of a routine are neither global nor constant",
+        ),
+        (
+            "DEF NEG()\n DECL CONST INT I=3\nEND\n",
+            "the variables of a routine are neither global nor constant",
+        ),
+        ("DEF NEG()\n GLOBAL INTERRUPT DECL 3 WHEN A DO B()\n DECL INT I\n I=3\nEND\n", None),
+        ("DEF NEG(7)\nEND\n", "a parameter is a name with its size and mode"),
+        ("DEF NEG(INT A)\nEND\n", "a parameter is a name with its size and mode"),
+        ("DEF NEG(A,)\nEND\n", "a parameter is a name with its size and mode"),
+        ("DEF NEG(A:IN,B[,]:OUT,C)\nEND\n", None),
+    ],
+)
+def test_routines_and_data_lists_differ(text: str, fact: str | None) -> None:
+    """Statements are of routines, initial values and constants of data lists."""
+    found = violation(text)
+    assert fact == (found and found.fact)
+
+
 def test_the_last_line_tells_that_a_block_is_open() -> None:
     """A program that ends too early breaks a fact."""
     found = violation("DEF A()\nX = 1\n")
