@@ -95,12 +95,13 @@ def _end_by_indent(source: Source, block: OpenBlock, end: int) -> int:
     indent = _indent(source, block.line)
     is_indented = False
     for number in range(block.line + 1, end):
-        text = source.line(number)
-        if not text.strip() or text.lstrip().startswith(";"):
-            continue
-        if _indent(source, number) > indent:
+        text = source.line(number).lstrip()
+        depth = _indent(source, number)
+        if text and depth > indent:
             is_indented = True
-        elif BRANCHES.get(lead(text)) != block.word:
+        elif not text or text[0] == ";":
+            continue
+        elif depth < indent or BRANCHES.get(lead(text)) != block.word:
             return number if is_indented else end
     return end
 

@@ -155,7 +155,11 @@ def _blocks(site: ErrorSite) -> _Mistake | None:
     if not openers or site.block is None:
         return None
     if site.block.word in openers:
-        return _Mistake(f"a second {word}") if word in ("ELSE", "DEFAULT") else None
+        if word not in ("ELSE", "DEFAULT"):
+            return None
+        line = site.failure.line
+        is_inside = most_likely(site.source, site.block, line + 1)[1] > line
+        return _Mistake(f"a second {word}") if is_inside else _not_closed(site, site.block)
     if innermost(site.block, openers) is not None:
         return _not_closed(site, site.block)
     if word in ("END", "ENDFCT", "ENDDAT"):

@@ -117,6 +117,11 @@ def test_a_slip_in_the_declaration(finds: Callable[..., list[Diagnostic]]) -> No
         ("$OUT[1] = TRUEE", "KRL101"),
         ("ER_RCLEAR($ERR)", "KRL102"),
         ("$OUT305[1] = TRUE", "KRL113"),
+        ("PTP $POS_AC", "KRL113"),
+        ("BOUT[1] = TRUE", "KRL101"),
+        ("FDAT_AC = FHOME", "KRL101"),
+        ("DECL IT N", "KRL103"),
+        ("FDAT_ACT.TOOL_N = 1", "KSS2125"),
     ],
 )
 def test_slips_of_words_of_the_language(
@@ -125,6 +130,13 @@ def test_slips_of_words_of_the_language(
     """What is one letter away from what every program has is that, though files are missing."""
     found = finds({"U.src": f"DEF U()\n{line}\nEND\n"}, is_complete=None)
     assert [("warning", code)] == [(one.severity, one.code) for one in found if one.code == code]
+
+
+def test_the_rarer_of_two_spellings_is_the_slip(finds: Callable[..., list[Diagnostic]]) -> None:
+    """Of two names that differ by a slip, and that no file at hand declares, one is used more."""
+    text = "DEF U()\nSTATION = 1\nSTAITON = 2\nSTATION = 3\nEND\n"
+    found = finds({"U.src": text}, is_complete=None)
+    assert [3] == [one.region.line for one in found if one.severity == "warning"]
 
 
 def test_slips_in_lists_of_the_controller(finds: Callable[..., list[Diagnostic]]) -> None:

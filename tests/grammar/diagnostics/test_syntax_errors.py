@@ -282,6 +282,9 @@ def test_lead(line: str, word: str) -> None:
         (["LOOP", "  SWITCH I", "    CASE 1", "      HALT", "ENDLOOP"], 4, 7),
         (["LOOP", "  LOOP", "    HALT", "  ENDLOOP", "  HALT"], 3, 8),
         (["IF A THEN", "HALT", "HALT"], 3, 6),
+        (["IF A THEN", "  ; nothing", "HALT", "HALT"], 3, 5),
+        (["IF A THEN", "  IF B THEN", "    HALT", "ELSE", "  HALT", "ENDIF"], 4, 6),
+        (["IF A THEN", "  IF B THEN", "    HALT", "  ELSE", "    HALT", "ELSE", "ENDIF"], 4, 8),
     ],
 )
 def test_block_by_indentation(lines: list[str], opener: int, place: int) -> None:

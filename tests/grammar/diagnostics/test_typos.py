@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grammar.diagnostics.typos import Typos
+from grammar.diagnostics.typos import Series, Typos
 
 WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
 
@@ -17,6 +17,7 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("robot_stoped", "robot_stopped"),
         ("COUNTT", "COUNT"),
         ("vrogabe", "Vorgabe"),
+        ("PARTSS_1", "PARTS_1"),
     ],
 )
 def test_slips(wrong: str, right: str) -> None:
@@ -41,6 +42,14 @@ def test_series_are_no_slips(one: str, other: str) -> None:
     """Numbers, letters that stand alone, prefixes and very short names are no slips."""
     assert () == Typos([other]).meant(one)
     assert () == Typos([one]).meant(other)
+
+
+@pytest.mark.parametrize("wrong", ["$POS_AC", "$POS_ACX", "$POSS_ACT", "?POS_ACT"])
+def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
+    """Where all of a series would be known, its letters may be slips and its digits not."""
+    known = Typos(["$POS_ACT", "$LOAD_A2"], series=Series.DIGITS)
+    assert ("$POS_ACT",) == known.meant(wrong)
+    assert () == known.meant("$LOAD_A3")
 
 
 @given(WORDS, st.data())
