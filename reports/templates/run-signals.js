@@ -92,9 +92,6 @@ function inTurn(u, x, list, word, y) {
   }
 }
 
-lineChart();
-signalChart();
-speedChart();
-axisCharts();
-byId("charts").hidden = !charts.length;
+if (end > 1) for (const draw of [lineChart, signalChart, speedChart, axisCharts]) draw();
 byId("no-charts").hidden = charts.length > 0;
+if (!charts.length) for (const part of [byId("charts"), byId("charts").previousElementSibling, byId("axis").parentElement]) part.hidden = true;
