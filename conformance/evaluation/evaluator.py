@@ -3,8 +3,8 @@
 Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
 settle it (a path without a robot, times that were not measured). `evaluate` adds what every case
 expects implicitly: that the front end reports no other error, that an output of which it expects a
-change changes only as it says, that the program ends, that no axis goes beyond its machine data,
-and that events stand in an order that is possible. A crash has failed whatever a case is about.
+change changes only as it says, that the program ends, that the path keeps limits and shapes, and
+that events stand in an order that is possible. A crash has failed whatever a case is about.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ from itertools import chain
 from typing import Literal
 
 from conformance.evaluation.observation import Finding, Observation
-from conformance.evaluation.path_expectations import evaluate_on_path, excesses
+from conformance.evaluation.path_expectations import evaluate_on_path
+from conformance.evaluation.path_laws import deviations
 from conformance.evaluation.run_laws import violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation
+from conformance.suite.registry import basis
 
 __all__ = ["Check", "evaluate", "evaluate_ending", "evaluate_run"]
 
@@ -55,7 +57,7 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
     ]
     ended = evaluate_ending(case.expectations, seen, case.main)
     every = chain(_unsaid_outputs(case, seen), ended) if is_run else _unsaid(case, seen)
-    always = chain(_unsaid_limits(case, seen), _unsaid_laws(case, seen))
+    always = chain(_unsaid_path(case, seen), _unsaid_laws(case, seen))
     return [
         *said,
         *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
@@ -63,16 +65,16 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
     ]
 
 
-def _unsaid_limits(case: Case, seen: Observation) -> Iterator[Check]:
-    """Set-points keep the limits of the axes, in every case and whatever it is about."""
+def _unsaid_path(case: Case, seen: Observation) -> Iterator[Check]:
+    """Set-points keep limits and shapes, in every case and whatever it is about."""
     if not seen.is_exact:  # a recording is measured, and of an arm that is not known here
         return
-    for one in excesses(seen):
+    for one in deviations(seen):
         moving = [each for each in seen.of_kind("motion_start") if (each.time or 0) <= one.time]
         file, line = (moving[-1].file, moving[-1].line) if moving else (case.main, 0)
-        text = "set-points keep the limits of the axes"
-        actual = f"{one.text} at {one.time / 1e6:.3f} s"
-        yield Check(file, line, text, "unmet", actual, basis=one.rule)
+        actual = f"{one.actual} at {one.time / 1e6:.3f} s"
+        is_sure = not one.rule or basis(one.rule).may_fail
+        yield Check(file, line, one.law, "unmet", actual, is_sure, one.rule)
 
 
 def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
     between,
+    change_rates,
     crosses_box,
     from_arc,
     from_circle,
@@ -32,7 +33,7 @@ from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 
-__all__ = ["Excess", "evaluate_on_path", "excesses"]
+__all__ = ["evaluate_on_path"]
 
 Array = npt.NDArray[np.float64]
 
@@ -42,8 +43,6 @@ _ANGLE: Final = 0.01
 _SPEED: Final = 0.01
 #: Differences of set-points overestimate what they approximate by so much at most.
 _MARGIN: Final = 1.02
-#: A path of fewer rows has no acceleration.
-_FEWEST: Final = 4
 #: How far a simulated arm may be off its path where a case does not say, in mm [design section 4].
 _TRACKING: Final = 0.5
 
@@ -267,11 +266,6 @@ def _continuous(poses: Array) -> Array:
 # ------------------------------------------------------------------------------------- speeds
 
 
-def _rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
-    """Differences of rows a second, shape (n - 1, columns)."""
-    return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
-
-
 def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     kept = part.within(part.start, part.end if part.join is None else part.join)
     if part.is_whole:
@@ -280,7 +274,7 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
         if part.leave is None or part.join is None:
             return "unmet", "there is no blend"
         kept = part.within(part.leave, part.join)
-    rates = _rates(part.path.times[kept], part.points[kept])
+    rates = change_rates(part.path.times[kept], part.points[kept])
     speeds = np.linalg.norm(rates, axis=1) / 1_000
     if not len(speeds):
         return "unmet", "there are too few samples"
@@ -301,7 +295,7 @@ def _fastest(one: Expectation, part: _Part) -> Evaluated:
     for rows in part.stretches():
         times = part.path.times[rows]
         if len(times) > 1:
-            speeds = np.linalg.norm(_rates(times, part.path.tips[rows]), axis=1) / 1_000
+            speeds = np.linalg.norm(change_rates(times, part.path.tips[rows]), axis=1) / 1_000
             if speeds.max() > fastest:
                 fastest, when = float(speeds.max()), int(times[int(np.argmax(speeds))])
     is_met = fastest <= wanted * (1 + _SPEED)
@@ -320,10 +314,10 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     kept = part.within(part.start, last)
     axes = seen.machine.axes
     dynamics = [axis.dynamics for axis in axes[:6]]
-    rates = _rates(part.path.times[kept], part.path.axes[kept][:, :6])
+    rates = change_rates(part.path.times[kept], part.path.axes[kept][:, :6])
     most = np.array([one.velocity if one else math.inf for one in dynamics])
     if one.kind == "smooth":
-        rates = _rates(part.path.times[kept][1:], rates)
+        rates = change_rates(part.path.times[kept][1:], rates)
         most = np.array([one.acceleration if one else math.inf for one in dynamics])
     if not len(rates):
         return "unmet", "there are too few samples"
@@ -331,52 +325,6 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     axis = int(np.argmax(worst))
     actual = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
     return ("met" if float(worst.max()) <= _MARGIN else "unmet"), actual
-
-
-@dataclass(frozen=True, slots=True)
-class Excess:
-    """Where a path is beyond the limits of an axis: when in µs, what is said, by which rule."""
-
-    time: int
-    text: str
-    rule: str
-
-
-def excesses(seen: Observation) -> Iterator[Excess]:
-    """What of a whole path is beyond the machine data of its axes: at most one of a kind.
-
-    Set-points keep the software limits [MOT-15], the highest speeds [MOT-06] and accelerations
-    [MOT-02] whatever a program does; nothing where machine data or path are not known.
-    """
-    path, machine = seen.path, seen.machine
-    if path is None or machine is None or len(path.times) < _FEWEST:
-        return
-    axes = (*machine.axes, *machine.externals)[: path.axes.shape[1]]
-    dynamics = [axis.dynamics for axis in axes]
-    speeds = _rates(path.times, path.axes)
-    rates = (
-        ("MOT-06", "speed", speeds, [one.velocity if one else math.inf for one in dynamics]),
-        (
-            "MOT-02",
-            "acceleration",
-            _rates(path.times[1:], speeds),
-            [one.acceleration if one else math.inf for one in dynamics],
-        ),
-    )
-    for rule, what, rows, most in rates:
-        share = np.abs(rows) / np.array(most)
-        row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
-        if not share[row, axis] <= _MARGIN:
-            text = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
-            yield Excess(int(path.times[row]), text, rule)
-    for column, one in enumerate(axes):
-        places = path.axes[:, column]
-        beyond = ~((places >= one.lower - _ANGLE) & (places <= one.upper + _ANGLE))
-        if beyond.any():
-            first = int(np.argmax(beyond))
-            text = f"{one.name} stands at {places[first]:.3f}"
-            yield Excess(int(path.times[first]), text, "MOT-15")
-            return
 
 
 def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 __all__ = [
     "between",
+    "change_rates",
     "circle_of",
     "crosses_box",
     "drawn",
@@ -121,6 +122,11 @@ def refined(
 ) -> Array:
     """Rows at so many times from one to another."""
     return between(times, rows, np.linspace(start, end, count))
+
+
+def change_rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
+    """Differences of rows a second, shape (n - 1, columns)."""
+    return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
 
 
 def drawn(kind: str, points: Array, count: int = 33) -> Array:

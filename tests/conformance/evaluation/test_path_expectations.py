@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_expectations import evaluate_on_path, excesses
+from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_geometry import circle_of, drawn, from_arc, from_circle, from_line
 from conformance.evaluation.trace_expectations import Marks
 from conformance.suite.expectations import read_expectation
@@ -169,20 +169,3 @@ def test_motion_that_never_was_meets_nothing() -> None:
     """A line without a motion has no path."""
     lost = Observation(path=seen(LINE).path, robot="kinematic")
     assert "unmet" == state("passes 0 0 0", lost)
-
-
-def _turned(turn: Any) -> list[str]:
-    """What is beyond limits where axis 1 turns so, in degrees by seconds."""
-    times = np.arange(101) * CYCLE / 1e6
-    axes = np.zeros((101, 6))
-    axes[:, 1:5] = (-90.0, 90.0, 0.0, 90.0)
-    axes[:, 0] = turn(times)
-    return [one.rule for one in excesses(seen(np.zeros((101, 3)), axes=axes))]
-
-
-def test_a_path_keeps_the_limits_of_the_axes() -> None:
-    """Axis 1 does 360 degrees a second, 1,200 a second squared, and 170 degrees either way."""
-    assert [] == _turned(lambda t: -np.cos(2 * t) * 80)
-    assert ["MOT-06"] == _turned(lambda t: -160 + 400 * t * (t < 0.8) + 320 * (t >= 0.8))[:1]
-    assert ["MOT-02"] == _turned(lambda t: 0.5 * (t > 0.5))
-    assert ["MOT-15"] == _turned(lambda t: 160 + 12 * np.sin(t))

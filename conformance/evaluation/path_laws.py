@@ -1,0 +1,139 @@
+"""What holds of every path of set-points: limits of the axes, and the shape of each motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.path_geometry import change_rates, from_circle, from_line
+from interp.robot.kinematics.placement import IpoMode
+from interp.robot.simulation.tracking import PathRecord
+
+__all__ = ["Deviation", "deviations"]
+
+Array = npt.NDArray[np.float64]
+
+#: Differences of set-points overestimate what they approximate by so much at most.
+_MARGIN: Final = 1.02
+#: Degrees or mm of an axis, and mm of the tool, that a path may be off.
+_ANGLE: Final = 0.01
+_NEAR: Final = 0.05
+#: A path of fewer rows has neither jerk nor shape.
+_FEWEST: Final = 5
+_LIMITS: Final = "set-points keep the limits of the axes"
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Where a path breaks a law: when in µs, the law, what is seen, by which rule of KRL if any."""
+
+    time: int
+    law: str
+    actual: str
+    rule: str = ""
+
+
+def deviations(seen: Observation) -> Iterator[Deviation]:
+    """What of a path is beyond the machine data, at most one of a kind, and which motions stray.
+
+    Nothing where there is no path; no limits where the machine data are not known.
+    """
+    path = seen.path
+    if path is not None and len(path.times) >= _FEWEST:
+        yield from _excesses(seen, path)
+        yield from _strays(seen, path)
+
+
+def _excesses(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
+    """Software limits [MOT-15], highest speeds [MOT-06], accelerations [MOT-02] and jerks."""
+    if seen.machine is None:
+        return
+    axes = (*seen.machine.axes, *seen.machine.externals)[: path.axes.shape[1]]
+    limits = [one.dynamics for one in axes]
+    rows = path.axes
+    for order, (rule, what) in enumerate(
+        (("MOT-06", "velocity"), ("MOT-02", "acceleration"), ("", "jerk"))
+    ):
+        rows = change_rates(path.times[order:], rows)
+        most = [getattr(one, what) if one else math.inf for one in limits]
+        share = np.abs(rows) / np.array(most)
+        row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
+        if not share[row, axis] <= _MARGIN:
+            actual = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
+            yield Deviation(int(path.times[row]), _LIMITS, actual, rule)
+    for column, one in enumerate(axes):
+        places = path.axes[:, column]
+        beyond = ~((places >= one.lower - _ANGLE) & (places <= one.upper + _ANGLE))
+        if beyond.any():
+            first = int(np.argmax(beyond))
+            actual = f"{one.name} stands at {places[first]:.3f}"
+            yield Deviation(int(path.times[first]), _LIMITS, actual, "MOT-15")
+            return
+
+
+def _strays(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
+    """Motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
+
+    With a fixed tool it is the base in the tool that has the shape [ORI-07].
+    """
+    if any(placement.mode is not IpoMode.BASE for _, placement in path.placements):
+        return
+    # Other frames, or a motion in between where an interrupt has left the path: another shape.
+    changes = [time for time, _ in path.placements]
+    changes += [one.time for one in seen.of_kind("motion_start") if one.time is not None]
+    for start, first, last in _own_parts(seen):
+        kept = (path.times >= first) & (path.times <= last)
+        if kept.sum() < _FEWEST or any(first < time < last for time in changes):
+            continue
+        points, axes = path.points[kept][:, :3], path.axes[kept]
+        match str(start.fields.get("motion_kind")).removesuffix("_REL"):
+            case "LIN" | "SLIN":
+                off = float(from_line(points, points[0], points[-1]).max())
+                law, most, rule = "the path of a LIN is a line", _NEAR, ""
+            case "CIRC" | "SCIRC":
+                off = _off_circle(points)
+                law, most, rule = "the path of a CIRC is a circle", _NEAR, ""
+            case "PTP" | "SPTP":
+                off = _off_synchronous(axes)
+                law, most, rule = "the axes of a PTP are synchronous", _ANGLE, "MOT-01.b"
+            case _:
+                continue
+        if not off <= most:
+            yield Deviation(start.time or 0, law, f"{off:.4f} off", rule)
+
+
+def _own_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
+    """The motions that came to their end: start, and from when to when they were in no blend."""
+    found: dict[tuple[str, object], Event] = {}
+    for one in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end"):
+        found.setdefault((one.kind, one.fields.get("motion")), one)
+    for (kind, number), start in found.items():
+        if kind == "motion_start" and ("motion_end", number) in found:
+            entered = found.get(("blend_end", number), start)
+            left = found.get(("blend_start", number), found["motion_end", number])
+            if entered.time is not None and left.time is not None:
+                yield start, entered.time, left.time
+
+
+def _off_circle(points: Array) -> float:
+    """How far points are from the circle through three of them; 0 where these make none."""
+    try:
+        return float(from_circle(points, points[0], points[len(points) // 2], points[-1]).max())
+    except ValueError:
+        return 0.0
+
+
+def _off_synchronous(axes: Array) -> float:
+    """How far axes are from having come the same share of their way."""
+    way = axes[-1] - axes[0]
+    longest = int(np.argmax(np.abs(way)))
+    if abs(way[longest]) < _ANGLE:
+        return 0.0
+    share = (axes[:, longest] - axes[0, longest]) / way[longest]
+    return float(np.abs(axes - axes[0] - share[:, None] * way).max())
