@@ -160,8 +160,7 @@ def run_program(
         machine = setup.machine
     elif setup.is_tolerant:
         sources = _own_sources(program)
-        starts = [program.start(prepared.routine)]
-        starts += [program.start(setup.submit)] if setup.submit else []
+        starts = program.starts(prepared.routine, setup.submit)
         used = [unit.source for unit in program.reached(*starts) if unit.module.folder != FOLDER]
         machine, note = arm_or_stand_in(sources, _machine_of(profile), used)
         is_other = bool(note) and machine_data_of(sources) is not None

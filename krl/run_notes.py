@@ -16,8 +16,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     """What stood in, which motions were skipped, and what a program that never ends waited for."""
     from interp.standins.completion import summary
 
-    starts = [program.start(name) for name in (setup.routine, setup.submit) if name is not None]
-    used = program.used_stand_ins(*(starts or [program.start()]))
+    used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
     if used:
         yield f"stood in: {summary(used)}"
     if done.machine_note and (used or not done.machine_note.startswith("no machine data")):

@@ -222,7 +222,7 @@ def run_main(
         return Ran("crash", seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     outcome = run.outcome
     program = main.prepared.program
-    starts = [program.start(name) for name in (main.routine, main.submit) if name is not None]
+    starts = program.starts(main.routine, main.submit)
     stood_in = tuple(one.name for one in program.used_stand_ins(*starts))
     if run.machine_note:
         stood_in = (*stood_in, run.machine_note)

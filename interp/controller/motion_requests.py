@@ -33,13 +33,7 @@ class MotionRequests:
         try:
             self._queue.plan(task, request)
         except Fault as error:
-            if not self._state.profile.is_tolerant:
-                raise
-            self.skipped.append((request.at, error))
-            self._state.messages.post(
-                task.name, request.at, error.number or 0, f"motion skipped: {error}", "notification"
-            )
-            return None
+            return self._skip(task, request.at, error)
         if is_first and self._state.profile.runs_coincidence:
             return self._coincide(task, request)
         advance = self._state.variables.read(("$ADVANCE",))
@@ -62,6 +56,15 @@ class MotionRequests:
 
         return Blocked(request, lambda: not self._queue.own_pending(task), reached)
 
-    def move_emily(self, _task: Task, _request: MoveEmily) -> Answer:
-        """Paths of an option package are not simulated. Raises `Fault`."""
-        raise own_fault("motion_kind")
+    def move_emily(self, task: Task, request: MoveEmily) -> Answer:
+        """Paths of an option package are not simulated. Raises `Fault`, or skips it."""
+        return self._skip(task, request.at, own_fault("motion_kind"))
+
+    def _skip(self, task: Task, at: At, error: Fault) -> Answer:
+        """Go on without a motion if the profile is tolerant; else raises its `Fault`."""
+        if not self._state.profile.is_tolerant:
+            raise error
+        self.skipped.append((at, error))
+        text = f"motion skipped: {error}"
+        self._state.messages.post(task.name, at, error.number or 0, text, "notification")
+        return None

@@ -24,7 +24,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
-from interp.standins.unreadable_lines import STOP, readable
+from interp.standins.unreadable_lines import readable
 from interp.values.faults import LinkError
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
@@ -63,10 +63,9 @@ class Unit:
         """What a name in this file means, if that is known."""
         return self.checked.resolution.found(name)
 
-    def undeclared(self, name: ast.Name) -> str:
+    @staticmethod
+    def undeclared(name: ast.Name) -> str:
         """What to say of a line with a name that nothing declares, when a run comes to it."""
-        if name.key == STOP:
-            return "this line cannot be read"
         return f"{name.text} is declared nowhere"
 
 
@@ -136,6 +135,10 @@ class CheckedProgram:
             has = "parameters" if found[0].node.parameters else "a structure or array as its result"
             raise LinkError(f"{found[0].name} has {has}, so a program cannot begin with it")
         return found[0]
+
+    def starts(self, routine: str | None, submit: str | None = None) -> list[Routine]:
+        """The routines that a run begins with; raises `LinkError` as `start` does."""
+        return [self.start(routine), *([self.start(submit)] if submit else [])]
 
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
         """The stand-ins that files reached from some routines use, in their order."""

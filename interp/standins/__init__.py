@@ -3,7 +3,7 @@
 ==================== ===============================================================================
 module               what it is
 ==================== ===============================================================================
-`unreadable_lines`   a file with syntax errors, as a program that runs until it comes to one
+`unreadable_lines`   a file with syntax errors, as a program without the lines that are wrong
 `library`            routines and data that controllers and packages bring along, written by us
 `unset_data`         values for data that is declared, read and never set
 `uses`               what the uses of an undeclared name tell of its type

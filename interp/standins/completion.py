@@ -27,7 +27,7 @@ from grammar.syntax.walk import walk
 from interp.robot.models.stand_in import Places
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
-from interp.standins.unreadable_lines import STOP
+from interp.standins.unreadable_lines import UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
 from interp.standins.uses import FOLDER, DataUse, Uses
 
@@ -45,11 +45,13 @@ _ORIGINS: Final = {
     "place": "at a place that the arm reaches",
     "default": "with the controller's default",
     "unset": "with a value that nothing in the project sets",
+    "unreadable": "in place of lines that cannot be read, which are left out,",
 }
 #: Where a stand-in comes from: our own version of it, the signature that its option package has,
 #: that which its uses tell, also of points, which get places of their own, or the controller's
-#: default for data that $config.dat would declare; ``unset`` is declared and has no value.
-Origin = Literal["library", "package", "signature", "place", "default", "unset"]
+#: default for data that $config.dat would declare; ``unset`` is declared and has no value,
+#: ``unreadable`` a line that cannot be read.
+Origin = Literal["library", "package", "signature", "place", "default", "unset", "unreadable"]
 _Kind = Literal["routine", "variable", "type"]
 _Places = dict[str, tuple[Module, ast.Name]]
 
@@ -101,7 +103,7 @@ class _Wanted:
         is_wanting = False
         for use in resolution.open_uses:
             wanted = names.get(use.space) if use.space is not None else None
-            if wanted is not None and use.name.key != STOP:
+            if wanted is not None:
                 wanted.setdefault(use.name.key, (module, use.name))
                 is_wanting = True
         for name, answer in resolution.answers.items():
@@ -116,6 +118,9 @@ class _Wanted:
                 )
             elif answer.symbol.kind is Kind.ROUTINE and answer.symbol.given == UNKNOWN:
                 self.routines.setdefault(name.key, (module, name))
+                is_wanting = True
+            elif answer.symbol.kind is Kind.VARIABLE and project.types.of(answer) == UNKNOWN:
+                self.data.setdefault(name.key, (module, name))
                 is_wanting = True
         if is_wanting:
             self.modules.append(module)
@@ -194,6 +199,8 @@ def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ..
             origin: Origin = "library" if key in known else "signature"
             if origin == "signature" and kind == "routine" and key in load_packages().routines:
                 origin = "package"
+            if key == UNREADABLE:
+                origin = "unreadable"
             found.append(_stand_in(name, kind, origin, module, sources))
     for module, name in wanted.defaults.values():
         found.append(_stand_in(name, "variable", "default", module, sources))

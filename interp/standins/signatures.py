@@ -109,8 +109,6 @@ class Signatures:
         sizes = self._sizes(use, is_text=kind.is_text)
         lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
         is_placed = name in self.placed
-        if use.is_assigned and not is_placed:  # by the program, before it reads them
-            return lines
         type_ = self._find_type(kind.name)
         counted = sizes[:-1] if kind.is_text else sizes
         elements = product(*(range(1, size + 1) for size in counted))
@@ -156,7 +154,7 @@ class Signatures:
         return self._number(use) if numbers else None
 
     def _number(self, use: DataUse) -> _Kind:
-        begins_at_0 = use.is_assigned and not use.is_index
+        begins_at_0 = use.is_assigned and not (use.is_index or use.is_part or use.indices)
         value = "0" if begins_at_0 else use.asked_for or "1"
         return _Kind("REAL", f"{value}.0") if REAL in use.types else _Kind("INT", value)
 
@@ -189,7 +187,7 @@ class Signatures:
         """Declare a structure with the members that are used; its value."""
         members, values = [], []
         for member, inner in use.members.items():
-            kind = self._kind(f"{name}_{member}", inner) or _Kind("INT", "0")
+            kind = self._kind(f"{name}_{member}", inner) or self._number(inner)
             sizes = f"[{_TEXT_LENGTH}]" if kind.is_text else ""
             if inner.indices and not kind.is_text:
                 sizes = f"[{','.join(map(str, self._sizes(inner, is_text=False)))}]"

@@ -1,9 +1,9 @@
-"""A file with syntax errors, as a program that runs until it comes to one of them.
+"""A file with syntax errors, as a program without the lines that cannot be read.
 
 A controller selects no such program. Offline most of it can be run all the same: a statement that
-cannot be read becomes a call of `STOP`, a routine that no file has, so that the program ends there
-with file and line (`interp.program.load.Unit.undeclared` has the words). A declaration that cannot
-be read is left out: stand-ins take its place.
+cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
+in that does nothing, so that the trace tells when the line was passed. A declaration that cannot be
+read is left out: stand-ins take its place.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 
-__all__ = ["STOP", "Readable", "readable"]
+__all__ = ["UNREADABLE", "Readable", "readable"]
 
 #: What is called in place of a statement that cannot be read: a name that nobody gives.
-STOP: Final = "UNREADABLE__LINE"
+UNREADABLE: Final = "UNREADABLE__LINE"
 _DECLARES: Final = frozenset(
     "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "
     "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
@@ -50,9 +50,8 @@ def readable(source: Source) -> Readable | None:
         return None
     lines = list(Source(found.text).lines)
     if isinstance(found.syntax.content, ast.Program):
-        _put_stops(
-            lines, [one for one in sorted(found.left_out) if not lines[one - 1].strip()], source
-        )
+        left_out = [one for one in sorted(found.left_out) if not lines[one - 1].strip()]
+        _put_calls(lines, left_out, source)
     text = "\n".join(lines)
     syntax = read_module(text, source.path)
     assert isinstance(syntax, ast.Module), "what was recovered can be read"
@@ -64,20 +63,20 @@ def readable(source: Source) -> Readable | None:
     return Readable(Source(text, source.path), syntax, reasons)
 
 
-def _put_stops(lines: list[str], left_out: Sequence[int], written: Source) -> None:
-    """Call `STOP` where a statement was left out, as far as a call can stand there."""
-    stops = {
-        number: f"{STOP}() ;{written.line(number)}"
+def _put_calls(lines: list[str], left_out: Sequence[int], written: Source) -> None:
+    """Call `UNREADABLE` where a statement was left out, as far as a call can stand there."""
+    calls = {
+        number: f"{UNREADABLE}() ;{written.line(number)}"
         for number in left_out
         if _first_word(written.line(number)) not in _DECLARES
     }
     bare = list(lines)
-    for number, text in stops.items():
+    for number, text in calls.items():
         lines[number - 1] = text
     if _is_readable(lines):
         return
     lines[:] = bare
-    for number, text in list(stops.items())[:_MOST]:
+    for number, text in list(calls.items())[:_MOST]:
         lines[number - 1] = text
         if not _is_readable(lines):  # between SWITCH and CASE, for instance
             lines[number - 1] = bare[number - 1]

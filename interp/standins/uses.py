@@ -51,8 +51,8 @@ class DataUse:
     ``types`` are those that it was met with, in the order of the text; ``indices`` is the most
     indices at once, 0 where there is none, and ``largest`` the largest number in each place.
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
-    kinds of motions that go to it. ``is_index``: an array has
-    it as an index. ``asked_for`` is the first number that a SWITCH or a comparison asks for.
+    kinds of motions that go to it. ``is_index``: an array has it as an index; ``is_part``: it is a
+    member. ``asked_for`` is the first number that a SWITCH or a comparison asks for.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -66,11 +66,12 @@ class DataUse:
     is_waited_for: bool = False
     is_left_by_false: bool = False
     is_index: bool = False
+    is_part: bool = False
     asked_for: str = ""
 
     def member(self, name: ast.Name) -> DataUse:
         """How a member of it is used."""
-        return self.members.setdefault(name.key, DataUse())
+        return self.members.setdefault(name.key, DataUse(is_part=True))
 
     @property
     def is_told(self) -> bool:

@@ -71,9 +71,9 @@ def run(
 
     The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
     its end or to a HALT, 1 after a fault, where its time or budget was used up, where a motion was
-    skipped, where the arm touched something or could not bear a torque. What the project lacks,
-    a routine behind an inline form for instance, stands in and is listed; motions that cannot
-    be planned for want of it are skipped.
+    skipped or a line cannot be read, where the arm touched something or could not bear a torque.
+    What the project lacks, a routine behind an inline form for instance, stands in and is listed;
+    motions that cannot be planned for want of it are skipped.
     """
     with expected_errors():
         _check_targets(trace, path, html, video, options.robot)
@@ -97,6 +97,8 @@ def run(
         typer.echo(one_line(f"page: {html}"))
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped_motions
     is_fine &= all(seen.is_estimate for seen in done.observations)
+    used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
+    is_fine &= all(one.origin != "unreadable" for one in used)
     return FINE if is_fine else FINDINGS
 
 

@@ -21,6 +21,7 @@ from interp.executors import Prepared, available
 from interp.program.load import CheckedProgram, load
 from interp.robot.simulation.scene import SceneError, read_scene
 from interp.session import RunResult, RunSetup, run_program
+from interp.standins.unreadable_lines import UNREADABLE
 from interp.testing.coverage import Coverage, CoverageRecord
 from interp.testing.drivers import VALUES, Driver, DriverError, with_drivers
 from interp.values.faults import LinkError
@@ -216,6 +217,9 @@ def _failures(
     for at, reason in done.controller.skipped_motions:
         place = f"{at.file}:{at.line}: {reason}"
         yield from _told(test, test.line, "all motions can be planned", place)
+    for event in done.events:
+        if event.kind == "call" and event.fields["name"] == UNREADABLE:
+            yield from _told(test, test.line, "all lines can be read", event.place or "")
     for touched in done.observations:
         if not touched.is_estimate:
             yield from _told(test, test.line, "nothing is touched", str(touched))

@@ -335,3 +335,29 @@ def test_modules_that_lack_their_data_lists_share_what_agrees() -> None:
         "other.src": "DEF other ( )\nIF PARTS==7 THEN\nPARTS=9\nENDIF\nEND\n",
     }
     assert (("end", ""), ["PTP"]) == _moves_and_ends(files)
+
+
+def test_arrays_that_the_project_fills_elsewhere() -> None:
+    """The elements of an array that stands in have values, though another program sets them.
+
+    They are 1, as numbers in structures are: each may be an index.
+    """
+    files = {
+        "main.src": f"DEF main ( )\nN=TABLE[2,PART[1].LAYER]\nLAST=OTHER[N]\n{HOME}END\n",
+        "init.src": "DEF init ( )\nTABLE[1,1]=4\nPART[1].LAYER=X.LAYER\nOTHER[1]=2\nEND\n",
+    }
+    assert (("end", ""), ["PTP"]) == _moves_and_ends(files)
+
+
+def test_system_variables_of_options() -> None:
+    """A system variable whose type no table has gets one from its uses."""
+    program = _main(f"IF $FRISTATE==#FRIOFF THEN\n{HOME}ENDIF\n")
+    assert [("$FRISTATE", "variable", "signature")] == _names(program)
+    assert (("end", ""), ["PTP"]) == (_outcome(_run(program)), _planned(_run(program)))
+
+
+def test_paths_of_an_option_are_skipped() -> None:
+    """A path that only an option package could follow counts as a motion that was skipped."""
+    run = _run(_main(f'{HOME}MOVE_EMI DEVICE[] "path.emily" FLT 0\nPTP {{A1 5}}\n'))
+    assert (("end", ""), ["PTP", "PTP"]) == (_outcome(run), _planned(run))
+    assert [3] == [at.line for at, _ in run.controller.skipped_motions]

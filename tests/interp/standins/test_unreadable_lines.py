@@ -1,10 +1,11 @@
-"""Files with syntax errors run until they come to one, and not under strict rules."""
+"""Files with syntax errors run without the wrong lines, and not under strict rules."""
 
 import pytest
 
 from grammar.syntax.source import Source
 from interp.program.load import load
 from interp.session import EXECUTORS, RunSetup, run_program
+from interp.standins.unreadable_lines import UNREADABLE
 from interp.values.faults import LinkError
 
 TEXT = """DEF main ( )
@@ -23,17 +24,17 @@ END
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
-def test_stops_where_it_cannot_be_read(executor: str) -> None:
-    """What comes before the broken statement is executed whole; one not reached does not count.
-
-    All executors tell the same of it.
-    """
+def test_goes_on_behind_what_cannot_be_read(executor: str) -> None:
+    """A broken statement does nothing, and the trace tells that its line was passed."""
     program = load([Source(TEXT, "main.src")], "main.src", strict=False, stands_in=True)
     run = run_program(program, RunSetup(executor=executor, is_tolerant=True))
     ends = [event for event in run.events if event.kind == "motion_end"]
-    assert run.outcome.at is not None
-    assert (2, "fault", 9) == (len(ends), run.outcome.ending, run.outcome.at.line)
-    assert "this line cannot be read" == str(run.outcome.error)
+    calls = [event for event in run.events if event.kind == "call"]
+    passed = [event.place for event in calls if event.fields["name"] == UNREADABLE]
+    used = program.used_stand_ins(program.start())
+    assert (3, "end") == (len(ends), run.outcome.ending)
+    assert ["main.src:9", "main.src:11"] == passed
+    assert [("unreadable", 6)] == [(one.origin, one.line) for one in used]
 
 
 def test_every_broken_line_is_told() -> None:
