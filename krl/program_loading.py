@@ -1,9 +1,9 @@
 """The program that a file on the command line means: with all files of its project."""
 
 import os
-from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path, PurePath, PurePosixPath
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from krl.errors import InputError
 
@@ -19,6 +19,9 @@ _PARTS = frozenset({"R1", "STEU"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})
 _MOST_FILES = 20_000
 _MOST_SHOWN = 5
+
+_P = TypeVar("_P", bound=PurePath)
+_Looked_contra = TypeVar("_Looked_contra", bound=PurePath, contravariant=True)
 
 
 def load_program(
@@ -67,7 +70,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     """
     from grammar.syntax.source import Source
     from support.files.decode import decode
-    from support.files.discovery import Found, IngestError, Skipped, discover, read
+    from support.files.discovery import Found, IngestError, Skipped, discover, printable, read
 
     archive, inner = _in_archive(file)
     if archive is None and not file.is_file() and not file.is_dir():
@@ -81,9 +84,15 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         raise InputError(str(error)) from error
     if archive is None:
         found = [one for one in found if one.member is None]
-    asked = next((one for one in found if _is_asked_for(one, file, inner)), None)
+    paths = {one: PurePosixPath(_shown(one, root)) for one in found}
+    wanted = PurePosixPath(printable(inner or file.resolve().relative_to(root).as_posix()))
+    asked = next((one for one, path in paths.items() if path == wanted), None)
     if asked is None:
         raise InputError(f"{file}: no KRL program")
+    if archive is not None:
+        inside = _root_around(paths[asked].parent, _Listing(paths.values()))
+        root = archive / inside
+        found = [one for one, path in paths.items() if path.is_relative_to(inside)]
     main = _shown(asked, root)
     found = _of_one_project(found, root, main)
     if len(found) > _MOST_FILES:
@@ -160,12 +169,6 @@ def _in_archive(file: Path) -> tuple[Path | None, str]:
     return None, ""
 
 
-def _is_asked_for(found: "Found", file: Path, inner: str) -> bool:
-    if found.member is not None:
-        return bool(inner) and found.path.endswith("/" + inner)
-    return not inner and found.file.resolve() == file.resolve()
-
-
 def project_root(path: Path) -> Path:
     """The folder that holds the project of a file or folder, from wherever one enters it.
 
@@ -173,19 +176,31 @@ def project_root(path: Path) -> Path:
     without such a layout around it is a project itself; the files of one that lies in a folder with
     KRL of its own, Program for instance, belong to that.
     """
+    path = path.resolve()
+    return _root_around(path if path.is_dir() else path.parent, _Disk())
+
+
+class _Folders(Protocol[_Looked_contra]):
+    """What lies in folders, on disk or in an archive."""
+
+    def folders_in(self, folder: _Looked_contra) -> list[str]: ...
+
+    def has_krl(self, folder: _Looked_contra) -> bool: ...
+
+
+def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
     from support.files.discovery import is_drive
 
-    path = path.resolve()
-    folder = path if path.is_dir() else path.parent
     for one in (folder, *folder.parents):
         if one.name.upper() in _PARTS:
             return one.parent
-        names = _folders_in(one)
+        names = folders.folders_in(one)
         if is_drive(names):
-            return one.parent if "STEU" in map(str.upper, _folders_in(one.parent)) else one
+            beside = map(str.upper, folders.folders_in(one.parent))
+            return one.parent if "STEU" in beside else one
         if _PARTS & set(map(str.upper, names)) and one.name.upper() == "KRC":
             return one
-    while _has_krl(folder.parent):
+    while folder != folder.parent and folders.has_krl(folder.parent):
         folder = folder.parent
     return folder
 
@@ -201,7 +216,7 @@ def project_paths(path: Path) -> list[Path]:
     if archive is not None or not path.exists():
         return [archive or path]
     root = project_root(path)
-    names = _folders_in(root)
+    names = _Disk().folders_in(root)
     if is_drive(names) or not _PARTS.isdisjoint(map(str.upper, names)):
         return [_as_given(root, path)]
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
@@ -216,15 +231,36 @@ def _as_given(root: Path, path: Path) -> Path:
     return Path(os.path.relpath(root))
 
 
-def _folders_in(folder: Path) -> list[str]:
-    try:
-        return [one.name for one in folder.iterdir() if one.is_dir()]
-    except OSError:
-        return []
+class _Disk:
+    """Folders on disk; one that cannot be looked into holds nothing."""
+
+    def folders_in(self, folder: Path) -> list[str]:
+        try:
+            return [one.name for one in folder.iterdir() if one.is_dir()]
+        except OSError:
+            return []
+
+    def has_krl(self, folder: Path) -> bool:
+        try:
+            return any(one.suffix.lower() in _ENDINGS for one in folder.iterdir())
+        except OSError:
+            return False
 
 
-def _has_krl(folder: Path) -> bool:
-    try:
-        return any(one.suffix.lower() in _ENDINGS for one in folder.iterdir())
-    except OSError:
-        return False
+class _Listing:
+    """Folders as the paths of the KRL files in an archive have them."""
+
+    def __init__(self, files: Iterable[PurePosixPath]) -> None:
+        self._with_krl: set[PurePosixPath] = set()
+        self._folders: dict[PurePosixPath, dict[str, None]] = {}
+        for file in files:
+            self._with_krl.add(file.parent)
+            for folder in file.parents:
+                if folder.name:
+                    self._folders.setdefault(folder.parent, {})[folder.name] = None
+
+    def folders_in(self, folder: PurePosixPath) -> list[str]:
+        return list(self._folders.get(folder, ()))
+
+    def has_krl(self, folder: PurePosixPath) -> bool:
+        return folder in self._with_krl

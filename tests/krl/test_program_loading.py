@@ -86,7 +86,23 @@ def test_archive(tmp_path: Path) -> None:
         for path, text in FILES.items():
             archive.writestr(f"KRC/{path}", text)
     files = _files(tmp_path / "cell.zip" / "KRC" / "R1" / "Program" / "main.src")
-    assert [f"KRC/{path}" for path in sorted(FILES)] == files
+    assert sorted(FILES) == files
+
+
+@pytest.mark.parametrize("name", ["copies/a/job", "copies/a/parts/part", "job", "copies/b/job"])
+def test_archive_without_a_controller(tmp_path: Path, name: str) -> None:
+    """Copies side by side in an archive are as little one project as in the folder."""
+    folder = tmp_path / "cell"
+    for copy in ("copies/a", "copies/b", "."):
+        for part in ("job", "parts/part"):
+            file = folder / copy / f"{part}.src"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(f"DEF {file.stem}()\nEND\n", "utf-8")
+    with ZipFile(tmp_path / "cell.zip", "w") as archive:
+        for file in folder.rglob("*.src"):
+            archive.write(file, file.relative_to(folder).as_posix())
+    path = f"{name}.src"
+    assert _files(folder / path) == _files(tmp_path / "cell.zip" / path)
 
 
 def test_unreadable_file_is_left_out(tmp_path: Path) -> None:
