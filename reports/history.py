@@ -25,6 +25,10 @@ _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
 _MOST_TOLD = 40
+#: A year of runs is kept; what single cases and clusters were, of the last ones only.
+_MOST_RUNS = 366
+_IN_FULL = 7
+_LONG = {"recover": "clusters", "conform": "cases"}
 #: What a bench says of itself that is no result: how much it did, and with what.
 _SIZES = frozenset(
     "aim bytes cases cycle_us failures files held_out inverse_poses killed motions mutants parsed"
@@ -44,12 +48,33 @@ def read_history(file: Path) -> list[Json]:
 def append_run(file: Path, run: Mapping[str, Any]) -> None:
     """Write the history anew with one more line, whole or not at all.
 
-    A run of the same date, which was broken off or repeated, gives way to it. Raises OSError.
+    A run of the same date, which was broken off or repeated, gives way to it. Of older runs the
+    figures are kept, for a year. Raises OSError.
     """
     before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, run)]
-    kept.append(json.dumps(run, ensure_ascii=False, separators=(",", ":"), allow_nan=False))
+    kept = [*_shortened(kept[1 - _MOST_RUNS :]), _line(run)]
     write_atomic(file, "\n".join(kept) + "\n")
+
+
+def _shortened(lines: Sequence[str]) -> list[str]:
+    """Lines of which the last few that have them say what single cases and clusters were."""
+    seen = dict.fromkeys(_LONG, 1)  # the line that is added is one
+    kept = []
+    for line in reversed(lines):
+        run = _run(line)
+        for name, part in _LONG.items():
+            if run and isinstance(section := run.get(name), dict) and part in section:
+                seen[name] += 1
+                if seen[name] > _IN_FULL:
+                    del section[part]
+                    line = _line(run)  # noqa: PLW2901
+        kept.append(line)
+    return kept[::-1]
+
+
+def _line(run: Mapping[str, Any]) -> str:
+    return json.dumps(run, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
 
 def known_before(runs: Sequence[Json]) -> Json | None:

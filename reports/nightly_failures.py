@@ -11,8 +11,10 @@ from urllib.parse import urlencode
 from reports.record_fields import Record, nested, records, text
 from reports.sanitizing import shown
 
-__all__ = ["Failure", "failures"]
+__all__ = ["OWN", "Failure", "failed_cases", "failures"]
 
+#: How a failure of the nightly run itself, and not of what it runs, begins.
+OWN = "the nightly run "
 _FINE = ("ok", "findings")
 #: The steps that run cases; their pages lie in folders of the same names.
 _CONFORM = ("conform", "conform-arm")
@@ -37,7 +39,12 @@ def failures(
     """
     return [
         *_steps(steps),
-        *(one for name in _CONFORM if name in made for one in _cases(name, made[name])),
+        *(
+            one
+            for name in _CONFORM
+            if name in made
+            for one in _cases(name, made[name], made.get(f"{name}-again", {}))
+        ),
         *_no_longer_passing(made.get("conform", {}), before or {}),
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
@@ -51,14 +58,24 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
             yield Failure(what=f"step {name}: {status}", page="", command="")
 
 
-def _cases(step: str, record: Record) -> Iterator[Failure]:
-    for case in records(record, "cases"):
-        failed = [one for one in records(case, "results") if text(one, "verdict") == "fail"]
-        if not failed:
-            continue
+def _cases(step: str, record: Record, again: Record) -> Iterator[Failure]:
+    repeated = {text(case, "name"): case for case in records(again, "cases")}
+    for case in failed_cases(record):
+        failed = _failed(case)
         where = ", ".join(f"{text(one, 'executor')}/{text(one, 'robot')}" for one in failed)
         reason = shown(text(failed[0], "reason"), _LONGEST)
-        yield _of_case(step, case, f"failed on {where}: {reason}", failed[0])
+        second = repeated.get(text(case, "name"))
+        flaky = " and not when repeated (flaky)" if second and not _failed(second) else ""
+        yield _of_case(step, case, f"failed on {where}{flaky}: {reason}", failed[0])
+
+
+def failed_cases(record: Record) -> list[Record]:
+    """The cases of a conformance record that fail on any executor and robot."""
+    return [case for case in records(record, "cases") if _failed(case)]
+
+
+def _failed(case: Record) -> list[Record]:
+    return [one for one in records(case, "results") if text(one, "verdict") == "fail"]
 
 
 def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:

@@ -5,16 +5,21 @@ import re
 import shutil
 import sys
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import write_json
+
+if TYPE_CHECKING:
+    from reports.nightly_failures import Failure
 
 __all__ = ["nightly"]
 
@@ -25,6 +30,8 @@ _PROGRAMS = 12_000
 #: What moves the cursor and colours text on a terminal.
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _TAIL = 4_000
+#: So many cases that failed are repeated.
+_MOST_AGAIN = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +72,10 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
     A run that was broken off goes on where it was: steps whose record is there are not done again.
-    On a terminal each step shows how far it is. Exit status 1 where a step failed, a case failed or
-    no longer passes, a law was broken, or executors diverge.
+    Steps and cases that fail are tried once more. DIR/DATE/summary.md tells it all for an issue or
+    a mail. On a terminal each step shows how far it is. Exit status 1 where a step failed, a case
+    failed or no longer passes, a law was broken, or executors diverge.
     """
-    from reports.claims_page import write_claims_page
-    from reports.history import append_run, changes, known_before, nightly_record, read_history
-    from reports.nightly_failures import failures
-    from reports.nightly_page import write_nightly_page
-
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
         raise InputError(f"--date: {name!r} is not fit for the name of a folder")
@@ -83,18 +86,38 @@ def nightly(
         raise InputError(f"there is no step {', '.join(only or ())}")
     made: dict[str, Any] = {}
     went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
-    for step, how, seconds in _performed(steps, folder, minutes, memory * 1_000_000):
-        before = went.pop(step.name, None)
-        if seconds or not isinstance(before, dict) or "failed" in how:
-            before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
-        went[step.name] = before
-        write_json(went, folder / "steps.json")
-        record = _record(folder, step.name)
-        if record is not None:
-            made[step.name] = record
+    try:
+        for step, how, seconds in _performed(steps, made, folder, minutes, memory * 1_000_000):
+            before = went.pop(step.name, None)
+            if seconds or not isinstance(before, dict) or "failed" in how:
+                before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
+            went[step.name] = before
+            write_json(went, folder / "steps.json")
+            record = _record(folder, step.name)
+            if record is not None:
+                made[step.name] = record
+        failed = _reported(made, went, folder, history)
+    except Exception as error:
+        _tell_of_own(f"failed: {type(error).__name__}: {error}", went, folder)
+        raise
+    return FINDINGS if failed else FINE
+
+
+def _reported(
+    made: dict[str, Any], went: dict[str, dict[str, Any]], folder: Path, history: Path
+) -> "list[Failure]":
+    """Write history, record, pages and summary of a run, say what is new; gives what failed."""
+    from reports.claims_page import write_claims_page
+    from reports.history import append_run, changes, known_before, nightly_record, read_history
+    from reports.nightly_failures import failures
+    from reports.nightly_page import write_nightly_page
+    from reports.nightly_summary import nightly_summary
+    from support.files.atomic_write import write_atomic
+
+    out, name = folder.parent, folder.name
     runs = [one for one in read_history(history) if one.get("date") != name]
     last = known_before(runs)
-    failed = failures(made, went, last)
+    failed = [*_broken_off(folder), *failures(made, went, last)]
     run = {**nightly_record(name, made, went), "failures": failed}
     compared = "" if last is None else str(last["of"].get("conform", ""))
     before = _record(out / compared, "conform") if compared else None
@@ -105,12 +128,37 @@ def nightly(
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
     run = {**run, "steps": {**run["steps"], **pages}}
     page = write_nightly_page({**run, "changes": told, "history": [*runs, run]}, folder)
+    write_atomic(folder / "summary.md", nightly_summary({**run, "changes": told}))
     for one in failed:
         typer.echo(one_line(f"failed: {one['what']}"))
     for line in told or ["nothing changed since the last night"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
-    return FINDINGS if failed else FINE
+    return failed
+
+
+def _broken_off(folder: Path) -> "Iterator[Failure]":
+    """The run before this one, where it did not come to its end."""
+    from reports.nightly_failures import OWN, Failure
+
+    earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
+    if earlier and not (last := max(earlier)).joinpath("night.json").exists():
+        yield Failure(what=f"{OWN}of {last.name} broke off", page="", command="")
+
+
+def _tell_of_own(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:
+    """Let a run that cannot tell its results be red all the same, wherever one looks."""
+    from reports.nightly_failures import OWN, Failure
+    from reports.nightly_page import write_nightly_page
+    from reports.nightly_summary import nightly_summary
+    from support.files.atomic_write import write_atomic
+
+    own = Failure(what=OWN + what, page="", command="")
+    run = {"date": folder.name, "steps": went, "failures": [own]}
+    with suppress(Exception):  # what is wrong may be wrong here too, and is raised in any case
+        write_atomic(folder / "summary.md", nightly_summary(run))
+        write_json(run, folder / "night.json")
+        write_nightly_page(run, folder)
 
 
 def _is_in(step: _Step, only: list[str] | None) -> bool:
@@ -148,34 +196,62 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     )
 
 
+def _again(step: _Step, made: Mapping[str, Any]) -> Iterator[_Step]:
+    """What repeats the cases that failed in a step, which tells flaky ones from the others."""
+    from reports.nightly_failures import failed_cases
+    from reports.record_fields import text
+
+    if step.name in ("conform", "conform-arm") and step.name in made:
+        names = [text(case, "name") for case in failed_cases(made[step.name])][:_MOST_AGAIN]
+        options = (
+            step.arguments[step.arguments.index("--executor") : -2] if "arm" in step.name else ()
+        )
+        if names:
+            yield _Step(f"{step.name}-again", ("conform", *names, *options), 0.05)
+
+
 def _performed(
-    steps: list[_Step], folder: Path, minutes: float, memory: int
+    planned: list[_Step], made: Mapping[str, Any], folder: Path, minutes: float, memory: int
 ) -> Iterator[tuple[_Step, str, float]]:
     """Each step with how it went: ok, findings, failed with its last line, or cut off.
 
-    A step that is done already took no time.
+    A step that is done already took no time; one that failed is tried once more, and is flaky where
+    it does not fail then. ``made`` has the records of the steps that were given before.
     """
     begun = time.monotonic()
-    for number, step in enumerate(steps, 1):
+    steps = deque(planned)
+    while steps:
+        step = steps.popleft()
         began = time.monotonic()
         target = folder / f"{step.name}.json"
         if target.is_file():
             is_whole = _record(folder, step.name) is not None
             yield step, "ok" if is_whole else f"failed: {target.name} there is damaged", 0.0
-            continue
-        left = 60 * minutes - (began - begun)
-        most = max(min(60 * minutes * step.share, left), 1)
-        _say(began - begun, f"{step.name} ({number} of {len(steps)}, at most {most / 60:.0f} min)")
-        _recall(folder, step.name)
-        command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
-        returned, last = _watched(command, most, memory)
-        status = {FINE: "ok", FINDINGS: "findings", None: f"cut off after {most / 60:.0f} minutes"}
-        how = status.get(returned, "")
-        if not how or (returned is not None and not target.is_file()):
-            how = f"failed: {last or f'status {returned}'}"
-        ended = time.monotonic()
-        _say(ended - begun, f"{step.name}: {one_line(how)}, {(ended - began) / 60:.1f} min")
-        yield step, one_line(how), ended - began
+        else:
+            left = 60 * minutes - (began - begun)
+            most = max(min(60 * minutes * step.share, left), 1)
+            told = f"{step.name} (at most {most / 60:.3g} min, {len(steps)} more to come)"
+            _say(began - begun, told)
+            _recall(folder, step.name)
+            how = _attempt(step, target, most, memory)
+            if how.startswith("failed"):
+                second = _attempt(step, target, most, memory)
+                how = how if second.startswith("failed") else f"flaky: {how}; then {second}"
+            ended = time.monotonic()
+            _say(ended - begun, f"{step.name}: {how}, {(ended - began) / 60:.1f} min")
+            yield step, how, ended - began
+        steps.extendleft(_again(step, made))
+
+
+def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
+    """Have a step write its record; how it went, in one line."""
+    command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
+    returned, last = _watched(command, most, memory)
+    if returned is None:
+        return f"cut off after {most / 60:.3g} minutes"
+    if returned in (FINE, FINDINGS) and target.is_file():
+        return "ok" if returned == FINE else "findings"
+    return one_line(f"failed: {last or f'status {returned}'}")
 
 
 def _say(seconds: float, told: str) -> None:

@@ -117,3 +117,88 @@ def test_results_of_the_last_night_are_at_hand(tmp_path: Path) -> None:
     assert b"kept" == (tmp_path / DATE / "recover/cache/results.sqlite").read_bytes()
     nightly._recall(tmp_path / DATE, "growth")
     assert not (tmp_path / DATE / "growth").exists()
+
+
+def _step(monkeypatch: pytest.MonkeyPatch, *outcomes: tuple[int | None, str]) -> list[list[str]]:
+    """Have steps end so, one after the other, the last for ever; their commands."""
+    left, asked = list(outcomes), list[list[str]]()
+
+    def watched(command: list[str], _seconds: float, _memory: int) -> tuple[int | None, str]:
+        asked.append(command)
+        status, last = left.pop(0) if len(left) > 1 else left[0]
+        if status in (0, 1):
+            record = last if last.startswith("{") else '{"differences": []}'
+            Path(command[-1]).write_text(record, encoding="utf-8")
+        return status, last
+
+    monkeypatch.setattr(nightly, "_watched", watched)
+    return asked
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "told"),
+    [
+        ([(0, "")], "ok"),
+        ([(2, "no such thing"), (0, "")], "flaky: failed: no such thing; then ok"),
+        ([(-9, ""), (2, "worse")], "failed: status -9"),
+        ([(None, "far")], "cut off after 18 minutes"),
+    ],
+)
+def test_a_step_that_fails_is_tried_once_more(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    outcomes: list[tuple[int | None, str]],
+    told: str,
+) -> None:
+    """What then succeeds is told as flaky and a failure all the same; time is spent once."""
+    asked = _step(monkeypatch, *outcomes)
+    assert (told != "ok") == run(tmp_path, capsys, "recover")[0]
+    assert {"recover": told} == steps_of(tmp_path)
+    assert 1 + ("failed" in told) == len(asked)
+
+
+def test_a_case_that_fails_is_repeated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that passes then is told as flaky, in the summary too; it stays a failure."""
+
+    def record(verdict: str) -> str:
+        result = {"executor": "vm", "robot": "none", "verdict": verdict, "reason": "a `b` | @c"}
+        return json.dumps({"cases": [{"name": "io/one", "verdict": verdict, "results": [result]}]})
+
+    asked = _step(monkeypatch, (1, record("fail")), (0, record("pass")))
+    status, out = run(tmp_path, capsys, "conform")
+    assert ["conform", "io/one"] == asked[1][3:5]
+    (line,) = (line for line in out if line.startswith("failed"))
+    assert (1, True) == (status, "failed on vm/none and not when repeated (flaky)" in line)
+    summary = (tmp_path / DATE / "summary.md").read_text(encoding="utf-8")
+    assert "(flaky): a 'b' ¦ @c`, again with `krl conform io/one --executor vm" in summary
+
+
+def test_a_run_that_broke_off_is_the_first_failure_of_the_next(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody looks at a page that was never written."""
+    (tmp_path / "2026-01-01").mkdir()
+    _step(monkeypatch, (0, ""))
+    status, out = run(tmp_path, capsys, "recover")
+    assert (1, "failed: the nightly run of 2026-01-01 broke off") == (status, out[0])
+    page = (tmp_path / DATE / "index.html").read_text(encoding="utf-8")
+    assert '<li class="bad own">the nightly run of 2026-01-01 broke off' in page
+
+
+def test_a_run_that_cannot_tell_its_results_is_red(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Page, summary and record say so, and so does the exit status."""
+
+    def broken(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    _step(monkeypatch, (0, ""))
+    monkeypatch.setattr("reports.claims_page.write_claims_page", broken)
+    assert 0 != run(tmp_path, capsys, "recover")[0]
+    for name in ("index.html", "summary.md", "night.json"):
+        text = (tmp_path / DATE / name).read_text(encoding="utf-8")
+        assert "the nightly run failed: OSError: [Errno 28] No space left on device" in text

@@ -1,5 +1,6 @@
 """The history of nightly runs, and what changed from one to the next."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -139,3 +140,19 @@ def test_the_page_of_a_night_shows_what_changed(tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert "new failure: a/&lt;script&gt;" in text
     assert "<script>alert(1)" not in text
+
+
+def test_a_year_is_kept_and_stays_small(tmp_path: Path) -> None:
+    """Of older runs the figures are kept, and single cases of the last few that ran any."""
+    file = tmp_path / "history.jsonl"
+    old = [{"date": f"{n:04}", "conform": {"hard": 1, "cases": {"a": "pass"}}} for n in range(400)]
+    some = [{"date": f"{n:04}", "fuzz": {"divergences": 0}} for n in range(400, 420)]
+    file.write_text("".join(f"{json.dumps(run)}\n" for run in [*old, *some]), encoding="utf-8")
+    append_run(file, {"date": "0420"})
+    runs = read_history(file)
+    assert ["0055", "0420"] == [runs[0]["date"], runs[-1]["date"]]
+    full = [run["date"] for run in runs if "cases" in run.get("conform", {})]
+    assert [f"{n:04}" for n in range(394, 400)] == full
+    known = known_before(runs)
+    assert known is not None
+    assert {"hard": 1, "cases": {"a": "pass"}} == known["conform"]
