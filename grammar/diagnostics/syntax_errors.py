@@ -34,6 +34,8 @@ MOST_TOLD = 1_000
 _LONGEST_TOKEN = 60
 # Nobody writes lines of so many characters, and going through one takes long.
 _FARTHEST = 20_000
+_HEADS = ("DEF", "DEFFCT", "DEFDAT")
+_TYPES = frozenset("INT REAL BOOL CHAR AXIS E6AXIS FRAME POS E6POS".split())
 _BEGINNING = re.compile(r"[$A-Z_]")
 _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
@@ -41,6 +43,11 @@ _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[Diagnostic]:
     """Findings for the failures of a text; those that only follow from others are left out."""
     reported = [failure for failure in failures if not failure.follows] or list(failures)
+    reported = [
+        failure
+        for before, failure in zip([None, *reported], reported, strict=False)
+        if before is None or not _is_same_gap(before, failure, source)
+    ]
     shown = reported[:MOST_TOLD]
     blocks = open_blocks(source, (failure.line for failure in shown))
     found = [_finding(ErrorSite(failure, source, blocks[failure.line])) for failure in shown]
@@ -48,6 +55,13 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
         message = f"{len(reported) - len(shown):,} more lines that cannot be read are not told"
         found.append(diagnose("too-large", source.path, found[-1].region, message))
     return found
+
+
+def _is_same_gap(before: SyntaxFailure, failure: SyntaxFailure, source: Source) -> bool:
+    """Whether two lines stand outside all routines for want of one and the same beginning."""
+    lines = source.lines[before.line - 1 : failure.line]
+    is_outside = before.rule == failure.rule == "module"
+    return is_outside and not any(lead(line) in _HEADS for line in lines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +163,7 @@ def _blocks(site: ErrorSite) -> _Mistake | None:
         return None
     if word == "END" and (two := _end_in_two_words(site)):
         return two
-    if word in ("DEF", "DEFFCT", "DEFDAT") and site.block is not None:
+    if word in _HEADS and site.block is not None:
         return _not_closed(site, site.block)
     openers = CLOSERS.get(word, (BRANCHES[word],) if word in BRANCHES else ())
     if not openers or site.block is None:
@@ -183,7 +197,7 @@ def _outermost(block: OpenBlock) -> OpenBlock:
 def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
     end, region = site.failure.line, None
     before = site.text.split()[0] if site.text else "the end"
-    if block.word not in ("DEF", "DEFFCT", "DEFDAT"):
+    if block.word not in _HEADS:
         block, line = most_likely(site.source, block, end)
         if line != end:
             shown = site.source.line(line)
@@ -347,6 +361,9 @@ def _declarations(site: ErrorSite) -> _Mistake | None:
             message = f"DECL is missing before {site.tokens[0][0]}"
             fix = Fix("write DECL before it", here, "DECL ")
             return _Mistake(message, fix, slug="decl-missing")
+    if site.place == 1 and _is_name(site, 0) and text in _TYPES:
+        fix = site.swap(f"{site.tokens[1][0]} {site.tokens[0][0]}", 0, 1)
+        return _Mistake(f"the type {_shown(site)} stands before the name", fix)
     is_instruction = lead(site.code) in statements() or text == "("
     if is_data and is_instruction and rule in ("dataList", "initialisation"):
         message = f"{site.tokens[0][0]} in a data list"
@@ -365,7 +382,9 @@ def _names(site: ErrorSite) -> _Mistake | None:
     if site.failure.rule == "module" and text:
         if lead(site.code) in CLOSERS and place > 0:
             return _Mistake(f"nothing can stand behind {site.word(0)}")
-        return _Mistake(f"{_shown(site)} stands outside all routines")
+        is_data = site.source.path.lower().endswith(".dat")
+        fix = Fix(f"a {'data list begins with DEFDAT' if is_data else 'routine begins with DEF'}")
+        return _Mistake(f"{_shown(site)} stands outside all routines", fix)
     if place > 0 and site.expects("NEWLINE") and _opens_statement(site):
         fix = Fix("write it on a line of its own")
         return _Mistake("a second statement on this line", fix)

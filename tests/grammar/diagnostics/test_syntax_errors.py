@@ -106,6 +106,15 @@ def test_a_spelling_of_one_program_alone_is_no_error(line: str) -> None:
     assert ["warning"] == [one.severity for one in findings(f"DEF A()\n{line}\nEND\n")]
 
 
+def test_a_lost_beginning_is_one_finding() -> None:
+    """However many lines stand outside for want of a header, that is told once, and what it is."""
+    lost = [*(f"DECL INT N{n}" for n in range(4)), "END", "DEF B()", "END", "DECL INT M", ""]
+    found = findings("\n".join(lost))
+    assert [(1, "a routine begins with DEF"), (8, "a routine begins with DEF")] == [
+        (one.region.line, one.fix.text if one.fix else "") for one in found
+    ]
+
+
 @pytest.mark.parametrize(
     ("opener", "closer"),
     [
@@ -138,6 +147,7 @@ def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
         ("FRAMES[2]X = 1", ". is missing", "FRAMES[2].X = 1"),
         ("PTP {A1 0 A2 0}", ", is missing", "PTP {A1 0, A2 0}"),
         ("WIAT SEC 1", "WIAT is no word of KRL", "WAIT SEC 1"),
+        ("N INT", "the type INT stands before the name", "INT N"),
         ("IF N == 1 TEN", "TEN is no word of KRL", "IF N == 1 THEN"),
         ("GLOBAL INTERUPT DECL 3 WHEN N == 1 DO F()", "INTERUPT is no word of KRL",
          "GLOBAL INTERRUPT DECL 3 WHEN N == 1 DO F()"),
