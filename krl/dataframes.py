@@ -73,7 +73,7 @@ def clusters(survey: Record | Path | str) -> pd.DataFrame:
     rows = (
         {**one, "reproducer": _text(one.get("reproducer"))} for one in _list(survey, "clusters")
     )
-    return _frame(rows, columns)
+    return frame(rows, columns)
 
 
 def proposals(survey: Record | Path | str) -> pd.DataFrame:
@@ -84,13 +84,13 @@ def proposals(survey: Record | Path | str) -> pd.DataFrame:
         for cluster in _list(survey, "clusters")
         for proposal in cluster.get("proposals", ())
     )
-    return _frame(rows, columns)
+    return frame(rows, columns)
 
 
 def failures(survey: Record | Path | str) -> pd.DataFrame:
     """A row a parse failure: path, line, column, token, text, rule, cluster, follows."""
     columns = ("path", "line", "column", "token", "text", "rule", "cluster", "follows")
-    return _frame(_list(survey, "failures"), columns)
+    return frame(_list(survey, "failures"), columns)
 
 
 def growth(replay: Record | Path | str) -> pd.DataFrame:
@@ -99,19 +99,19 @@ def growth(replay: Record | Path | str) -> pd.DataFrame:
     steps = _list(replay, "steps")
     rows = [{**step, **step.get("metrics", {})} for step in steps]
     metrics = list(dict.fromkeys(name for step in steps for name in step.get("metrics", {})))
-    return _frame(rows, (*columns, *metrics))
+    return frame(rows, (*columns, *metrics))
 
 
 def findings(checked: Record | Path | str) -> pd.DataFrame:
     """A row a finding of ``krl check``: path, line, column, severity, code, message."""
     columns = ("path", "line", "column", "end_column", "severity", "code", "message")
-    return _frame(_list(checked, None), columns)
+    return frame(_list(checked, None), columns)
 
 
 def trace(file: Path | str) -> pd.DataFrame:
     """A row an event of a trace, the JSON Lines of ``krl run --trace``: t in µs, task, kind, at."""
     text = Path(file).read_text(encoding="utf-8")
-    return _frame(
+    return frame(
         (json.loads(line) for line in text.splitlines()), ("t", "task", "kind", "at"), True
     )
 
@@ -127,7 +127,7 @@ def path(file: Path | str) -> pd.DataFrame:
 def cases(conformed: Record | Path | str) -> pd.DataFrame:
     """A row a conformance case: name, suite, title, rules, phase, verdict, negative, may_fail."""
     columns = ("name", "suite", "title", "rules", "phase", "verdict", "negative", "may_fail")
-    return _frame(_list(conformed, "cases"), columns)
+    return frame(_list(conformed, "cases"), columns)
 
 
 def results(conformed: Record | Path | str) -> pd.DataFrame:
@@ -138,13 +138,13 @@ def results(conformed: Record | Path | str) -> pd.DataFrame:
         for case in _list(conformed, "cases")
         for result in case.get("results", ())
     )
-    return _frame(rows, columns)
+    return frame(rows, columns)
 
 
 def rules(conformed: Record | Path | str) -> pd.DataFrame:
     """A row a rule of KRL: id, tier, may_fail, statement, and the cases that show it."""
     columns = ("id", "tier", "may_fail", "profile", "source", "statement", "cases")
-    return _frame(_list(conformed, "rules"), columns)
+    return frame(_list(conformed, "rules"), columns)
 
 
 def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
@@ -162,7 +162,7 @@ def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.D
         }
         row |= {f"bench.{k}": v for k, v in (run.get("bench") or {}).items()}
         rows.append(row)
-    return _frame(rows, ("date",), True)
+    return frame(rows, ("date",), True)
 
 
 def _list(given: Record | Path | str, key: str | None) -> list[Mapping[str, Any]]:
@@ -182,7 +182,7 @@ def _text(reproducer: Any) -> str:
     )
 
 
-def _frame(
+def frame(
     rows: Iterable[Mapping[str, Any]], columns: Sequence[str], is_open: bool = False
 ) -> pd.DataFrame:
     """The rows with these columns, which are there without any row; ``is_open``: and others."""

@@ -135,13 +135,13 @@ class Run:
 
     def to_dataframe(self) -> pd.DataFrame:
         """A row an event of the trace: t in µs, task, kind, at, and the fields of its kind."""
-        import pandas as pd
+        from krl.dataframes import frame
 
-        rows = [
+        rows = (
             {"t": one.time, "task": one.task, "kind": one.kind, "at": one.place, **one.fields}
             for one in self.events
-        ]
-        return pd.DataFrame(rows, columns=None if rows else ["t", "task", "kind", "at"])
+        )
+        return frame(rows, ("t", "task", "kind", "at"), True)
 
     def path_dataframe(self) -> pd.DataFrame:
         """A row an interpolation cycle, as `krl run --path` writes it; raises `InputError`."""
@@ -282,13 +282,10 @@ class Backup:
 
     def to_dataframe(self) -> pd.DataFrame:
         """A row a point: path, line, name, type, and a column a component."""
-        import pandas as pd
+        from krl.dataframes import frame
 
-        rows = [
-            {"path": one.path, "line": one.line, "name": one.name, "type": one.type, **one.values}
-            for one in self.points
-        ]
-        return pd.DataFrame(rows, columns=["path", "line", "name", "type", *_COORDINATES])
+        rows = ({**asdict(one), **one.values} for one in self.points)
+        return frame(rows, ("path", "line", "name", "type", *_COORDINATES))
 
     def routines_dataframe(self) -> pd.DataFrame:
         """A row a routine."""
@@ -324,6 +321,6 @@ def load_backup(path: PathLike) -> Backup:
 
 def _table(rows: Iterable[Any], kind: type[Any]) -> pd.DataFrame:
     """The rows with the columns of their kind, which are there without any row."""
-    import pandas as pd
+    from krl.dataframes import frame
 
-    return pd.DataFrame(map(asdict, rows), columns=[field.name for field in fields(kind)])
+    return frame(map(asdict, rows), [field.name for field in fields(kind)])
