@@ -261,7 +261,8 @@ class BlendedAxes:
             math.ceil(2.0 * share * len(curve.grid)) + 1
             for curve, share in zip(curves, shares, strict=True)
         ]
-        return np.linspace(0.0, 1.0, max(_BLENDED, *needed))
+        even = np.linspace(0.0, 1.0, max(_BLENDED, *needed))
+        return np.unique(np.concatenate((even, self.transition.breaks)))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""

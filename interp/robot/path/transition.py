@@ -22,6 +22,8 @@ __all__ = ["Cubics", "Overlap", "Rounding", "Transition", "chained"]
 
 _ROUNDS = 60
 _EXACT = 1e-15
+_BEHIND = 1e-9
+"""Of u: rounding never takes a place so far behind a break to before it."""
 
 
 class Transition(Protocol):
@@ -35,6 +37,11 @@ class Transition(Protocol):
     @property
     def after(self) -> float:
         """Share of the second path."""
+        ...
+
+    @property
+    def breaks(self) -> Array:
+        """Just behind where on u from 0 to 1 a third derivative jumps."""
         ...
 
     def at(self, u: Array) -> tuple[Array, Array]:
@@ -60,6 +67,11 @@ class Rounding:
     after: float
     weights: tuple[float, float]
     slope: float
+
+    @property
+    def breaks(self) -> Array:
+        """See `Transition.breaks`."""
+        return np.zeros(0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
@@ -172,6 +184,13 @@ class Overlap:
     def after(self) -> float:
         """See `Transition.after`."""
         return float(self.starting.at(np.array([self.starting.duration]))[0, 0])
+
+    @property
+    def breaks(self) -> Array:
+        """See `Transition.breaks`."""
+        starting = self.duration - self.starting.duration + self.starting.knots[:, 0]
+        times = (self.ending.knots[:, 0], [self.ending.duration], starting)
+        return np.minimum(np.concatenate(times) / self.duration + _BEHIND, 1.0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import Phase, assume, given, settings
+from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 
 pytest.importorskip("py_opw_kinematics")
@@ -45,6 +45,7 @@ def test_points_on_a_straight_way_cost_next_to_nothing(seed: int) -> None:
 
 @FEW
 @given(seed=SEEDS)
+@example(seed=300049)  # the jerk is too great for a fiftieth of a blend
 def test_no_axis_exceeds_speed_acceleration_or_jerk(seed: int) -> None:
     """At every millisecond, by differences of the axes themselves."""
     try:
