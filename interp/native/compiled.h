@@ -1,8 +1,10 @@
 /* What programs are written with that were made from register code (compiled.py): a function for each
- * code object, a label for each step. A step is done as by the interpreter (steps.h), but is constant.
+ * routine, a label for each step. A step is done as by the interpreter (steps.h), but is constant.
  *
- * A call is one in C, up to a depth. What stops leaves everything as the interpreter does, and returns through
- * all of them; to go on, `krl_go` enters the routine that runs, and when it ends the one it was called by.
+ * It is entered where a routine or a loop begins. Whatever is out of the ordinary, a fault, a request, the end of
+ * the budget, is left to the interpreter: the function puts everything back as the interpreter has it, says at which
+ * step, and returns, and so do all that called it, each noting its call. No step has done anything when it faults,
+ * so that the interpreter can do it again.
  */
 #ifndef KRL_COMPILED_H
 #define KRL_COMPILED_H
@@ -18,144 +20,131 @@ static const struct krl_array arrays[];
 
 #include "steps.h"
 
-/* How a function ends: its routine has, the machine stops, the routine that runs now was not called in C,
- * there is no way in at the step. */
-enum { RETURNED, STOPPED, DEEPER, NOWHERE };
+/* Calls in C that are open at once. */
 enum { MOST_NESTED = 200 };
 
-typedef int krl_function_of_code(struct krl_machine *machine, krl_cell *const cells, krl_cell *const fp,
-                                 int is_begun, int nested, struct krl_stopped *stopped);
+/* Runs from the step `at` on, or from the beginning where it is called in C, which is CALLED; `open` calls and
+ * `extent` are what the machine has them for while it is not running. Gives the statements left when the
+ * routine returns to a call in C, or 0 where the interpreter goes on. */
+typedef int32_t krl_routine_in_c(struct krl_machine *machine, krl_cell *const fp, int32_t at, int32_t left,
+                                 int32_t open, int32_t extent);
+enum { CALLED = -1 };
 
 #define CODE(number)                                                                               \
-    static int code_##number(struct krl_machine *machine, krl_cell *const cells, krl_cell *const fp, \
-                             int is_begun, int nested, struct krl_stopped *stopped)
-#define ENTER(first, count)                                                                        \
-    int32_t left = machine->left, statement = machine->statement, at = stopped->at;                \
-    int fault;                                                                                     \
+    static int32_t code_##number(struct krl_machine *machine, krl_cell *const fp, int32_t at,      \
+                                 int32_t left, int32_t open, int32_t extent)
+#define ENTER(number, count, is_owner)                                                             \
+    enum { CODE = number };                                                                        \
+    krl_cell *const cells = machine->cells;                                                        \
     krl_cell registers[count];                                                                     \
-    if (at == first && !is_begun && statement < 0)                                                 \
-        goto start;
-#define ENTRIES() switch (2 * at + (is_begun != 0))
+    int32_t statement = -1, serial = 0;                                                            \
+    int is_begun;                                                                                  \
+    if (LIKELY(at == CALLED)) {                                                                    \
+        if (is_owner)                                                                              \
+            serial = ++machine->serials;                                                           \
+        goto start;                                                                                \
+    }                                                                                              \
+    statement = machine->statement;                                                                \
+    serial = machine->serial;                                                                      \
+    switch (at)
 /* Between the frame and the copies of its cells that steps work on. */
 #define GET(number) registers[number] = fp[number];
 #define PUT(number) fp[number] = registers[number];
 #define BLANK(number) registers[number] = KRL_NOTHING;
-/* The labels before a step and before the statement that begins with it. */
-#define WAY_IN(number, begin)                                                                      \
-    case 2 * number:                                                                               \
-        goto begin;                                                                                \
-    case 2 * number + 1:                                                                           \
-        goto do_##number;
-#define BEGIN(number)                                                                              \
-    begin_##number : if (UNLIKELY(left <= 1))                                                      \
-    {                                                                                              \
+#define BLANK_CELLS(first, end)                                                                    \
+    for (int32_t i = first; i < end; i++)                                                          \
+        fp[i] = KRL_NOTHING;
+/* A cell that has a value wherever the program comes from: no step need look again. */
+#define GET_VALUE(number)                                                                          \
+    GET(number)                                                                                    \
+    if (UNLIKELY(registers[number] == KRL_NOTHING)) {                                              \
+        machine->at = at;                                                                          \
+        machine->is_begun = 0;                                                                     \
+        return 0;                                                                                  \
+    }
+/* The beginning of statements of which only a fault can come between; and of each. */
+#define BEGIN(number, count)                                                                       \
+    if (UNLIKELY(left <= count)) {                                                                 \
         at = number;                                                                               \
-        goto wait;                                                                                 \
+        goto not_begun;                                                                            \
     }                                                                                              \
-    left--;                                                                                        \
-    statement = steps[number].statement;
-#define LABEL(number) do_##number:;
-#define DO(name, number, put)                                                                      \
-    fault = krl_step_##name(machine, cells, fp, registers, &steps[number]);                        \
-    put if (UNLIKELY(fault >= 0))                                                                      \
-        goto failed;
-/* With the cells themselves, where a step needs them one behind the other. */
-#define DO_IN_FRAME(name, number)                                                                  \
-    fault = krl_step_##name(machine, cells, fp, fp, &steps[number]);                               \
-    if (UNLIKELY(fault >= 0))                                                                      \
-        goto failed_in_frame;
-#define BRANCH(name, number, put, target)                                                          \
-    DO(name, number, put)                                                                          \
-    if (fault == KRL_GO_JUMP)                                                                      \
+    left -= count;
+#define STATEMENT(number) statement = steps[number].statement;
+/* A step for the interpreter, before which `later` statements were counted that have not begun. */
+#define INTERPRET(number, later)                                                                   \
+    {                                                                                              \
+        left += later;                                                                             \
+        at = number;                                                                               \
+        goto begun;                                                                                \
+    }
+#define DO(name, number, later, put, otherwise)                                                    \
+    {                                                                                              \
+        int way = krl_step_##name(machine, cells, fp, registers, &steps[number]);                  \
+        if (UNLIKELY(way >= 0))                                                                    \
+            INTERPRET(number, later)                                                               \
+        put otherwise                                                                              \
+    }
+#define JUMP_TO(target)                                                                            \
+    if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* `save` puts back what nobody looks at unless the machine stops within the call. */
-#define CALL(number, callee, entry, save)                                                          \
+/* With the cells themselves, where a step needs them one behind the other. */
+#define DO_IN_FRAME(name, number, later)                                                           \
+    if (UNLIKELY(krl_step_##name(machine, cells, fp, fp, &steps[number]) >= 0))                    \
+        INTERPRET(number, later)
+/* A frame of so many cells at `frame`, as `prepare` makes it; `save` puts back what nobody looks at unless
+ * the interpreter goes on within the call. */
+#define CALL(number, callee, size, frame, prepare, save)                                           \
     {                                                                                              \
-        krl_cell *frame = krl_enter(machine, cells, fp, &steps[number], number, statement);        \
-        fault = KRL_FAULT_STACK;                                                                   \
-        if (UNLIKELY(frame == NULL))                                                               \
-            goto failed_in_frame;                                                                        \
-        machine->left = left;                                                                      \
-        machine->statement = -1;                                                                   \
-        stopped->at = entry;                                                                       \
-        if (UNLIKELY(nested >= MOST_NESTED)) {                                                     \
-            save machine->fp = (int32_t)(frame - cells);                                           \
-            return DEEPER;                                                                         \
+        const int32_t behind = extent + steps[number].c;                                           \
+        if (UNLIKELY(open >= machine->most_nested || size > KRL_MAX_CELLS - behind))               \
+            INTERPRET(number, 0)                                                                   \
+        prepare left = code_##callee(machine, frame, CALLED, left, open + 1, behind);              \
+        if (UNLIKELY(left == 0)) {                                                                 \
+            machine->calls[open] = krl_call_of(cells, fp, &steps[number], number, CODE, extent,    \
+                                               statement, serial);                                 \
+            save return 0;                                                                         \
         }                                                                                          \
-        int how = code_##callee(machine, cells, frame, 0, nested + 1, stopped);                    \
-        if (UNLIKELY(how != RETURNED)) {                                                           \
-            save return how;                                                                       \
-        }                                                                            \
-        left = machine->left;                                                                      \
     }
+#define RECEIVE(number)                                                                            \
+    krl_receive(machine, &machine->routines[steps[number].b], fp + steps[number].d, fp + steps[number].a);
+/* A call in C finds the result in the first cell of the frame. */
+#define RETURN(number)                                                                             \
+    if (UNLIKELY(open == machine->open))                                                           \
+        INTERPRET(number, 0)                                                                       \
+    return left;
 #define RETURN_VALUE(number)                                                                       \
-    {                                                                                              \
-        krl_cell result = registers[steps[number].b];                                                     \
-        fault = KRL_FAULT_UNINITIALISED;                                                           \
-        if (UNLIKELY(result == KRL_NOTHING))                                                       \
-            goto failed;                                                                           \
-        if (machine->open > 0)                                                                     \
-            krl_give(machine, cells, result);                                                      \
-        goto returning;                                                                            \
-    }
-#define RETURN(number) goto returning;
-#define END_ACTION(number)                                                                         \
-    stopped->why = KRL_STOP_ACTION;                                                 \
-    stopped->at = 0;                                                                               \
-    goto stop;
-#define AT(number) statement = steps[number].b;
-#define PYTHON(number)                                                                             \
-    machine->top = (int32_t)(fp + steps[number].a - cells);                          \
-    stopped->why = KRL_STOP_STEP;                                                                  \
-    stopped->at = number;                                                                          \
-    goto stop;
+    if (UNLIKELY(registers[steps[number].b] == KRL_NOTHING || open == machine->open))              \
+        INTERPRET(number, 0)                                                                       \
+    fp[0] = registers[steps[number].b];                                                            \
+    return left;
 #define LEAVE()                                                                                    \
-    returning:                                                                                     \
-    if (UNLIKELY(machine->open == 0)) {                                                            \
-        stopped->why = KRL_STOP_END;                                                               \
-        stopped->at = 0;                                                                           \
-        goto stop;                                                                                 \
-    }                                                                                              \
-    const struct krl_call *call = krl_return(machine);                                             \
-    machine->left = left;                                                                          \
-    if (nested > 0)                                                                                \
-        return RETURNED;                                                                           \
-    machine->fp = call->fp;                                                                        \
-    machine->statement = call->statement;                                                          \
-    stopped->why = KRL_STOP_LEFT;                                                                  \
-    stopped->at = call->step < 0 ? 0 : call->step;                                                 \
-    return call->step < 0 ? STOPPED : RETURNED;                                                    \
-    wait:                                                                                          \
-    stopped->why = KRL_STOP_LINE;                                                                  \
-    stopped->at = at;                                                                              \
-    goto stop;                                                                                     \
-    failed_in_frame:                                                                               \
-    stopped->why = KRL_STOP_FAULT;                                                                 \
-    stopped->at = fault;                                                                           \
-    goto stop_in_frame;                                                                            \
-    failed:                                                                                        \
-    stopped->why = KRL_STOP_FAULT;                                                                 \
-    stopped->at = fault;                                                                           \
-    stop:
-#define STOP()                                                                                     \
-    stop_in_frame:                                                                                 \
+    not_begun:                                                                                     \
+    is_begun = 0;                                                                                  \
+    goto leave;                                                                                    \
+    begun:                                                                                         \
+    is_begun = 1;                                                                                  \
+    leave:
+#define LEFT()                                                                                     \
+    machine->at = at;                                                                              \
+    machine->is_begun = is_begun;                                                                  \
     machine->fp = (int32_t)(fp - cells);                                                           \
     machine->left = left;                                                                          \
     machine->statement = statement;                                                                \
-    return STOPPED
+    machine->open = open;                                                                          \
+    machine->code = CODE;                                                                          \
+    machine->extent = extent;                                                                      \
+    machine->serial = serial;                                                                      \
+    return 0
 
-/* Runs from the step that `stopped` has; 0 where there is no way in there. */
+/* What the module looks for: a function, and what both have to agree on. */
 #define PROGRAM(...)                                                                               \
-    int krl_go(struct krl_machine *machine, int *is_begun, struct krl_stopped *stopped)            \
+    void krl_go(struct krl_machine *machine, int32_t at)                                           \
     {                                                                                              \
-        static krl_function_of_code *const codes[] = {__VA_ARGS__};                                \
-        for (int how = DEEPER; how != STOPPED; *is_begun = 0) {                                     \
-            how = codes[machine->code](machine, machine->cells, machine->cells + machine->fp,      \
-                                       *is_begun, 0, stopped);                                     \
-            if (how == NOWHERE)                                                                    \
-                return 0;                                                                          \
-        }                                                                                          \
-        return 1;                                                                                  \
+        static krl_routine_in_c *const codes[] = {__VA_ARGS__};                                    \
+        int32_t most = machine->open + MOST_NESTED;                                                \
+        machine->most_nested = most < machine->most_calls ? most : machine->most_calls;            \
+        codes[machine->code](machine, machine->cells + machine->fp, at, machine->left,             \
+                             machine->open, machine->extent);                                      \
     }                                                                                              \
     const uint32_t krl_layout = KRL_LAYOUT;
 

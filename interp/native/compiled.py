@@ -15,14 +15,15 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
+from itertools import count
 from pathlib import Path
 from typing import Final
 
-from interp.bytecode.program import Parameter, Program, Slot, stack_cells
+from interp.bytecode.program import CodeKind, Parameter, Program, Slot, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 from interp.native.machine import Machine
-from interp.native.register_code import CALLS, Step, roles_of
+from interp.native.register_code import CALLS, ENDS, Step, roles_of
 from support.files.user_cache import user_cache
 
 __all__ = ["CompiledMachine", "compiler", "keep", "library_of", "source_of"]
@@ -36,6 +37,8 @@ _HEADERS: Final = (
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-w")
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
+#: Steps that are left to the interpreter.
+_LEFT: Final = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
 
 
 def compiler() -> str | None:
@@ -109,7 +112,7 @@ class CompiledMachine(Machine):
 
 
 class _Source:
-    """Writes the steps of all code objects.
+    """Writes the steps of all routines.
 
     Steps work on copies of cells, which the compiler keeps in registers of the processor. The cells
     themselves are what else looks at them: where the machine stops or calls, and in variables that
@@ -120,8 +123,18 @@ class _Source:
         self._program = program
         self._steps = [Step(*one) for one in core.steps()]
         self._arrays = core.arrays()
-        self._firsts = [core.step(number, 0) for number in range(len(program.codes))]
-        self._targets = {step.d for step in self._steps if step.is_jump}
+        firsts = [core.step(number, 0) for number in range(len(program.codes))]
+        ends = [*firsts[1:], len(self._steps)]
+        bodies = zip(program.codes, map(range, firsts, ends), strict=True)
+        self._bodies = {
+            number: body
+            for number, (code, body) in enumerate(bodies)
+            if code.kind is CodeKind.ROUTINE
+        }
+        jumps = [(place, step.d) for place, step in enumerate(self._steps) if step.is_jump]
+        self._targets = {target for _, target in jumps}
+        self._loops = {target for place, target in jumps if target <= place}
+        self._owners = {code.owner for code in program.codes if code.captures}
 
     def lines(self) -> Iterator[str]:
         """All lines of the file."""
@@ -135,42 +148,98 @@ class _Source:
             words = ", ".join(map(_int, (a, b, c, d, line)))
             yield f"{{0, {words}, KRL_STEP_{name}, {tag}}},"
         yield "};"
-        numbers = range(len(self._firsts))
-        yield from (f"CODE({number});" for number in numbers)
-        ends = [*self._firsts[1:], len(self._steps)]
-        for number, first, end in zip(numbers, self._firsts, ends, strict=True):
-            yield from self._code(number, range(first, end))
-        yield f"PROGRAM({', '.join(f'code_{number}' for number in numbers)})"
+        yield from (f"CODE({number});" for number in self._bodies)
+        for number, body in self._bodies.items():
+            yield from self._code(number, body)
+        loops = (self._loops.intersection(body) for body in self._bodies.values())
+        entries = sorted({body[0] for body in self._bodies.values()}.union(*loops))
+        yield f"const int32_t krl_entries[] = {{{', '.join(map(str, [*entries, -1]))}}};"
+        codes = range(len(self._program.codes))
+        names = (f"code_{number}" if number in self._bodies else "NULL" for number in codes)
+        yield f"PROGRAM({', '.join(names)})"
 
-    def _code(self, code: int, steps: Sequence[int]) -> Iterator[str]:
-        first, slots = steps[0], self._program.slots(self._program.codes[code])
-        in_frame = self._in_frame(slots, steps)
-        used = {one for number in steps for one in self._steps[number].registers()}
+    def _code(self, number: int, body: range) -> Iterator[str]:
+        """The function of a routine."""
+        code = self._program.codes[number]
+        first, slots = body[0], self._program.slots(code)
+        in_frame = self._in_frame(slots, body)
+        used = {one for place in body for one in self._steps[place].registers()}
         kept = sorted(used - in_frame)
         received = sum(slot.cells for slot in slots if isinstance(slot.variable, Parameter))
-        yield f"CODE({code}) {{"
-        yield f"ENTER({first}, {max(used, default=0) + 1})"
-        yield _each("GET", kept)
-        yield "ENTRIES() {"
-        for number in steps:
-            if self._is_way_in(number, first):
-                yield f"WAY_IN({number}, {self._label(number)})"
-        yield "default: return NOWHERE;"
+        yield f"CODE({number}) {{"
+        yield f"ENTER({number}, {max(used, default=0) + 1}, {int(number in self._owners)}) {{"
+        known = self._valued(body)
+        for place in sorted(self._loops.intersection(body)):
+            valued = known.get(place, frozenset())
+            yield f"case {place}:"
+            yield _each("GET_VALUE", valued.intersection(kept))
+            yield _each("GET", set(kept) - valued)
+            yield f"goto do_{place};"
         yield "}"
         yield "start:"
         yield _each("GET", [one for one in kept if one < received])
         yield _each("BLANK", [one for one in kept if one >= received])
-        yield f"goto {self._label(first)};"
-        for number in steps:
-            step = self._steps[number]
+        yield from _blank_cells(set(range(received, self._program.frames[number])) - set(kept))
+        yield f"goto do_{first};"
+        counted, later = self._runs(body)
+        for place in body:
+            step = self._steps[place]
+            yield f"do_{place}:;"
+            if place in counted:
+                yield f"BEGIN({place}, {counted[place]})"
             if step.line >= 0:
-                yield f"BEGIN({number})"
-            yield f"LABEL({number})"
-            yield from self._step(number, step, in_frame, kept)
+                yield f"STATEMENT({place})"
+            yield from self._step(place, step, later.get(place, 0), in_frame, kept)
         yield "LEAVE()"
         yield _each("PUT", kept)
-        yield "STOP();"
+        yield "LEFT();"
         yield "}"
+
+    def _runs(self, body: range) -> tuple[dict[int, int], dict[int, int]]:
+        """Statements that are counted together, as nothing but a fault can come between.
+
+        How many they are, by the first step of the first of them; and how many have not begun yet,
+        by step.
+        """
+        counted: dict[int, int] = {}
+        begun: dict[int, tuple[int, int]] = {}
+        leader = -1
+        for place in body:
+            step = self._steps[place]
+            if place in self._targets:
+                leader = -1
+            if step.line >= 0:
+                leader = place if leader < 0 else leader
+                counted[leader] = counted.get(leader, 0) + 1
+            if leader >= 0:
+                begun[place] = leader, counted[leader]
+            if step.is_jump or step.name in (*CALLS, *ENDS, *_LEFT):
+                leader = -1
+        return counted, {place: counted[first] - count for place, (first, count) in begun.items()}
+
+    def _valued(self, steps: range) -> dict[int, frozenset[int]]:
+        """The registers that have a value before each step, wherever the program comes from."""
+        found: dict[int, frozenset[int]] = {steps[0]: frozenset()}
+        todo = [steps[0]]
+        while todo:
+            number = todo.pop()
+            step, after = self._steps[number], found[number]
+            if step.name in CALLS:
+                after = frozenset(one for one in after if one < step.a)
+            else:
+                read, written = map(step.named, roles_of(step.name) or ("", ""))
+                can_be_none = step.name == "PASS" or (step.name == "SET_K" and step.tag == 0)
+                after = after | read
+                after = after - written if can_be_none else after | written
+            following = [step.d] if step.is_jump else []
+            if step.name not in ENDS:
+                following.append(number + 1)
+            for other in following:
+                met = after & found.get(other, after)
+                if met != found.get(other):
+                    found[other] = met
+                    todo.append(other)
+        return found
 
     def _in_frame(self, slots: Iterable[Slot], steps: Iterable[int]) -> frozenset[int]:
         """The cells of variables that are reached by an address."""
@@ -187,37 +256,47 @@ class _Source:
         whole = (cells for cells in variables if not reached.isdisjoint(cells))
         return frozenset(reached.union(*whole))
 
-    def _is_way_in(self, number: int, first: int) -> bool:
-        """Whether the machine may go on here: where a statement begins, behind what stops it."""
-        is_behind = number > first and self._steps[number - 1].name in ("PYTHON", *CALLS)
-        return self._steps[number].line >= 0 or is_behind or number in self._targets
-
-    def _label(self, number: int) -> str:
-        return f"{'begin' if self._steps[number].line >= 0 else 'do'}_{number}"
-
     def _step(
-        self, number: int, step: Step, in_frame: frozenset[int], kept: Sequence[int]
+        self, place: int, step: Step, later: int, in_frame: frozenset[int], kept: Sequence[int]
     ) -> Iterator[str]:
         name, roles = step.name, roles_of(step.name)
         if name in CALLS:
-            end = step.a + sum(map(stack_cells, self._program.codes[step.b].parameters))
+            callee = self._program.codes[step.b]
+            end = step.a + sum(map(stack_cells, callee.parameters))
             yield _each("PUT", [one for one in kept if step.a <= one < end])
             save = _each("PUT", [one for one in kept if one < step.a])
-            yield f"CALL({number}, {step.b}, {self._firsts[step.b]}, {save})"
-            yield _each("GET", {step.a} - in_frame)
-        elif name in ("RETURN", "END_ACTION", "AT", "PYTHON"):
-            yield f"{name}({number})"
+            size, frame, prepare = self._program.frames[step.b], step.a, ""
+            if name == "CALL_COPY":
+                frame, prepare = step.d, f"RECEIVE({place})"
+            yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {save})"
+            if callee.result is not None:
+                if frame != step.a:
+                    yield f"fp[{step.a}] = fp[{frame}];"
+                yield _each("GET", {step.a} - in_frame)
+        elif name in _LEFT:
+            yield f"INTERPRET({place}, {later})"
+        elif name == "AT":
+            yield f"statement = {step.b};"
+        elif name == "RETURN":
+            yield f"RETURN({place})"
         elif roles is None:
-            yield f"{_each('PUT', kept)}DO_IN_FRAME({name}, {number}){_each('GET', kept)}"
+            yield _each("PUT", kept)
+            yield f"DO_IN_FRAME({name}, {place}, {later}){_each('GET', kept)}"
         else:
             yield _each("GET", in_frame.intersection(step.named(roles[0])))
             written = _each("PUT", in_frame.intersection(step.named(roles[1])))
+            jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
             if name == "RETURN_VALUE":
-                yield f"{name}({number})"
-            elif step.is_jump:
-                yield f"BRANCH({name}, {number}, {written}, {self._label(step.d)})"
+                yield f"RETURN_VALUE({place})"
             else:
-                yield f"DO({name}, {number}, {written})"
+                yield f"DO({name}, {place}, {later}, {written}, {jump})"
+
+
+def _blank_cells(cells: set[int]) -> Iterator[str]:
+    """Cells that lie one behind the other, together."""
+    for first in sorted(cell for cell in cells if cell - 1 not in cells):
+        end = next(end for end in count(first) if end not in cells)
+        yield f"BLANK_CELLS({first}, {end})"
 
 
 def _each(word: str, registers: Iterable[int]) -> str:

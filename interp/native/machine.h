@@ -71,11 +71,9 @@ enum krl_told {
 };
 
 struct krl_machine;
-struct krl_stopped;
 
-/* Runs a program that was compiled from the step that `stopped` has, as `krl_run` does; 0 where it cannot
- * be entered there. */
-typedef int krl_compiled(struct krl_machine *machine, int *is_begun, struct krl_stopped *stopped);
+/* Runs a program that was compiled, from one of its entries on, until the interpreter has to go on. */
+typedef void krl_compiled(struct krl_machine *machine, int32_t at);
 
 /* What a program that was compiled calls of this module. */
 struct krl_outside;
@@ -113,6 +111,12 @@ struct krl_machine {
     int32_t left; /* statements that may begin before something has to be done, and one more */
     int32_t last; /* the cell that was written last through a reference */
     int32_t top;  /* behind the last place of the stack of operands that is in use, when it stops */
+
+    /* Of a program that was compiled: where the interpreter goes on, and whether the statement has begun;
+     * the most calls that may be open within it. */
+    int32_t at;
+    int32_t is_begun;
+    int32_t most_nested;
 };
 
 /* How a run ends; `at` is a step. */
@@ -122,7 +126,8 @@ enum krl_stop {
     KRL_STOP_FAULT,  /* `at` is the code of the fault */
     KRL_STOP_LEFT,   /* a frame that Python has made has ended; its result is on the stack */
     KRL_STOP_ACTION, /* an action has ended; its frame is still there */
-    KRL_STOP_END     /* the routine that the program began with has ended */
+    KRL_STOP_END,    /* the routine that the program began with has ended */
+    KRL_STOP_COMPILED /* the program that was compiled goes on; nobody outside sees this */
 };
 
 struct krl_stopped {
@@ -163,8 +168,9 @@ void krl_close(struct krl_machine *machine);
 /* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
 
-/* Puts handlers into steps. */
+/* Puts handlers into steps; and one into a step where a compiled program is entered. */
 void krl_thread(struct krl_step *steps, int32_t count);
+void krl_thread_entry(struct krl_step *step);
 
 /* ---------------------------------------------------------------------------- translate.c */
 

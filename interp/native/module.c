@@ -372,12 +372,16 @@ static PyObject *core_load(PyObject *self, PyObject *arguments)
 #if HAS_LIBRARIES
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     const uint32_t *layout = library == NULL ? NULL : dlsym(library, "krl_layout");
-    if (layout == NULL || *layout != KRL_LAYOUT) {
+    const int32_t *entries = library == NULL ? NULL : dlsym(library, "krl_entries");
+    if (layout == NULL || entries == NULL || *layout != KRL_LAYOUT) {
         PyErr_SetString(PyExc_OSError, library == NULL ? dlerror() : "it was compiled for another machine");
         return NULL;
     }
     *(void **)&machine->compiled = dlsym(library, "krl_go");
     machine->outside = &outside;
+    for (; *entries >= 0; entries++)
+        if (*entries < machine->step_count)
+            krl_thread_entry(&machine->steps[*entries]);
     Py_RETURN_NONE;
 #else
     (void)outside, (void)machine;

@@ -9,9 +9,11 @@ from typing import Final, NamedTuple
 from interp.bytecode.program import Program
 from interp.native._core import Core
 
-__all__ = ["CALLS", "Step", "listing", "roles_of"]
+__all__ = ["CALLS", "ENDS", "Step", "listing", "roles_of"]
 
 CALLS: Final = ("CALL", "CALL_COPY")
+#: Behind these the next step does not follow.
+ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")
 #: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
 #: one behind ``c``. What is not listed works on cells that lie one behind the other.
 _ROLES: Final = {

@@ -12,7 +12,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     struct krl_stopped stopped = {KRL_STOP_STEP, 0};
 #if KRL_THREADED
 #define LABELS(name) &&do_##name, &&begin_##name,
-    static const void *const labels[] = {KRL_STEPS(LABELS)};
+    static const void *const labels[] = {KRL_STEPS(LABELS) &&enter};
     if (handlers != NULL) {
         *handlers = labels;
         return stopped;
@@ -100,11 +100,18 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     default:
         goto finished; /* there is no such step */
     dispatch:
+        if (pc->handler != NULL)
+            goto enter;
         number_of_case = 2 * pc->op + (pc->statement >= 0);
         continue;
 #endif
     }
     }
+
+enter:
+    stopped.why = KRL_STOP_COMPILED;
+    stopped.at = (int32_t)(pc - machine->steps);
+    goto stop;
 
 finished:
     stopped.why = KRL_STOP_END;
@@ -125,11 +132,11 @@ stop:
 
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun)
 {
-    struct krl_stopped stopped = {KRL_STOP_STEP, step};
-    if (machine->compiled == NULL)
-        return interpret(machine, step, is_begun, NULL);
-    if (!machine->compiled(machine, &is_begun, &stopped))
-        return interpret(machine, stopped.at, is_begun, NULL);
+    struct krl_stopped stopped = interpret(machine, step, is_begun, NULL);
+    while (stopped.why == KRL_STOP_COMPILED) {
+        machine->compiled(machine, stopped.at);
+        stopped = interpret(machine, machine->at, machine->is_begun, NULL);
+    }
     return stopped;
 }
 
@@ -143,5 +150,16 @@ void krl_thread(struct krl_step *steps, int32_t count)
 #else
     (void)steps;
     (void)count;
+#endif
+}
+
+void krl_thread_entry(struct krl_step *step)
+{
+#if KRL_THREADED
+    const void *const *labels;
+    interpret(NULL, 0, 0, &labels);
+    step->handler = labels[2 * KRL_STEP_COUNT];
+#else
+    step->handler = step;
 #endif
 }

@@ -10,10 +10,12 @@
 #include "register_code.h"
 
 #if defined(__GNUC__)
+#define LIKELY(condition) __builtin_expect(!!(condition), 1)
 #define UNLIKELY(condition) __builtin_expect(!!(condition), 0)
 #define KRL_UNUSED __attribute__((unused))
 #define KRL_INLINE static inline __attribute__((always_inline, unused))
 #else
+#define LIKELY(condition) (condition)
 #define UNLIKELY(condition) (condition)
 #define KRL_UNUSED
 #define KRL_INLINE static __forceinline
@@ -633,6 +635,15 @@ STEP(REMEMBER_DATA)
 
 /* ---------------------------------------------------------------------------- calls */
 
+/* The frame to return to from the call that a step is. */
+KRL_INLINE struct krl_call krl_call_of(krl_cell *const cells, krl_cell *const fp, const struct krl_step *const pc,
+                                       int32_t step, int32_t code, int32_t extent, int32_t statement,
+                                       int32_t serial)
+{
+    return (struct krl_call){step + 1,  code, (int32_t)(fp - cells), extent, statement, serial,
+                             (int32_t)(fp + pc->a - cells), 0};
+}
+
 /* Opens the call that a step is, and notes the frame to return to. Gives the frame of the routine that
  * is called, with its arguments; NULL where there is no room for it. */
 KRL_INLINE krl_cell *krl_enter(struct krl_machine *machine, krl_cell *const cells, krl_cell *const fp,
@@ -642,14 +653,8 @@ KRL_INLINE krl_cell *krl_enter(struct krl_machine *machine, krl_cell *const cell
     int32_t extent = machine->extent + pc->c;
     if (UNLIKELY(machine->open >= machine->most_calls || callee->frame > KRL_MAX_CELLS - extent))
         return NULL;
-    struct krl_call *call = &machine->calls[machine->open++];
-    call->step = step + 1;
-    call->code = machine->code;
-    call->fp = (int32_t)(fp - cells);
-    call->extent = machine->extent;
-    call->statement = statement;
-    call->serial = machine->serial;
-    call->result = (int32_t)(fp + pc->a - cells);
+    machine->calls[machine->open++] =
+        krl_call_of(cells, fp, pc, step, machine->code, machine->extent, statement, machine->serial);
     machine->code = pc->b;
     machine->extent = extent;
     machine->serial = callee->is_owner ? ++machine->serials : 0;
