@@ -38,7 +38,6 @@ enum { CALLED = -1 };
     krl_cell *const cells = machine->cells;                                                        \
     krl_cell registers[count];                                                                     \
     int32_t statement = -1, serial = 0;                                                            \
-    int is_begun;                                                                                  \
     if (LIKELY(at == CALLED)) {                                                                    \
         if (is_owner)                                                                              \
             serial = ++machine->serials;                                                           \
@@ -65,8 +64,8 @@ enum { CALLED = -1 };
 /* The beginning of statements of which only a fault can come between; and of each. */
 #define BEGIN(number, count)                                                                       \
     if (UNLIKELY(left <= count)) {                                                                 \
-        at = number;                                                                               \
-        goto not_begun;                                                                            \
+        at = 2 * number;                                                                           \
+        goto leave;                                                                                \
     }                                                                                              \
     left -= count;
 #define STATEMENT(number) statement = steps[number].statement;
@@ -74,8 +73,8 @@ enum { CALLED = -1 };
 #define INTERPRET(number, later)                                                                   \
     {                                                                                              \
         left += later;                                                                             \
-        at = number;                                                                               \
-        goto begun;                                                                                \
+        at = 2 * number + 1;                                                                       \
+        goto leave;                                                                                \
     }
 #define DO(name, number, later, put, otherwise)                                                    \
     {                                                                                              \
@@ -117,16 +116,10 @@ enum { CALLED = -1 };
         INTERPRET(number, 0)                                                                       \
     fp[0] = registers[steps[number].b];                                                            \
     return left;
-#define LEAVE()                                                                                    \
-    not_begun:                                                                                     \
-    is_begun = 0;                                                                                  \
-    goto leave;                                                                                    \
-    begun:                                                                                         \
-    is_begun = 1;                                                                                  \
-    leave:
+/* `at` is twice the step, and one more where the statement has begun. */
 #define LEFT()                                                                                     \
-    machine->at = at;                                                                              \
-    machine->is_begun = is_begun;                                                                  \
+    machine->at = at >> 1;                                                                         \
+    machine->is_begun = at & 1;                                                                    \
     machine->fp = (int32_t)(fp - cells);                                                           \
     machine->left = left;                                                                          \
     machine->statement = statement;                                                                \

@@ -190,7 +190,7 @@ class _Source:
             if step.line >= 0:
                 yield f"STATEMENT({place})"
             yield from self._step(place, step, later.get(place, 0), in_frame, kept)
-        yield "LEAVE()"
+        yield "leave:"
         yield _each("PUT", kept)
         yield "LEFT();"
         yield "}"
@@ -245,12 +245,12 @@ class _Source:
         """The cells of variables that are reached by an address."""
         reached = set()
         for number in steps:
-            name, _, b, c, _, tag, _ = self._steps[number]
+            name, _, b, c, *_ = self._steps[number]
             if name in ("REFER", "COPY_VIEW"):
                 reached.add(b)
             elif name in ("INDEX_LOCAL", "GET_LOCAL", "PUT_LOCAL", "PUT_LOCAL_K"):
                 reached.add(c)
-            elif re.search("_(WIDE|TWO)_LOCAL", name) or (name == "INDEX_ANY" and tag == 1):
+            elif re.search("_(WIDE|TWO|THREE)_LOCAL", name):
                 reached.add(self._arrays[c][0])
         variables = [range(slot.offset, slot.offset + slot.cells) for slot in slots]
         whole = (cells for cells in variables if not reached.isdisjoint(cells))

@@ -50,7 +50,8 @@
     X(INDEX_TWO_LOCAL) X(INDEX_TWO_DATA) /* the same with two indices, b and d, array c */         \
     X(GET_TWO_LOCAL) X(GET_TWO_DATA)                                                               \
     X(PUT_TWO_LOCAL) X(PUT_TWO_DATA)                                                               \
-    X(INDEX_ANY)      /* the address a, then indices from b on, array c; tag: base in a, frame, data */ \
+    X(INDEX_THREE_LOCAL) X(INDEX_THREE_DATA) /* a the address of an element, three indices from b on, array c */ \
+    X(INDEX_ANY)      /* the address a of array c, then its indices; a the address of the element */ \
     X(INDEX_VIEW)     /* a the address of element b of view c, d cells each */                     \
     X(INDEX_VIEW_ANY) /* a and its indices, view c, d cells each, tag dimensions */                \
     X(ROW)            /* the address a, then b indices, array c */                                 \

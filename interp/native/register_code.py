@@ -15,7 +15,7 @@ CALLS: Final = ("CALL", "CALL_COPY")
 #: Behind these the next step does not follow.
 ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")
 #: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
-#: one behind ``c``. What is not listed works on cells that lie one behind the other.
+#: one behind ``c``, ``f`` and ``g`` are those behind ``b``. What is not listed works on cells that lie one behind the other.
 _ROLES: Final = {
     ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
     ("", "a"): "SET_K GET_DATA REFER",
@@ -36,6 +36,7 @@ _ROLES: Final = {
         "",
     ): "STORE COPY FILL_POSE INVERT PUT_LOCAL PUT_ELEMENT_DATA PUT_WIDE_LOCAL PUT_WIDE_DATA",
     ("ab", "a"): "FOR_UP FOR_DOWN",
+    ("bfg", "a"): "INDEX_THREE_LOCAL INDEX_THREE_DATA",
     ("abc", ""): "COMPOSE",
     ("abd", ""): "PUT_TWO_LOCAL PUT_TWO_DATA",
 }
@@ -72,7 +73,8 @@ class Step(NamedTuple):
 
     def named(self, operands: str) -> set[int]:
         """The registers that are these operands."""
-        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "e": self.c + 1}
+        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d}
+        values |= {"e": self.c + 1, "f": self.b + 1, "g": self.b + 2}
         return {values[one] for one in operands}
 
     def registers(self) -> set[int]:

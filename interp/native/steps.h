@@ -210,6 +210,17 @@ static inline int rounds(float number, int32_t *result)
     FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], INDEX);  \
     int32_t place = array->base + ((int32_t)number * array->sizes[1] + (int32_t)behind) * array->width
 
+#define FIND_THREE                                                                                 \
+    const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
+    READ(first, B);                                                                                \
+    READ(second, REGISTER(pc->b + 1));                                                             \
+    READ(third, REGISTER(pc->b + 2));                                                              \
+    uint32_t number = (uint32_t)first - 1, behind = (uint32_t)second - 1, last = (uint32_t)third - 1; \
+    FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1] ||         \
+                 last >= (uint32_t)array->sizes[2],                                                \
+             INDEX);                                                                               \
+    int32_t row = (int32_t)number * array->sizes[1] + (int32_t)behind;                             \
+    int32_t place = array->base + (row * array->sizes[2] + (int32_t)last) * array->width
 
 /* ---- where to go on */
 STEP(JUMP)
@@ -336,6 +347,8 @@ ACCESS_STEPS(WIDE_LOCAL, fp, FIND_WIDE)
 ACCESS_STEPS(WIDE_DATA, cells, FIND_WIDE)
 ACCESS_STEPS(TWO_LOCAL, fp, FIND_TWO)
 ACCESS_STEPS(TWO_DATA, cells, FIND_TWO)
+ACCESS_STEPS(THREE_LOCAL, fp, FIND_THREE)
+ACCESS_STEPS(THREE_DATA, cells, FIND_THREE)
 ELEMENT_STEPS(GET_LOCAL, PUT_LOCAL, fp, FIND_ONE)
 ELEMENT_STEPS(GET_ELEMENT_DATA, PUT_ELEMENT_DATA, cells, FIND_ONE)
 ELEMENT_STEPS(GET_WIDE_LOCAL, PUT_WIDE_LOCAL, fp, FIND_WIDE)
@@ -359,12 +372,9 @@ STEP(PUT_ELEMENT_DATA_K)
 STEP(INDEX_ANY)
 {
     const struct krl_array *array = KRL_ARRAY(pc->c);
-    int32_t place = krl_flat_place(array->sizes, array->dimensions, &B);
+    int32_t place = krl_flat_place(array->sizes, array->dimensions, &A + 1);
     FAULT_IF(place < 0, INDEX);
-    int32_t base = pc->tag == 0   ? krl_int_in(A)
-                   : pc->tag == 1 ? (int32_t)(fp - cells) + array->base
-                                  : array->base;
-    A = krl_of_int(base + place * array->width);
+    A = krl_of_int(krl_int_in(A) + place * array->width);
     NEXT();
 }
 

@@ -95,9 +95,7 @@ static void instruction(struct translator *at, int32_t place)
     case KRL_MEMBER: krl_member(at, operands[0]); break;
     case KRL_INDEX: {
         int32_t number = krl_add_array(at, krl_array_of(at, 0, operands[0]));
-        step = krl_consume(at, KRL_STEP_INDEX_ANY, types[operands[0]].count + 1);
-        step->b = step->a + 1;
-        step->c = number;
+        krl_consume(at, KRL_STEP_INDEX_ANY, types[operands[0]].count + 1)->c = number;
         krl_push_places(at, 1);
         break;
     }

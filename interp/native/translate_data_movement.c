@@ -149,12 +149,11 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
         krl_secure(at, first);
         for (int32_t i = first; i < at->height; i++)
             krl_settle(at, i);
-        struct krl_step *step = krl_emit(at, KRL_STEP_INDEX_ANY);
-        step->a = step->b = krl_place_of(at, first);
+        struct krl_step *step = krl_emit(at, is_local ? KRL_STEP_INDEX_THREE_LOCAL : KRL_STEP_INDEX_THREE_DATA);
+        step->b = krl_place_of(at, first);
         step->c = number;
-        step->tag = is_local ? 1 : 2;
         at->height = first;
-        krl_push_places(at, 1);
+        krl_push_result(at);
         return;
     }
     struct virtual_value item = {ELEMENT, krl_operand(at, first), 0, number, 0, (uint16_t)(is_local != 0)};
