@@ -13,13 +13,15 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import count
 from pathlib import Path
 from typing import Final
 
-from interp.bytecode.program import CodeKind, Parameter, Program, Slot, stack_cells
+from grammar.semantics.types import BOOL, REAL, Type
+from interp.bytecode.cell_layout import kind_at
+from interp.bytecode.program import CodeKind, Mode, Parameter, Program, Slot, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 from interp.native.machine import Machine
@@ -37,6 +39,8 @@ _HEADERS: Final = (
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-w")
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
+#: What a cell of a type holds; of all others a number.
+_KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
 #: Steps that are left to the interpreter.
 _LEFT: Final = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
 
@@ -123,6 +127,7 @@ class _Source:
         self._program = program
         self._steps = [Step(*one) for one in core.steps()]
         self._arrays = core.arrays()
+        self._kinds: dict[int, str] = {}
         firsts = [core.step(number, 0) for number in range(len(program.codes))]
         ends = [*firsts[1:], len(self._steps)]
         bodies = zip(program.codes, map(range, firsts, ends), strict=True)
@@ -165,20 +170,24 @@ class _Source:
         in_frame = self._in_frame(slots, body)
         used = {one for place in body for one in self._steps[place].registers()}
         kept = sorted(used - in_frame)
+        self._kinds = dict(self._kinds_of(slots))
         received = sum(slot.cells for slot in slots if isinstance(slot.variable, Parameter))
         yield f"CODE({number}) {{"
         yield f"ENTER({number}, {max(used, default=0) + 1}, {int(number in self._owners)}) {{"
         known = self._valued(body)
+        in_use = [one for one in kept if one < self._program.frames[number]]
+        live = self._live(body, set(kept).difference(in_use))
         for place in sorted(self._loops.intersection(body)):
             valued = known.get(place, frozenset())
             yield f"case {place}:"
-            yield _each("GET_VALUE", valued.intersection(kept))
-            yield _each("GET", set(kept) - valued)
+            yield self._each("GET_VALUE", valued.intersection(kept))
+            yield self._each("GET", set(in_use) - valued)
+            yield self._each("BLANK", set(kept).difference(in_use, valued))
             yield f"goto do_{place};"
         yield "}"
         yield "start:"
-        yield _each("GET", [one for one in kept if one < received])
-        yield _each("BLANK", [one for one in kept if one >= received])
+        yield self._each("GET", [one for one in kept if one < received])
+        yield self._each("BLANK", [one for one in kept if one >= received])
         yield from _blank_cells(set(range(received, self._program.frames[number])) - set(kept))
         yield f"goto do_{first};"
         counted, later = self._runs(body)
@@ -186,14 +195,54 @@ class _Source:
             step = self._steps[place]
             yield f"do_{place}:;"
             if place in counted:
-                yield f"BEGIN({place}, {counted[place]})"
+                yield f"BEGIN({place}, {counted[place]}, {self._each('PUT', live[place])})"
             if step.line >= 0:
                 yield f"STATEMENT({place})"
-            yield from self._step(place, step, later.get(place, 0), in_frame, kept)
+            yield from self._step(place, later.get(place, 0), in_frame, kept, live[place])
         yield "leave:"
-        yield _each("PUT", kept)
+        yield self._each("PUT", in_use)
         yield "LEFT();"
         yield "}"
+
+    def _live(self, body: range, stack: set[int]) -> dict[int, frozenset[int]]:
+        """The places of the stack of operands that are read from each step on before written."""
+        found: dict[int, frozenset[int]] = dict.fromkeys(body, frozenset())
+        before: dict[int, list[int]] = {place: [place - 1] for place in body}
+        for place in body:
+            if self._steps[place].is_jump:
+                before[self._steps[place].d].append(place)
+        todo = list(body)
+        while todo:
+            place = todo.pop()
+            step = self._steps[place]
+            roles = roles_of(step.name)
+            after = found.get(place + 1, frozenset()) if step.name not in ENDS else frozenset()
+            if step.is_jump:
+                after |= found[step.d]
+            if step.name == "PYTHON":
+                live = frozenset(one for one in stack if one < step.a)
+            elif roles is None and step.name not in (*ENDS, "AT"):
+                live = frozenset(stack)
+            else:
+                read, written = map(step.named, roles or ("", ""))
+                live = (after - written) | stack.intersection(read)
+            if live != found[place]:
+                found[place] = live
+                todo += (one for one in before[place] if one in body)
+        return found
+
+    def _kinds_of(self, slots: Iterable[Slot]) -> Iterator[tuple[int, str]]:
+        """What cells of variables hold, if they hold anything."""
+        for slot in slots:
+            variable, type_ = slot.variable, self._program.types[slot.variable.type]
+            for place in range(slot.cells):
+                is_value = not isinstance(variable, Parameter) or variable.mode is Mode.IN
+                kind = _KINDS.get(kind_at(type_, place), "INT") if is_value else "INT"
+                yield slot.offset + place, kind
+
+    def _each(self, word: str, registers: Iterable[int]) -> str:
+        """A macro for each register, with what it holds."""
+        return "".join(f"{word}({one}, {self._kinds.get(one, 'ANY')})" for one in sorted(registers))
 
     def _runs(self, body: range) -> tuple[dict[int, int], dict[int, int]]:
         """Statements that are counted together, as nothing but a fault can come between.
@@ -257,39 +306,45 @@ class _Source:
         return frozenset(reached.union(*whole))
 
     def _step(
-        self, place: int, step: Step, later: int, in_frame: frozenset[int], kept: Sequence[int]
+        self,
+        place: int,
+        later: int,
+        in_frame: frozenset[int],
+        kept: Sequence[int],
+        live: frozenset[int],
     ) -> Iterator[str]:
-        name, roles = step.name, roles_of(step.name)
+        step = self._steps[place]
+        name, roles, save = step.name, roles_of(step.name), self._each("PUT", live)
         if name in CALLS:
             callee = self._program.codes[step.b]
             end = step.a + sum(map(stack_cells, callee.parameters))
-            yield _each("PUT", [one for one in kept if step.a <= one < end])
-            save = _each("PUT", [one for one in kept if one < step.a])
+            yield self._each("PUT", [one for one in kept if step.a <= one < end])
+            below = self._each("PUT", [one for one in kept if one < step.a])
             size, frame, prepare = self._program.frames[step.b], step.a, ""
             if name == "CALL_COPY":
                 frame, prepare = step.d, f"RECEIVE({place})"
-            yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {save})"
+            yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {below})"
             if callee.result is not None:
                 if frame != step.a:
                     yield f"fp[{step.a}] = fp[{frame}];"
-                yield _each("GET", {step.a} - in_frame)
+                yield self._each("GET", {step.a} - in_frame)
         elif name in _LEFT:
-            yield f"INTERPRET({place}, {later})"
+            yield f"INTERPRET({place}, {later}, {save})"
         elif name == "AT":
             yield f"statement = {step.b};"
         elif name == "RETURN":
-            yield f"RETURN({place})"
+            yield f"RETURN({place}, {save})"
         elif roles is None:
-            yield _each("PUT", kept)
-            yield f"DO_IN_FRAME({name}, {place}, {later}){_each('GET', kept)}"
+            yield self._each("PUT", kept)
+            yield f"DO_IN_FRAME({name}, {place}, {later}, {save}){self._each('GET', kept)}"
         else:
-            yield _each("GET", in_frame.intersection(step.named(roles[0])))
-            written = _each("PUT", in_frame.intersection(step.named(roles[1])))
+            yield self._each("GET", in_frame.intersection(step.named(roles[0])))
+            written = self._each("PUT", in_frame.intersection(step.named(roles[1])))
             jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
             if name == "RETURN_VALUE":
-                yield f"RETURN_VALUE({place})"
+                yield f"RETURN_VALUE({place}, {save})"
             else:
-                yield f"DO({name}, {place}, {later}, {written}, {jump})"
+                yield f"DO({name}, {place}, {later}, {save}, {written}, {jump})"
 
 
 def _blank_cells(cells: set[int]) -> Iterator[str]:
@@ -297,10 +352,6 @@ def _blank_cells(cells: set[int]) -> Iterator[str]:
     for first in sorted(cell for cell in cells if cell - 1 not in cells):
         end = next(end for end in count(first) if end not in cells)
         yield f"BLANK_CELLS({first}, {end})"
-
-
-def _each(word: str, registers: Iterable[int]) -> str:
-    return "".join(f"{word}({one})" for one in sorted(registers))
 
 
 def _int(number: int) -> str:

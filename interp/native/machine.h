@@ -208,6 +208,7 @@ void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
                    const struct krl_entry *entry, krl_cell *inputs);
 
 struct krl_outside {
+    int (*is_plain)(const struct krl_program *program, int32_t type);
     int (*compute)(enum krl_function function, float one, float other, float *result);
     int (*compose)(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
     int (*invert)(krl_cell *target, const krl_cell *pose, int32_t size);

@@ -364,7 +364,7 @@ static PyObject *core_arrays(PyObject *self, PyObject *Py_UNUSED(ignored))
 /* Runs from now on what was compiled from these very steps. The library stays. */
 static PyObject *core_load(PyObject *self, PyObject *arguments)
 {
-    static const struct krl_outside outside = {krl_compute, krl_compose, krl_invert, krl_call_text};
+    static const struct krl_outside outside = {krl_is_plain, krl_compute, krl_compose, krl_invert, krl_call_text};
     struct krl_machine *machine = &((struct core *)self)->machine;
     const char *path;
     if (!PyArg_ParseTuple(arguments, "s", &path))

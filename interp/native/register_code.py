@@ -15,7 +15,8 @@ CALLS: Final = ("CALL", "CALL_COPY")
 #: Behind these the next step does not follow.
 ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")
 #: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
-#: one behind ``c``, ``f`` and ``g`` are those behind ``b``. What is not listed works on cells that lie one behind the other.
+#: one behind ``c``, ``f`` and ``g`` are those behind ``b``. What is not listed works on cells that
+#: lie one behind the other.
 _ROLES: Final = {
     ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
     ("", "a"): "SET_K GET_DATA REFER",

@@ -24,6 +24,19 @@
 /* Where a step goes on that does not fault, whose codes are not negative. */
 enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
 
+/* A register is a cell, unless compiled.h has another form of it. */
+#ifndef KRL_REGISTERS
+typedef krl_cell krl_register;
+#define REGISTER_OF(cell) (cell)
+#define CELL_OF(register) (register)
+#define HAS_VALUE(register) ((register) != KRL_NOTHING)
+#define INT(register) krl_int_in(register)
+#define REAL(register) krl_real_in(register)
+#define OF_INT krl_of_int
+#define OF_BOOL krl_of_bool
+#define OF_REAL krl_of_real
+#endif
+
 #ifndef KRL_ARRAY
 #define KRL_ARRAY(number) (&machine->arrays[number])
 #endif
@@ -32,12 +45,13 @@ enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
 #define STEP(name)                                                                                 \
     KRL_INLINE int krl_step_##name(KRL_UNUSED struct krl_machine *machine,                         \
                                    KRL_UNUSED krl_cell *const cells, KRL_UNUSED krl_cell *const fp, \
-                                   KRL_UNUSED krl_cell *const registers,                           \
+                                   KRL_UNUSED krl_register *const registers,                       \
                                    KRL_UNUSED const struct krl_step *const pc)
 #define NEXT() return KRL_GO_NEXT
 #define JUMP() return KRL_GO_JUMP
 
 #define REGISTER(number) registers[number]
+#define CELL(number) fp[number]
 #define A REGISTER(pc->a)
 #define B REGISTER(pc->b)
 #define C REGISTER(pc->c)
@@ -50,9 +64,10 @@ enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
             FAULT(name);                                                                           \
     } while (0)
 /* What is read may have no value, unless it is known to come from another step. */
-#define READ(name, cell)                                                                           \
-    krl_cell name = (cell);                                                                        \
-    FAULT_IF(name == KRL_NOTHING, UNINITIALISED)
+#define READ(name, place)                                                                          \
+    krl_register name = (place);                                                                   \
+    FAULT_IF(!HAS_VALUE(name), UNINITIALISED)
+#define READ_CELL(name, cell) READ(name, REGISTER_OF(cell))
 
 /* ---------------------------------------------------------------------------- arithmetic */
 
@@ -86,14 +101,14 @@ static inline int rounds(float number, int32_t *result)
     do {                                                                                           \
         float result = (expression);                                                               \
         FAULT_IF(!krl_is_finite(result), OVERFLOW);                                                \
-        A = krl_of_real(result);                                                                   \
+        A = OF_REAL(result);                                                                       \
         NEXT();                                                                                    \
     } while (0)
 #define INT_RESULT(operation, left_operand, right_operand)                                         \
     do {                                                                                           \
         int32_t result;                                                                            \
         FAULT_IF(operation(left_operand, right_operand, &result), OVERFLOW);                       \
-        A = krl_of_int(result);                                                                    \
+        A = OF_INT(result);                                                                        \
         NEXT();                                                                                    \
     } while (0)
 
@@ -102,15 +117,15 @@ static inline int rounds(float number, int32_t *result)
 #define READ_BOTH                                                                                  \
     READ(b, B);                                                                                    \
     READ(c, C)
-#define FOR_STEP(name, cell, operator)                                                             \
+#define FOR_STEP(name, get, put, operator)                                                         \
     STEP(name)                                                                                     \
     {                                                                                              \
-        READ(counter, cell);                                                                       \
+        READ(counter, get);                                                                        \
         READ(limit, B);                                                                            \
         int32_t result;                                                                            \
-        FAULT_IF(adds(krl_int_in(counter), pc->c, &result), OVERFLOW);                             \
-        cell = krl_of_int(result);                                                                 \
-        if (result operator krl_int_in(limit))                                                     \
+        FAULT_IF(adds(INT(counter), pc->c, &result), OVERFLOW);                                    \
+        put(OF_INT(result));                                                                       \
+        if (result operator INT(limit))                                                            \
             JUMP();                                                                                \
         NEXT();                                                                                    \
     }
@@ -118,31 +133,31 @@ static inline int rounds(float number, int32_t *result)
     STEP(name)                                                                                     \
     {                                                                                              \
         READ_BOTH;                                                                                 \
-        INT_RESULT(operation, krl_int_in(b), krl_int_in(c));                                       \
+        INT_RESULT(operation, INT(b), INT(c));                                                     \
     }
 #define INT_STEP_K(name, operation)                                                                \
     STEP(name)                                                                                     \
     {                                                                                              \
         READ(b, B);                                                                                \
-        INT_RESULT(operation, krl_int_in(b), pc->c);                                               \
+        INT_RESULT(operation, INT(b), pc->c);                                                      \
     }
 #define REAL_STEP(name, operator)                                                                  \
     STEP(name##_REAL)                                                                              \
     {                                                                                              \
         READ_BOTH;                                                                                 \
-        REAL_RESULT(krl_real_in(b) operator krl_real_in(c));                                       \
+        REAL_RESULT(REAL(b) operator REAL(c));                                                     \
     }                                                                                              \
     STEP(name##_REAL_K)                                                                            \
     {                                                                                              \
         READ(b, B);                                                                                \
-        REAL_RESULT(krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c));                    \
+        REAL_RESULT(REAL(b) operator krl_real_of_bits((uint32_t)pc->c));                           \
     }
 /* What gives a BOOL, and the jump unless it holds. */
 #define RELATION_STEP(name, read, holds)                                                           \
     STEP(name)                                                                                     \
     {                                                                                              \
         read;                                                                                      \
-        A = krl_of_bool(holds);                                                                    \
+        A = OF_BOOL(holds);                                                                        \
         NEXT();                                                                                    \
     }                                                                                              \
     STEP(UNLESS_##name)                                                                            \
@@ -153,17 +168,17 @@ static inline int rounds(float number, int32_t *result)
         JUMP();                                                                                    \
     }
 #define RELATION_STEPS(name, operator)                                                             \
-    RELATION_STEP(name##_INT, READ_BOTH, krl_int_in(b) operator krl_int_in(c))                     \
-    RELATION_STEP(name##_INT_K, READ(b, B), krl_int_in(b) operator pc->c)                          \
-    RELATION_STEP(name##_REAL, READ_BOTH, krl_real_in(b) operator krl_real_in(c))                  \
+    RELATION_STEP(name##_INT, READ_BOTH, INT(b) operator INT(c))                                   \
+    RELATION_STEP(name##_INT_K, READ(b, B), INT(b) operator pc->c)                                 \
+    RELATION_STEP(name##_REAL, READ_BOTH, REAL(b) operator REAL(c))                                \
     RELATION_STEP(name##_REAL_K, READ(b, B),                                                       \
-                  krl_real_in(b) operator krl_real_of_bits((uint32_t)pc->c))
+                  REAL(b) operator krl_real_of_bits((uint32_t)pc->c))
 /* Two operands that are looked at as numbers of 32 bits; both BOOL, or both INT. */
 #define BIT_STEP(name, make, operator)                                                             \
     STEP(name)                                                                                     \
     {                                                                                              \
         READ_BOTH;                                                                                 \
-        A = make(krl_int_in(b) operator krl_int_in(c));                                            \
+        A = make(INT(b) operator INT(c));                                                          \
         NEXT();                                                                                    \
     }
 
@@ -172,14 +187,14 @@ static inline int rounds(float number, int32_t *result)
     STEP(INDEX_##suffix)                                                                           \
     {                                                                                              \
         find;                                                                                      \
-        A = krl_of_int((int32_t)((base) + place - cells));                                         \
+        A = OF_INT((int32_t)((base) + place - cells));                                             \
         NEXT();                                                                                    \
     }
 #define ELEMENT_STEPS(get, put, base, find)                                                        \
     STEP(get)                                                                                      \
     {                                                                                              \
         find;                                                                                      \
-        READ(found, (base)[place]);                                                                \
+        READ_CELL(found, (base)[place]);                                                           \
         A = found;                                                                                 \
         NEXT();                                                                                    \
     }                                                                                              \
@@ -187,27 +202,27 @@ static inline int rounds(float number, int32_t *result)
     {                                                                                              \
         find;                                                                                      \
         READ(value, A);                                                                            \
-        (base)[place] = value;                                                                     \
+        (base)[place] = CELL_OF(value);                                                            \
         NEXT();                                                                                    \
     }
 /* Indices count from 1; as numbers without sign, 0 and negative ones are too large. */
 #define FIND_ONE                                                                                   \
     READ(index, B);                                                                                \
-    uint32_t number = (uint32_t)index - 1;                                                         \
-    FAULT_IF(number >= (uint32_t)pc->d, INDEX);                                                   \
+    uint32_t number = (uint32_t)INT(index) - 1;                                                    \
+    FAULT_IF(number >= (uint32_t)pc->d, INDEX);                                                    \
     int32_t place = pc->c + (int32_t)number
 #define FIND_WIDE                                                                                  \
-    const struct krl_array *array = KRL_ARRAY(pc->c);                                       \
+    const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
     READ(index, B);                                                                                \
-    uint32_t number = (uint32_t)index - 1;                                                         \
-    FAULT_IF(number >= (uint32_t)array->sizes[0], INDEX);                                         \
+    uint32_t number = (uint32_t)INT(index) - 1;                                                    \
+    FAULT_IF(number >= (uint32_t)array->sizes[0], INDEX);                                          \
     int32_t place = array->base + (int32_t)number * array->width
 #define FIND_TWO                                                                                   \
-    const struct krl_array *array = KRL_ARRAY(pc->c);                                       \
+    const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
     READ(index, B);                                                                                \
     READ(other, D);                                                                                \
-    uint32_t number = (uint32_t)index - 1, behind = (uint32_t)other - 1;                           \
-    FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], INDEX);  \
+    uint32_t number = (uint32_t)INT(index) - 1, behind = (uint32_t)INT(other) - 1;                 \
+    FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], INDEX);   \
     int32_t place = array->base + ((int32_t)number * array->sizes[1] + (int32_t)behind) * array->width
 
 #define FIND_THREE                                                                                 \
@@ -215,7 +230,7 @@ static inline int rounds(float number, int32_t *result)
     READ(first, B);                                                                                \
     READ(second, REGISTER(pc->b + 1));                                                             \
     READ(third, REGISTER(pc->b + 2));                                                              \
-    uint32_t number = (uint32_t)first - 1, behind = (uint32_t)second - 1, last = (uint32_t)third - 1; \
+    uint32_t number = (uint32_t)INT(first) - 1, behind = (uint32_t)INT(second) - 1, last = (uint32_t)INT(third) - 1; \
     FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1] ||         \
                  last >= (uint32_t)array->sizes[2],                                                \
              INDEX);                                                                               \
@@ -231,7 +246,7 @@ STEP(JUMP)
 STEP(JUMP_IF)
 {
     READ(b, B);
-    if (krl_int_in(b))
+    if (INT(b))
         JUMP();
     NEXT();
 }
@@ -239,7 +254,7 @@ STEP(JUMP_IF)
 STEP(JUMP_UNLESS)
 {
     READ(b, B);
-    if (krl_int_in(b))
+    if (INT(b))
         NEXT();
     JUMP();
 }
@@ -247,14 +262,16 @@ STEP(JUMP_UNLESS)
 STEP(CASE)
 {
     READ(b, B);
-    if (krl_int_in(b) == pc->c)
+    if (INT(b) == pc->c)
         JUMP();
     NEXT();
 }
-FOR_STEP(FOR_UP, A, <=)
-FOR_STEP(FOR_DOWN, A, >=)
-FOR_STEP(FOR_DATA_UP, cells[pc->a], <=)
-FOR_STEP(FOR_DATA_DOWN, cells[pc->a], >=)
+#define SET_A(value) A = value
+#define SET_DATA(value) cells[pc->a] = CELL_OF(value)
+FOR_STEP(FOR_UP, A, SET_A, <=)
+FOR_STEP(FOR_DOWN, A, SET_A, >=)
+FOR_STEP(FOR_DATA_UP, REGISTER_OF(cells[pc->a]), SET_DATA, <=)
+FOR_STEP(FOR_DATA_DOWN, REGISTER_OF(cells[pc->a]), SET_DATA, >=)
 KRL_COMPARISONS(RELATION_STEPS)
 
 /* ---- moving */
@@ -278,13 +295,13 @@ STEP(PASS)
 
 STEP(SET_K)
 {
-    A = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    A = REGISTER_OF(krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b));
     NEXT();
 }
 
 STEP(GET_DATA)
 {
-    READ(b, cells[pc->b]);
+    READ_CELL(b, cells[pc->b]);
     A = b;
     NEXT();
 }
@@ -292,7 +309,7 @@ STEP(GET_DATA)
 STEP(PUT_DATA)
 {
     READ(b, B);
-    cells[pc->a] = b;
+    cells[pc->a] = CELL_OF(b);
     NEXT();
 }
 
@@ -304,21 +321,21 @@ STEP(PUT_DATA_K)
 
 STEP(REFER)
 {
-    A = krl_of_int((int32_t)(fp + pc->b - cells));
+    A = OF_INT((int32_t)(fp + pc->b - cells));
     NEXT();
 }
 
 STEP(OFFSET)
 {
     READ(b, B);
-    A = krl_of_int(krl_int_in(b) + pc->c);
+    A = OF_INT(INT(b) + pc->c);
     NEXT();
 }
 
 STEP(LOAD)
 {
     READ(b, B);
-    READ(found, cells[krl_int_in(b)]);
+    READ_CELL(found, cells[INT(b)]);
     A = found;
     NEXT();
 }
@@ -327,16 +344,16 @@ STEP(STORE)
 {
     READ(address, A);
     READ(value, B);
-    machine->last = krl_int_in(address);
-    cells[krl_int_in(address)] = value;
+    machine->last = INT(address);
+    cells[INT(address)] = CELL_OF(value);
     NEXT();
 }
 
 STEP(STORE_K)
 {
     READ(address, A);
-    machine->last = krl_int_in(address);
-    cells[krl_int_in(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    machine->last = INT(address);
+    cells[INT(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
     NEXT();
 }
 
@@ -372,9 +389,9 @@ STEP(PUT_ELEMENT_DATA_K)
 STEP(INDEX_ANY)
 {
     const struct krl_array *array = KRL_ARRAY(pc->c);
-    int32_t place = krl_flat_place(array->sizes, array->dimensions, &A + 1);
+    int32_t place = krl_flat_place(array->sizes, array->dimensions, &CELL(pc->a) + 1);
     FAULT_IF(place < 0, INDEX);
-    A = krl_of_int(krl_int_in(A) + place * array->width);
+    CELL(pc->a) = krl_of_int(krl_int_in(CELL(pc->a)) + place * array->width);
     NEXT();
 }
 
@@ -382,80 +399,82 @@ STEP(INDEX_VIEW)
 {
     READ(index, B);
     READ(base, C);
-    uint32_t number = (uint32_t)index - 1;
-    FAULT_IF(number >= (uint32_t)krl_int_in(REGISTER(pc->c + 1)), INDEX);
-    A = krl_of_int(krl_int_in(base) + (int32_t)number * pc->d);
+    uint32_t number = (uint32_t)INT(index) - 1;
+    FAULT_IF(number >= (uint32_t)INT(REGISTER(pc->c + 1)), INDEX);
+    A = OF_INT(INT(base) + (int32_t)number * pc->d);
     NEXT();
 }
 
 STEP(INDEX_VIEW_ANY)
 {
     int32_t sizes[KRL_MOST_DIMENSIONS];
-    READ(base, C);
-    krl_view_sizes(&C, pc->tag, sizes);
-    int32_t place = krl_flat_place(sizes, pc->tag, &A);
+    krl_cell base = CELL(pc->c);
+    FAULT_IF(base == KRL_NOTHING, UNINITIALISED);
+    krl_view_sizes(&CELL(pc->c), pc->tag, sizes);
+    int32_t place = krl_flat_place(sizes, pc->tag, &CELL(pc->a));
     FAULT_IF(place < 0, INDEX);
-    A = krl_of_int(krl_int_in(base) + place * pc->d);
+    CELL(pc->a) = krl_of_int(krl_int_in(base) + place * pc->d);
     NEXT();
 }
 
 STEP(ROW)
 {
     const struct krl_array *array = KRL_ARRAY(pc->c);
-    int32_t place = krl_flat_place(array->sizes, pc->b, &A + 1), width = array->width;
+    int32_t place = krl_flat_place(array->sizes, pc->b, &CELL(pc->a) + 1), width = array->width;
     FAULT_IF(place < 0, INDEX);
     for (int32_t i = pc->b; i < array->dimensions; i++)
         width *= array->sizes[i];
-    A = krl_of_int(krl_int_in(A) + place * width);
+    CELL(pc->a) = krl_of_int(krl_int_in(CELL(pc->a)) + place * width);
     for (int32_t i = pc->b; i < array->dimensions; i++)
-        (&A)[1 + i - pc->b] = krl_of_int(array->sizes[i]);
+        (&CELL(pc->a))[1 + i - pc->b] = krl_of_int(array->sizes[i]);
     NEXT();
 }
 
 STEP(ROW_VIEW)
 {
     int32_t sizes[KRL_MOST_DIMENSIONS], width = pc->d;
-    READ(base, C);
-    krl_view_sizes(&C, pc->tag, sizes);
+    krl_cell base = CELL(pc->c);
+    FAULT_IF(base == KRL_NOTHING, UNINITIALISED);
+    krl_view_sizes(&CELL(pc->c), pc->tag, sizes);
     for (int32_t i = pc->b; i < pc->tag; i++)
         width *= sizes[i];
-    int32_t place = krl_flat_place(sizes, pc->b, &A);
+    int32_t place = krl_flat_place(sizes, pc->b, &CELL(pc->a));
     FAULT_IF(place < 0, INDEX);
-    A = krl_of_int(krl_int_in(base) + place * width);
+    CELL(pc->a) = krl_of_int(krl_int_in(base) + place * width);
     for (int32_t i = pc->b; i < pc->tag; i++)
-        (&A)[1 + i - pc->b] = krl_of_int(sizes[i]);
+        (&CELL(pc->a))[1 + i - pc->b] = krl_of_int(sizes[i]);
     NEXT();
 }
 
 /* ---- blocks of cells; references in place always have values */
 STEP(COPY)
 {
-    machine->last = krl_int_in(A);
-    krl_copy_cells(cells + krl_int_in(A), cells + krl_int_in(B), pc->c);
+    machine->last = INT(A);
+    krl_copy_cells(cells + INT(A), cells + INT(B), pc->c);
     NEXT();
 }
 
 STEP(CLEAR)
 {
-    krl_blank_cells(cells + krl_int_in(A), pc->c);
+    krl_blank_cells(cells + INT(A), pc->c);
     NEXT();
 }
 
 STEP(FILL_POSE)
 {
-    krl_cell *target = cells + krl_int_in(A);
-    machine->last = krl_int_in(A);
-    krl_copy_cells(target, cells + krl_int_in(B), pc->d);
+    krl_cell *target = cells + INT(A);
+    machine->last = INT(A);
+    krl_copy_cells(target, cells + INT(B), pc->d);
     krl_blank_cells(target + pc->d, pc->c - pc->d);
     NEXT();
 }
 
 STEP(FILL_ARRAY)
 {
-    int fault = krl_fill_array(cells, &A, &B, pc->c, pc->d);
+    int fault = krl_fill_array(cells, &CELL(pc->a), &CELL(pc->b), pc->c, pc->d);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
-    machine->last = krl_int_in(A);
+    machine->last = krl_int_in(CELL(pc->a));
     NEXT();
 }
 
@@ -463,23 +482,23 @@ STEP(COPY_VIEW)
 {
     int32_t length = pc->d;
     for (int32_t i = 1; i <= pc->tag; i++)
-        length *= krl_int_in((&A)[i]);
+        length *= krl_int_in((&CELL(pc->a))[i]);
     FAULT_IF(length > pc->c, STACK);
-    krl_copy_cells(&B, cells + krl_int_in(A), length);
-    A = krl_of_int((int32_t)(fp + pc->b - cells));
+    krl_copy_cells(&CELL(pc->b), cells + krl_int_in(CELL(pc->a)), length);
+    CELL(pc->a) = krl_of_int((int32_t)(fp + pc->b - cells));
     NEXT();
 }
 
 STEP(SET_TEXT)
 {
-    machine->last = krl_int_in(A);
-    krl_set_text(cells + krl_int_in(A), krl_int_in((&A)[1]), &machine->program.texts[pc->b]);
+    machine->last = krl_int_in(CELL(pc->a));
+    krl_set_text(cells + krl_int_in(CELL(pc->a)), krl_int_in((&CELL(pc->a))[1]), &machine->program.texts[pc->b]);
     NEXT();
 }
 
 STEP(COMPOSE)
 {
-    int fault = krl_compose(cells + krl_int_in(A), cells + krl_int_in(B), cells + krl_int_in(C), pc->d);
+    int fault = krl_compose(cells + INT(A), cells + INT(B), cells + INT(C), pc->d);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
     NEXT();
@@ -487,7 +506,7 @@ STEP(COMPOSE)
 
 STEP(INVERT)
 {
-    int fault = krl_invert(cells + krl_int_in(B), cells + krl_int_in(A), pc->c);
+    int fault = krl_invert(cells + INT(B), cells + INT(A), pc->c);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
     NEXT();
@@ -502,50 +521,50 @@ INT_STEP_K(MUL_INT_K, multiplies)
 STEP(DIV_INT)
 {
     READ_BOTH;
-    int32_t divisor = krl_int_in(c);
+    int32_t divisor = INT(c);
     FAULT_IF(divisor == 0, DIVISION_BY_ZERO);
     if (UNLIKELY(divisor == -1))
-        INT_RESULT(subtracts, 0, krl_int_in(b));
-    A = krl_of_int(krl_int_in(b) / divisor);
+        INT_RESULT(subtracts, 0, INT(b));
+    A = OF_INT(INT(b) / divisor);
     NEXT();
 }
 
 STEP(DIV_INT_K) /* neither 0 nor -1 */
 {
     READ(b, B);
-    A = krl_of_int(krl_int_in(b) / pc->c);
+    A = OF_INT(INT(b) / pc->c);
     NEXT();
 }
 
 STEP(NEG_INT)
 {
     READ(b, B);
-    INT_RESULT(subtracts, 0, krl_int_in(b));
+    INT_RESULT(subtracts, 0, INT(b));
 }
 
 STEP(NOT_BITS)
 {
     READ(b, B);
-    A = krl_of_int(~krl_int_in(b));
+    A = OF_INT(~INT(b));
     NEXT();
 }
-BIT_STEP(AND_BITS, krl_of_int, &)
-BIT_STEP(OR_BITS, krl_of_int, |)
-BIT_STEP(EXOR_BITS, krl_of_int, ^)
-BIT_STEP(AND_BOOL, krl_of_bool, &)
-BIT_STEP(OR_BOOL, krl_of_bool, |)
-BIT_STEP(EXOR_BOOL, krl_of_bool, ^)
+BIT_STEP(AND_BITS, OF_INT, &)
+BIT_STEP(OR_BITS, OF_INT, |)
+BIT_STEP(EXOR_BITS, OF_INT, ^)
+BIT_STEP(AND_BOOL, OF_BOOL, &)
+BIT_STEP(OR_BOOL, OF_BOOL, |)
+BIT_STEP(EXOR_BOOL, OF_BOOL, ^)
 STEP(AND_BITS_K)
 {
     READ(b, B);
-    A = krl_of_int(krl_int_in(b) & pc->c);
+    A = OF_INT(INT(b) & pc->c);
     NEXT();
 }
 
 STEP(NOT_BOOL)
 {
     READ(b, B);
-    A = krl_of_bool(!krl_int_in(b));
+    A = OF_BOOL(!INT(b));
     NEXT();
 }
 REAL_STEP(ADD, +)
@@ -554,27 +573,27 @@ REAL_STEP(MUL, *)
 STEP(DIV_REAL)
 {
     READ_BOTH;
-    FAULT_IF(krl_real_in(c) == 0, DIVISION_BY_ZERO);
-    REAL_RESULT(krl_real_in(b) / krl_real_in(c));
+    FAULT_IF(REAL(c) == 0, DIVISION_BY_ZERO);
+    REAL_RESULT(REAL(b) / REAL(c));
 }
 
 STEP(DIV_REAL_K) /* not zero */
 {
     READ(b, B);
-    REAL_RESULT(krl_real_in(b) / krl_real_of_bits((uint32_t)pc->c));
+    REAL_RESULT(REAL(b) / krl_real_of_bits((uint32_t)pc->c));
 }
 
 STEP(NEG_REAL)
 {
     READ(b, B);
-    A = krl_of_real(-krl_real_in(b));
+    A = OF_REAL(-REAL(b));
     NEXT();
 }
 
 STEP(INT_TO_REAL)
 {
     READ(b, B);
-    A = krl_of_real((float)krl_int_in(b));
+    A = OF_REAL((float)INT(b));
     NEXT();
 }
 
@@ -582,15 +601,15 @@ STEP(REAL_TO_INT)
 {
     READ(b, B);
     int32_t result;
-    FAULT_IF(rounds(krl_real_in(b), &result), OVERFLOW);
-    A = krl_of_int(result);
+    FAULT_IF(rounds(REAL(b), &result), OVERFLOW);
+    A = OF_INT(result);
     NEXT();
 }
 
 STEP(INT_TO_CHAR)
 {
     READ(b, B);
-    if (UNLIKELY((uint32_t)krl_int_in(b) > 255))
+    if (UNLIKELY((uint32_t)INT(b) > 255))
         FAULT(INADMISSIBLE);
     A = b;
     NEXT();
@@ -602,18 +621,18 @@ STEP(FUNCTION)
     READ(b, B);
     if (pc->tag == KRL_ATAN2) {
         READ(c, C);
-        other = krl_real_in(c);
+        other = REAL(c);
     }
-    int fault = krl_compute((enum krl_function)pc->tag, krl_real_in(b), other, &result);
+    int fault = krl_compute((enum krl_function)pc->tag, REAL(b), other, &result);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
-    A = krl_of_real(result);
+    A = OF_REAL(result);
     NEXT();
 }
 
 STEP(TEXT)
 {
-    krl_call_text(machine, (enum krl_text_function)pc->tag, &machine->program.builtins[pc->b], &A);
+    krl_call_text(machine, (enum krl_text_function)pc->tag, &machine->program.builtins[pc->b], &CELL(pc->a));
     NEXT();
 }
 

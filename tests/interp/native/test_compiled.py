@@ -10,7 +10,7 @@ import pytest
 
 from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import prepared
-from conformance.differential.runs import EXECUTORS, trace_of
+from conformance.differential.runs import EXECUTORS, Factory, trace_of
 from grammar.generation.closed.programs import seeded
 from grammar.syntax.source import Source
 from interp.bench.kernels import kernels_in
@@ -29,11 +29,29 @@ DEFFCT INT DEPTH(N:IN)
    IF N == 0 THEN
       RETURN 0
    ENDIF
-   K = DEPTH(N - 1) + 1
+   K = (N - N) + DEPTH(N - 1) + 1
    IF (K == 300) OR (K == 700) THEN
       $FLAG[1] = TRUE
    ENDIF
    RETURN K + N - N
+ENDFCT
+"""
+
+
+COPIES = """DEF RUN()
+   DECL FRAME P
+   DECL INT I
+   P = {X 1.5, Y 2.0, Z 3.0, A 0.0, B 0.0, C 0.0}
+   FOR I = 1 TO 20
+      $OV_PRO = I + MOVED(P, I)
+   ENDFOR
+   $OV_PRO = P.X * 2.0
+END
+DEFFCT INT MOVED(P:IN, N:IN)
+   DECL FRAME P
+   DECL INT N
+   P.X = P.X + N
+   RETURN P.X * P.Y
 ENDFCT
 """
 
@@ -55,13 +73,22 @@ def _requests(program: Prepared, executor: str, limits: Limits) -> list[Request]
     return found
 
 
+def _untraced(name: str) -> Factory:
+    return lambda program, limits, _sink: program.executor(name, limits)
+
+
 @pytest.mark.parametrize("number", range(6))
 def test_as_the_machine(number: int) -> None:
-    """In a world that interferes, at random programs, every request and event is the same."""
+    """In a world that interferes, at random programs, every request and event is the same.
+
+    With a trace the machine stops at every statement; without one it computes in between.
+    """
     program = prepared(seeded(20, number).files)
     seed = world_seed(20, number)
     expected = trace_of(program, EXECUTORS["native"], seed)
     assert expected == trace_of(program, EXECUTORS["compiled"], seed)
+    requests = trace_of(program, _untraced("native"), seed)
+    assert requests == trace_of(program, _untraced("compiled"), seed)
     assert not program.notes
 
 
@@ -82,6 +109,14 @@ def test_calls_deeper_than_those_in_c() -> None:
     for limits in (Limits(depth=2000, per_slice=13), Limits(depth=900, per_slice=13)):
         expected = _requests(program, "native", limits)
         assert expected == _requests(program, "compiled", limits)
+
+
+def test_structures_by_value() -> None:
+    """A structure that is handed over is copied."""
+    program = Prepared(load([Source(COPIES, "run.src")], "run.src"))
+    expected = _requests(program, "native", Limits(per_slice=13))
+    assert expected == _requests(program, "compiled", Limits(per_slice=13))
+    assert not program.notes
 
 
 def test_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
