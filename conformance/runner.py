@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from platform import node
 from typing import Final, NoReturn
 
@@ -26,7 +27,7 @@ from conformance.suite.case import Case
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
-__all__ = ["CaseResult", "Observe", "Result", "run_case", "run_cases"]
+__all__ = ["CaseResult", "Observe", "Result", "repeated", "run_case", "run_cases"]
 
 #: So many cases go to a process at once.
 _SHARE: Final = 8
@@ -157,6 +158,23 @@ def _compared(result: Result, before: Iterable[Result]) -> Result:
     return replace(result, verdict="fail", reason=str(found), divergence=found)
 
 
+def repeated(run: Callable[[], CaseResult]) -> CaseResult:
+    """Run a case, and once more where it has failed: it stays failed, and is said to be flaky.
+
+    Nothing in a run depends on time or chance, so one that then passes is a defect too.
+    """
+    first = run()
+    if first.verdict != "fail":
+        return first
+    results = [
+        replace(one, reason=f"flaky, {other.verdict} when run again: {one.reason}")
+        if one.verdict == "fail" and other.verdict != "fail"
+        else one
+        for one, other in zip(first.results, run().results, strict=True)
+    ]
+    return replace(first, results=tuple(results))
+
+
 def _without_values(seen: Observation) -> Observation:
     kept = tuple(event for event in seen.events if event.kind != "assign")
     return replace(seen, events=kept)
@@ -209,7 +227,8 @@ def _run_share(
     for setup, why in lacking.items():
         if not why and missing(setup):
             raise WorkersError(f"a worker on {node()} lacks what is here: {missing(setup)}")
-    return [run_case(case, tuple(lacking), known, absent=lacking.__getitem__) for case in cases]
+    setups, absent = tuple(lacking), lacking.__getitem__
+    return [repeated(partial(run_case, case, setups, known, absent=absent)) for case in cases]
 
 
 def _dead(

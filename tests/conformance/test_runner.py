@@ -12,7 +12,7 @@ from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.trace_comparison import first_divergence
 from conformance.evaluation.verdicts import Known, KnownFailures
-from conformance.runner import run_case, run_cases
+from conformance.runner import repeated, run_case, run_cases
 from conformance.suite.case import Case, read_case
 
 TREE, VM = Setup("tree", "none"), Setup("vm", "none")
@@ -158,6 +158,21 @@ def test_executor_that_never_ends_is_a_failed_case_with_its_name(make: MakeCase)
     (result,) = run_case(case, [TREE], NOTHING_KNOWN, see, most=0.05).results
     reason = "line 0: no crash; seen: control/fact takes more than 0.05 seconds of computing"
     assert ("fail", reason) == (result.verdict, result.reason)
+
+
+def test_failed_case_that_passes_when_run_again_is_flaky(make: MakeCase) -> None:
+    """It stays failed and its reason says so; one that fails again has its reason alone."""
+    seen = [Observation(ending="crash", note="lost"), observe(make(), TREE)]
+    bad = "line 7: value N 2; seen: N was never assigned"
+
+    def reasons() -> list[str]:
+        left = [*seen]
+        done = repeated(lambda: run_case(make(), [TREE], see=lambda _case, _setup: left.pop(0)))
+        return [f"{one.verdict}: {one.reason}" for one in done.results]
+
+    assert [f"fail: flaky, pass when run again: {bad}"] == reasons()
+    seen[1] = seen[0]
+    assert [f"fail: {bad}"] == reasons()
 
 
 def test_run_that_goes_on_differs_from_one_that_ended() -> None:
