@@ -24,6 +24,7 @@ from conformance.evaluation.path_geometry import (
     from_arc,
     from_circle,
     from_line,
+    from_synchronous,
     nearest,
     refined,
 )
@@ -173,13 +174,10 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
     axes = part.path.axes[part.within(part.entered, last)][:, :6]
     if not len(axes):
         return "unmet", "there is no part of the path between the blends"
-    way = axes[-1] - axes[0]
-    longest = int(np.argmax(np.abs(way)))
-    if abs(way[longest]) < 1e-9:
+    off = from_synchronous(axes)
+    if off is None:
         return "unmet", "no axis moves"
-    share = (axes[:, longest] - axes[0, longest]) / way[longest]
-    off = np.abs(axes - axes[0] - share[:, None] * way).max()
-    return _near(one, float(off), "degrees", _ANGLE)
+    return _near(one, off, "degrees", _ANGLE)
 
 
 def _distance(part: _Part, point: Array) -> float:

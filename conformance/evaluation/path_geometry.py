@@ -17,6 +17,7 @@ __all__ = [
     "from_arc",
     "from_circle",
     "from_line",
+    "from_synchronous",
     "nearest",
     "refined",
 ]
@@ -25,6 +26,8 @@ Array = npt.NDArray[np.float64]
 
 #: So many points stand for the arc of a blend: 0.001 mm apart from it for arcs of 1 m.
 _POINTS = 4_001
+#: An axis that goes less far, in degrees or mm, does not move.
+_STILL = 1e-9
 
 
 def from_line(points: Array, start: Array, end: Array) -> Array:
@@ -95,6 +98,16 @@ def from_arc(points: Array, start: Array, corner: Array, end: Array) -> Array:
     share = np.linspace(0.0, 1.0, _POINTS)[:, None]
     arc = (1 - share) ** 2 * start + 2 * share * (1 - share) * corner + share**2 * end
     return np.array([np.linalg.norm(arc - point, axis=1).min() for point in points])
+
+
+def from_synchronous(axes: Array) -> float | None:
+    """How far axes are from having come the same share of their way; ``None`` where none moves."""
+    way = axes[-1] - axes[0]
+    longest = int(np.argmax(np.abs(way)))
+    if abs(way[longest]) < _STILL:
+        return None
+    share = (axes[:, longest] - axes[0, longest]) / way[longest]
+    return float(np.abs(axes - axes[0] - share[:, None] * way).max())
 
 
 def between(times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike) -> Array:

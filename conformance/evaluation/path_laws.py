@@ -11,7 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_geometry import change_rates, from_circle, from_line
+from conformance.evaluation.path_geometry import (
+    change_rates,
+    from_circle,
+    from_line,
+    from_synchronous,
+)
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.simulation.tracking import PathRecord
 
@@ -100,7 +105,7 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
                 off = _off_circle(points)
                 law, most, rule = "the path of a CIRC is a circle", _NEAR, ""
             case "PTP" | "SPTP":
-                off = _off_synchronous(axes)
+                off = from_synchronous(axes) or 0.0
                 law, most, rule = "the axes of a PTP are synchronous", _ANGLE, "MOT-01.b"
             case _:
                 continue
@@ -127,13 +132,3 @@ def _off_circle(points: Array) -> float:
         return float(from_circle(points, points[0], points[len(points) // 2], points[-1]).max())
     except ValueError:
         return 0.0
-
-
-def _off_synchronous(axes: Array) -> float:
-    """How far axes are from having come the same share of their way."""
-    way = axes[-1] - axes[0]
-    longest = int(np.argmax(np.abs(way)))
-    if abs(way[longest]) < _ANGLE:
-        return 0.0
-    share = (axes[:, longest] - axes[0, longest]) / way[longest]
-    return float(np.abs(axes - axes[0] - share[:, None] * way).max())

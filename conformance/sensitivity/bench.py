@@ -23,6 +23,8 @@ AIM: Final = 0.95
 #: The share of mutants that have to make a case fail.
 MUTANT_AIM: Final = 0.85
 _EXECUTOR: Final = "tree"
+_OF_MUTANT: Final = ("package", "file", "line", "function", "operator", "source", "was", "now")
+_OF_TRIAL: Final = ("fate", "case", "why", "reached", "runs", "changed")
 
 
 def speed_of(
@@ -62,6 +64,10 @@ def measure(
 def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """What is written as JSON, but for the times."""
     groups = list(dict.fromkeys(one.group for one in verdicts))
+    rows = [
+        {"group": one.group, "fault": one.words, **_fields(one, ("case", "verdict", "runs"))}
+        for one in verdicts
+    ]
     return {
         "mutants": len(verdicts),
         **_counts(verdicts),
@@ -72,20 +78,11 @@ def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
             if (own := [one for one in verdicts if one.group == group])
         ],
         "survivors": [
-            {"group": one.group, "fault": one.words, "runs": one.runs}
-            for one in verdicts
-            if one.case is None
+            {key: row[key] for key in ("group", "fault", "runs")}
+            for row in rows
+            if row["case"] is None
         ],
-        "verdicts": [
-            {
-                "group": one.group,
-                "fault": one.words,
-                "case": one.case,
-                "verdict": one.verdict,
-                "runs": one.runs,
-            }
-            for one in verdicts
-        ],
+        "verdicts": rows,
     }
 
 
@@ -119,24 +116,16 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
         "trials": [
             {
                 "mutant": one.mutant.name,
-                "package": one.mutant.package,
-                "file": one.mutant.file,
-                "line": one.mutant.line,
-                "function": one.mutant.function,
-                "operator": one.mutant.operator,
-                "source": one.mutant.source,
-                "was": one.mutant.was,
-                "now": one.mutant.now,
-                "fate": one.fate,
-                "case": one.case,
-                "why": one.why,
-                "reached": one.reached,
-                "runs": one.runs,
-                "changed": one.changed,
+                **_fields(one.mutant, _OF_MUTANT),
+                **_fields(one, _OF_TRIAL),
             }
             for one in every
         ],
     }
+
+
+def _fields(of: object, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(of, name) for name in names}
 
 
 def _fates(trials: Sequence[Trial]) -> dict[str, Any]:
