@@ -108,8 +108,8 @@ def _computing_at_most(seconds: float) -> Iterator[None]:
         yield
         return
     before = signal.signal(signal.SIGPROF, _end_computing)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
+        signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # again where a callback swallows it
         yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
