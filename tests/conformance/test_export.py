@@ -10,14 +10,14 @@ from jsonschema import Draft202012Validator
 from conformance.export import SCHEMA, expectations_of, write_export
 from conformance.recording import Recording, evaluate_recording
 from conformance.runner import run_cases
-from conformance.suite.case import Case, find_cases, selected
+from conformance.suite.case import Case, selected
 
 NAMES = ("io/pulse_length", "types/index_read", "syntax/declaration_late", "posture/five_axes_line")
 
 
 @pytest.fixture(scope="module")
-def cases() -> list[Case]:
-    return selected(find_cases(), NAMES)
+def cases(own_cases: list[Case]) -> list[Case]:
+    return selected(own_cases, NAMES)
 
 
 @pytest.fixture(scope="module")
@@ -27,9 +27,9 @@ def archive(cases: list[Case], tmp_path_factory: pytest.TempPathFactory) -> Path
     return path
 
 
-def test_expectations_keep_to_their_schema() -> None:
+def test_expectations_keep_to_their_schema(own_cases: list[Case]) -> None:
     """Every case of this project can be told so."""
-    told = json.loads(json.dumps(expectations_of(find_cases())))
+    told = json.loads(json.dumps(expectations_of(own_cases)))
     assert [] == [one.message for one in Draft202012Validator(SCHEMA).iter_errors(told)]
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.lint import SUITES, coverage, lint
-from conformance.suite.case import CASES, find_cases
+from conformance.suite.case import Case
 from conformance.suite.registry import registry
 
 GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
@@ -17,23 +17,23 @@ def test_own_cases_are_well_formed() -> None:
     assert [] == lint()
 
 
-def test_every_hard_rule_has_a_case() -> None:
+def test_every_hard_rule_has_a_case(own_cases: list[Case]) -> None:
     """A rule that may fail has a case, or says why none can show it."""
-    covered = coverage(find_cases())
+    covered = coverage(own_cases)
     assert [] == [rule.id for rule in covered.uncovered]
     unshown = [rule.id for rule in registry().values() if rule.unshown]
     assert ["MSG-05", "MSG-25"] == unshown
     assert covered.count(hard=True)[0] == covered.count(hard=True)[1]
 
 
-def test_every_suite_has_cases() -> None:
+def test_every_suite_has_cases(own_cases: list[Case]) -> None:
     """None of the suites is empty, and there are no others."""
-    assert set(SUITES) == {case.suite for case in find_cases(CASES)}
+    assert set(SUITES) == {case.suite for case in own_cases}
 
 
-def test_known_failures_are_about_cases() -> None:
+def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
     """The list can be read."""
-    names = [case.name for case in find_cases()]
+    names = [case.name for case in own_cases]
     assert [] == KnownFailures.load().of_no_case(names)
 
 

@@ -10,15 +10,15 @@ from conformance.evaluation.verdicts import Known, KnownFailures
 from conformance.junit import write_junit
 from conformance.record import record_of
 from conformance.runner import CaseResult, run_cases
-from conformance.suite.case import find_cases, selected
+from conformance.suite.case import Case, selected
 
 NAMES = ["control/exit_for", "control/exit_while", "syntax/advance_six", "motion/lin_is_straight"]
 KNOWN = KnownFailures((Known("control/exit_while", "for the sake of the test"),))
 
 
 @pytest.fixture(scope="module")
-def results() -> list[CaseResult]:
-    cases = selected(find_cases(), NAMES)
+def results(own_cases: list[Case]) -> list[CaseResult]:
+    cases = selected(own_cases, NAMES)
     return run_cases(cases, ["tree", "vm"], ["kinematic"], KNOWN, jobs=1)
 
 
@@ -51,9 +51,9 @@ def test_record_shows_each_case(results: list[CaseResult]) -> None:
     assert all(check["state"] == "met" for check in first["checks"])
 
 
-def test_a_path_is_kept_though_others_ran_without_a_robot() -> None:
+def test_a_path_is_kept_though_others_ran_without_a_robot(own_cases: list[Case]) -> None:
     """Where the first executors have no robot, the first that has one shows the path."""
-    results = run_cases(selected(find_cases(), NAMES[3:]), ["tree"], ["none", "kinematic"], jobs=1)
+    results = run_cases(selected(own_cases, NAMES[3:]), ["tree"], ["none", "kinematic"], jobs=1)
     (case,) = record_of(results, ["tree"], ["none", "kinematic"], version="1", seconds=1.0)["cases"]
     without, moved = case["results"]
     assert "path" not in without

@@ -8,14 +8,14 @@ import pytest
 
 from conformance.evaluation.execution import Setup, observe
 from conformance.recording import Recording, RecordingError, answers, evaluate_recording
-from conformance.suite.case import Case, find_cases, selected
+from conformance.suite.case import Case, selected
 
 NAMES = ("io/pulse_length", "control/for_end_once", "data/round_up", "syntax/declaration_late")
 
 
 @pytest.fixture(scope="module")
-def cases() -> list[Case]:
-    return selected(find_cases(), NAMES)
+def cases(own_cases: list[Case]) -> list[Case]:
+    return selected(own_cases, NAMES)
 
 
 def entry(case: Case, **changes: Any) -> dict[str, Any]:

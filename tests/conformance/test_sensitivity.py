@@ -5,7 +5,7 @@ import pytest
 from conformance.sensitivity import bench
 from conformance.sensitivity.planted_fault import Fault, constant, on, several
 from conformance.sensitivity.trial import all_faults, try_faults
-from conformance.suite.case import find_cases
+from conformance.suite.case import CASES, Case, read_case
 from interp.controller.clock import Clock
 from interp.robot.planning import blending
 
@@ -14,8 +14,8 @@ def _fault(words: str) -> Fault:
     return next(one for one in all_faults() if one.words == words)
 
 
-def _cases(*names: str) -> list:  # type: ignore[type-arg]
-    return [case for case in find_cases() if case.name in names]
+def _cases(*names: str) -> list[Case]:
+    return [read_case(CASES / f"{name}.src", CASES) for name in names]
 
 
 def test_a_fault_is_there_only_while_it_is_planted() -> None:
@@ -43,12 +43,12 @@ def test_plants_are_put_back_in_any_combination() -> None:
     assert (cycle, half) == (Clock.__dict__["cycle"], blending._HALF)
 
 
-def test_there_are_enough_faults_and_each_has_its_name() -> None:
+def test_there_are_enough_faults_and_each_has_its_name(own_cases: list[Case]) -> None:
     """There are sixty and more; no two are called the same."""
     assert len(all_faults()) >= 60
     names = [(one.group, one.words) for one in all_faults()]
     assert len(names) == len(set(names))
-    suites = {case.suite for case in find_cases()}
+    suites = {case.suite for case in own_cases}
     assert set() == {suite for one in all_faults() for suite in one.suites} - suites
 
 

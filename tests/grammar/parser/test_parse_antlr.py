@@ -19,8 +19,6 @@ from grammar.parser.tree import ParseNode, Tree
 #: A rule and how many children it has, or a token: kind, text, line, column, offset.
 Item = tuple[object, ...]
 
-PARTS = 4
-
 
 @pytest.fixture(scope="module")
 def parser(krl_recognizer: Recognizer) -> Parser:
@@ -68,15 +66,14 @@ def differences(parser: Parser, texts: Iterable[str]) -> list[tuple[str, Item, I
     return found
 
 
-@pytest.mark.parametrize("part", range(PARTS))
-def test_own_programs(parser: Parser, corpus: Mapping[Path, str], part: int) -> None:
-    """Every program of the own corpus that parses, with line ends as ANTLR counts them."""
+def test_own_programs(parser: Parser, corpus: Mapping[Path, str]) -> None:
+    """A third of the own corpus that parses, with line ends as ANTLR counts them."""
     # ANTLR ends lines at \n only
     texts = (text for path, text in corpus.items() if "programs" in path.parts)
     programs = [text for text in texts if "\r" not in text.replace("\r\n", "\n")]
     readable = [text for text in programs if parser.recognizer.accepts(text)]
-    assert len(readable) > 3
-    assert [] == differences(parser, readable[part::PARTS])
+    assert len(readable) > 100
+    assert [] == differences(parser, Random(3).sample(readable, len(readable) // 3))
 
 
 def test_every_alternative(parser: Parser) -> None:

@@ -138,14 +138,14 @@ def test_proposals_differ(all_causes: list[Cause]) -> None:
         assert len({proposal.edits for proposal in cause.proposals}) == len(cause.proposals)
 
 
-@pytest.mark.parametrize("salt", range(3))
+@pytest.mark.parametrize("salt", range(2))
 def test_what_lets_in_negatives_comes_last(salt: int) -> None:
     """Proposals are ordered by the count of negatives first, and record it."""
 
     def count_negatives(edits: Sequence[Edit]) -> int:
         return zlib.crc32(f"{salt}{edits}".encode()) % 3
 
-    for cause in causes([STEPS, LISTS, RETURNS], count_negatives):
+    for cause in causes([STEPS[:2], LISTS[:2], RETURNS], count_negatives):
         said = [proposal.accepts_negatives for proposal in cause.proposals]
         assert [count_negatives(proposal.edits) for proposal in cause.proposals] == said
         assert sorted(said) == said
@@ -189,9 +189,10 @@ def test_another_run_finds_the_same(all_causes: list[Cause]) -> None:
 
 def test_the_order_of_lines_in_a_group_does_not_decide_who_belongs_together() -> None:
     """Shuffled, the same lines have the same causes."""
-    texts = [*STEPS[:2], *LISTS, *RETURNS[1:]]
-    expected = {frozenset(texts[n] for n in cause.lines) for cause in causes([texts])}
-    for seed in range(2):
-        shuffled = Random(seed).sample(texts, len(texts))
-        found = {frozenset(shuffled[n] for n in cause.lines) for cause in causes([shuffled])}
-        assert expected == found
+    texts = [*STEPS[:2], *LISTS[:2], *RETURNS[1:]]
+    shuffled = Random(1).sample(texts, len(texts))
+    first, second = (
+        {frozenset(given[n] for n in cause.lines) for cause in causes([given])}
+        for given in (texts, shuffled)
+    )
+    assert first == second

@@ -97,11 +97,11 @@ def test_what_only_follows_belongs_to_its_cause() -> None:
 # ----------------------------------------------------------------- laws, on corpora by chance
 
 
-@pytest.fixture(scope="module", params=range(3))
+@pytest.fixture(scope="module", params=range(2))
 def corpus(request: pytest.FixtureRequest) -> tuple[Survey, Clusters]:
     """A small corpus of random programs, some of them alike, and its clusters."""
     chance = Random(request.param)
-    programs = [program(*chance.choices(PIECES, k=chance.randint(0, 4))) for _ in range(14)]
+    programs = [program(*chance.choices(PIECES, k=chance.randint(0, 4))) for _ in range(12)]
     found = surveyed(*programs)
     return found, cluster(found)
 
@@ -244,7 +244,7 @@ def told(clusters: Clusters) -> object:
 
 def varied() -> Sequence[tuple[str, str]]:
     chance = Random(11)
-    return [(f"{n}.src", program(*chance.choices(PIECES, k=2))) for n in range(10)]
+    return [(f"{n}.src", program(*chance.choices(PIECES, k=2))) for n in range(7)]
 
 
 @pytest.fixture(scope="module")
@@ -258,13 +258,12 @@ def test_a_second_run_gives_the_same(usual: object) -> None:
     assert usual == told(cluster(survey_texts(varied(), PRELIMINARY)))
 
 
-@pytest.mark.parametrize("seed", ["0", "4711"])
-def test_hashing_does_not_matter(usual: object, seed: str) -> None:
+def test_hashing_does_not_matter(usual: object) -> None:
     """Python's hashing is another in every process; the clusters are not."""
     done = subprocess.run(
         [sys.executable, "-c", TELL],
         input=json.dumps(varied()),
-        env=os.environ | {"PYTHONHASHSEED": seed},
+        env=os.environ | {"PYTHONHASHSEED": "4711"},
         capture_output=True,
         text=True,
         check=True,
