@@ -60,7 +60,12 @@ def run(
         Path | None, typer.Option(metavar="FILE", help="Write the page of the run here.")
     ] = None,
     video: Annotated[
-        Path | None, typer.Option(metavar="FILE.gif", help="Film the MuJoCo arm; .webp goes too.")
+        Path | None,
+        typer.Option(metavar="FILE.mp4", help="Film the MuJoCo arm; .gif and .webp go too."),
+    ] = None,
+    png: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.png", help="Write a picture of the MuJoCo arm and its path."),
     ] = None,
     observations: Annotated[
         Path | None,
@@ -76,8 +81,8 @@ def run(
     motions that cannot be planned for want of it are skipped.
     """
     with expected_errors():
-        _check_targets(trace, path, html, video, options.robot)
-        check_files(observations)
+        check_files(trace, path, html, video, png, observations)
+        _check_targets(path, video, png, options.robot)
         is_watched = trace is not None or html is not None
         program, setup = prepared_run(
             file,
@@ -87,7 +92,14 @@ def run(
             is_told=is_watched,
         )
         done = _performed(program, setup, trace)
-        _write(done, program, setup, path, html, video)
+        _write(done, program, setup, path, html)
+        if video is not None or png is not None:
+            from krl.run_pictures import write_run_film, write_run_picture
+
+            if video is not None:
+                write_run_film(video, done, program, setup)
+            if png is not None:
+                write_run_picture(png, done, setup)
         if observations is not None:
             _write_observations(done, observations)
     for line in run_notes(done, program, setup):
@@ -102,24 +114,25 @@ def run(
     return FINE if is_fine else FINDINGS
 
 
-def _check_targets(
-    trace: Path | None, path: Path | None, html: Path | None, video: Path | None, robot: Robot
-) -> None:
+def _check_targets(path: Path | None, video: Path | None, png: Path | None, robot: Robot) -> None:
     """Say now what would only fail after the run."""
-    check_files(trace, path, html, video)
     if path is not None and path.suffix.lower() not in (".parquet", ".csv"):
         raise InputError(f"--path: {path} ends neither in .parquet nor in .csv")
     if path is not None and robot is Robot.NONE:
         raise InputError(
             "--path: the robot none takes no set-points; say --robot kinematic or mujoco"
         )
-    if video is not None:
-        from interp.robot.simulation.video import VideoError, check
+    if video is None and png is None:
+        return
+    from interp.robot.simulation.video import SUFFIXES, VideoError, check
 
+    for option, target, suffixes in (("--video", video, SUFFIXES), ("--png", png, (".png",))):
+        if target is None:
+            continue
         if robot is not Robot.MUJOCO:
-            raise InputError("--video: only the MuJoCo arm can be filmed; say --robot mujoco")
+            raise InputError(f"{option}: only the MuJoCo arm can be filmed; say --robot mujoco")
         try:
-            check(video)
+            check(target, suffixes)
         except VideoError as error:
             raise InputError(str(error)) from error
 
@@ -166,7 +179,6 @@ def _write(
     setup: "RunSetup",
     path: Path | None,
     html: Path | None,
-    video: Path | None,
 ) -> None:
     if path is not None and done.path is not None:
         _write_path(done.path.columns(), path)
@@ -174,8 +186,6 @@ def _write(
         from reports.run_page import write_run_page
 
         write_run_page(_record(done, program, setup), html)
-    if video is not None and done.path is not None:
-        _film(done, setup, video)
 
 
 def _write_observations(done: "RunResult", target: Path) -> None:
@@ -183,22 +193,6 @@ def _write_observations(done: "RunResult", target: Path) -> None:
     lines = (json.dumps(one.record()) + "\n" for one in done.observations)
     with atomic_path(target) as part:
         part.write_text("".join(lines), encoding="utf-8", newline="\n")
-
-
-def _film(done: "RunResult", setup: "RunSetup", target: Path) -> None:
-    from interp.robot.simulation.cell import Cell
-    from interp.robot.simulation.scene import Scene
-    from interp.robot.simulation.video import VideoError, frame_count, write_video
-
-    assert done.path is not None
-    cell = Cell(done.machine, setup.scene or Scene(), setup.robot_file)
-    shown = done.path.axes if done.path.axes_measured is None else done.path.axes_measured
-    try:
-        filming = progress_bar("filming", frame_count(done.path.times))
-        with filming as bar, atomic_path(target) as part:
-            write_video(part, cell, done.path.times, shown, on_frame=bar)
-    except VideoError as error:
-        raise InputError(str(error)) from error
 
 
 def _write_path(columns: Mapping[str, Any], target: Path) -> None:

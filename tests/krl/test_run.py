@@ -311,6 +311,8 @@ def test_page(run: Run, tmp_path: Path) -> None:
         (["--robot", "kinematic", "--path", "p.txt"], "ends neither in .parquet nor in .csv\n"),
         (["--video", "film.gif"], "krl: --video: only the MuJoCo arm can be filmed; say "),
         (["--robot", "mujoco", "--video", "film.mov"], "film.mov"),
+        (["--png", "arm.png"], "krl: --png: only the MuJoCo arm can be filmed; say "),
+        (["--robot", "mujoco", "--png", "arm.jpg"], "arm.jpg: should end in .png"),
         (["--executor", "lua"], "lua"),
         (["--max-time", "-1"], "--max-time"),
         (["--trace", "."], "krl: .: a folder, not a file\n"),

@@ -2,8 +2,8 @@
 
 Frames are drawn by MuJoCo without a window, in a process of its own: which renderer is used has to
 be settled before MuJoCo is loaded, and a driver that fails takes nothing else with it. On Linux EGL
-is tried, then OSMesa; `MUJOCO_GL` in the environment names another one. Pillow writes the frames:
-GIF, animated WebP or PNG. There is no MP4, whose encoders are neither small nor freely licensed.
+is tried, then OSMesa; `MUJOCO_GL` in the environment names another one. Pillow writes GIF and
+animated WebP, and ffmpeg, a program of its own that imageio-ffmpeg brings, MP4.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain, zip_longest
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
 
     from interp.robot.simulation.cell import Cell
 
-__all__ = ["SUFFIXES", "VideoError", "frame_count", "write_video"]
+__all__ = ["SUFFIXES", "VideoError", "check", "frame_times", "write_picture", "write_video"]
 
-SUFFIXES: Final = (".gif", ".webp", ".png")
+SUFFIXES: Final = (".mp4", ".gif", ".webp")
+_FRAMES_PER_SECOND: Final = 25
 _RENDERERS = ("egl", "osmesa")
-_FRAMES = "interp.robot.simulation.video_frames"
+_DRAWING = "interp.robot.simulation.video_frames"
 
 Frame = npt.NDArray[np.uint8]
 
@@ -39,9 +41,11 @@ class VideoError(Exception):
     """There can be no video; the text is one line for a person."""
 
 
-def frame_count(times: npt.NDArray[np.int64], frames_per_second: int = 25) -> int:
-    """How many frames the rows at ``times`` (µs) make."""
-    return 1 + math.floor(int(times[-1] - times[0]) * frames_per_second / 1_000_000)
+def frame_times(times: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+    """When the frames of a video are (µs), whose rows are at ``times``."""
+    count = 1 + math.floor(int(times[-1] - times[0]) * _FRAMES_PER_SECOND / 1_000_000)
+    wanted: npt.NDArray[np.float64] = times[0] + np.arange(count) * (1e6 / _FRAMES_PER_SECOND)
+    return wanted
 
 
 def write_video(
@@ -50,53 +54,75 @@ def write_video(
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
     *,
+    captions: Sequence[str] = (),
     size: tuple[int, int] = (640, 480),
-    frames_per_second: int = 25,
     on_frame: Callable[[], None] = lambda: None,
 ) -> None:
     """Write a video that takes as long as the motion does.
 
     ``times`` (n,) in µs and ``axes`` (n, axes) in degrees or mm are rows of a path record. The
-    suffix of ``path`` tells the form: one of `SUFFIXES`. ``on_frame`` is called after each frame.
-    Raises `VideoError` where there is no renderer, no MuJoCo, no Pillow, or another suffix.
+    suffix of ``path`` tells the form: one of `SUFFIXES`. ``captions`` stand in the frames, one
+    each of `frame_times`. ``on_frame`` is called after each frame. Raises `VideoError` where there
+    is no renderer, no MuJoCo, nothing that writes the form, or another suffix.
     """
     check(path)
-    places = _places(cell, times, axes, frames_per_second)
-    model = cell.xml()
-    failures = []
-    for renderer in _renderers():
-        frames = _Frames(model, places, size, renderer)
-        with frames:
-            first = frames.next()
-            if first is not None:
-                _write(path, first, frames, frames_per_second, on_frame)
-                return
-        failures.append(f"{renderer or 'the default one'}: {frames.reason}")
-    raise VideoError(f"no renderer works here ({'; '.join(failures)})")
+    write = _write_mp4 if path.suffix.lower() == ".mp4" else _write_images
+    write(path, _captioned(_drawn(cell, times, axes, size), captions, on_frame), size)
 
 
-def check(path: Path) -> None:
+def write_picture(
+    path: Path, cell: Cell, times: npt.NDArray[np.int64], axes: npt.NDArray[np.float64]
+) -> None:
+    """Write a PNG of the arm where it is at the end, with its path; as `write_video` otherwise."""
+    from PIL import Image
+
+    size = (1600, 1200)
+    frame = next(_drawn(cell, times, axes, size, is_last_only=True))
+    Image.fromarray(frame).resize((size[0] // 2, size[1] // 2)).save(path, format="png")
+
+
+def check(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Raise `VideoError` where it is known without rendering that there can be no video."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise VideoError(f"{path}: a video is one of {', '.join(SUFFIXES)}")
-    for module, package in (("mujoco", "MuJoCo"), ("PIL", "Pillow")):
+    if path.suffix.lower() not in suffixes:
+        raise VideoError(f"{path}: should end in {' or '.join(suffixes)}")
+    needed = {"mujoco": "MuJoCo", "PIL": "Pillow"}
+    if path.suffix.lower() == ".mp4":
+        needed["imageio_ffmpeg"] = "imageio-ffmpeg"
+    for module, package in needed.items():
         if importlib.util.find_spec(module) is None:
-            raise VideoError(f"a video needs {package}, which is not installed")
+            raise VideoError(
+                f"this needs {package}, which is not installed: pip install 'krl-workbench[video]'"
+            )
 
 
-def _places(
+def _drawn(
     cell: Cell,
     times: npt.NDArray[np.int64],
     axes: npt.NDArray[np.float64],
-    frames_per_second: int,
-) -> npt.NDArray[np.float64]:
-    """Joint positions in radians or metres, (frames, axes)."""
-    count = frame_count(times, frames_per_second)
-    wanted = times[0] + np.arange(count) * (1_000_000 / frames_per_second)
+    size: tuple[int, int],
+    *,
+    is_last_only: bool = False,
+) -> Iterator[Frame]:
+    """The frames, by the first renderer that works."""
+    wanted = frame_times(times)
     found = np.stack([np.interp(wanted, times, column) for column in axes.T], axis=-1)
     columns, units = cell.columns(cell.model())
-    places: npt.NDArray[np.float64] = found[:, columns] * units
-    return places
+    places, model = found[:, columns] * units, cell.xml()
+    first_number = len(places) - 1 if is_last_only else 0
+    failures = []
+    for renderer in _renderers():
+        frames = _Frames(model, places, size, renderer, first_number)
+        with frames:
+            frame = frames.next()
+            if frame is not None:
+                while frame is not None:
+                    yield frame
+                    frame = frames.next()
+                if frames.reason:
+                    raise VideoError(f"the video is cut short: {frames.reason}")
+                return
+        failures.append(f"{renderer or 'the default one'}: {frames.reason}")
+    raise VideoError(f"no renderer works here ({'; '.join(failures)})")
 
 
 def _renderers() -> tuple[str, ...]:
@@ -109,7 +135,12 @@ class _Frames:
     """The frames that a process draws, one after the other."""
 
     def __init__(
-        self, model: str, places: npt.NDArray[np.float64], size: tuple[int, int], renderer: str
+        self,
+        model: str,
+        places: npt.NDArray[np.float64],
+        size: tuple[int, int],
+        renderer: str,
+        first: int,
     ) -> None:
         self.reason = ""
         self._size = size
@@ -122,7 +153,7 @@ class _Frames:
         if renderer:
             environment["MUJOCO_GL"] = renderer
         self._process = subprocess.Popen(
-            [sys.executable, "-m", _FRAMES, str(folder), *map(str, size)],
+            [sys.executable, "-m", _DRAWING, str(folder), *map(str, (*size, first))],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=self._errors,
@@ -159,27 +190,37 @@ class _Frames:
         return None
 
 
-def _write(
-    path: Path, first: Frame, frames: _Frames, frames_per_second: int, on_frame: Callable[[], None]
-) -> None:
-    from PIL import Image
+def _captioned(
+    frames: Iterator[Frame], captions: Sequence[str], on_frame: Callable[[], None]
+) -> Iterator[Image]:
+    from PIL import Image, ImageDraw, ImageFont
 
-    def image(frame: Frame) -> Image.Image:
-        found = Image.fromarray(frame)
-        return found.quantize(128) if path.suffix.lower() == ".gif" else found
+    font = ImageFont.load_default(16)
+    for frame, caption in zip_longest(frames, captions, fillvalue=""):
+        if isinstance(frame, str):  # more captions than frames
+            return
+        image = Image.fromarray(frame)
+        ImageDraw.Draw(image).multiline_text(
+            (12, 8), caption, fill="white", font=font, stroke_width=2, stroke_fill="black"
+        )
+        on_frame()
+        yield image
 
-    def others() -> Iterator[Image.Image]:
-        while (frame := frames.next()) is not None:
-            on_frame()
-            yield image(frame)
 
-    on_frame()
-    image(first).save(
-        path,
-        save_all=True,
-        append_images=others(),
-        duration=1000 / frames_per_second,
-        loop=0,
+def _write_images(path: Path, images: Iterator[Image], _size: tuple[int, int]) -> None:
+    if path.suffix.lower() == ".gif":
+        images = (image.quantize(128) for image in images)
+    next(images).save(
+        path, save_all=True, append_images=images, duration=1000 / _FRAMES_PER_SECOND, loop=0
     )
-    if frames.reason:
-        raise VideoError(f"{path}: the video is cut short: {frames.reason}")
+
+
+def _write_mp4(path: Path, images: Iterator[Image], size: tuple[int, int]) -> None:
+    import imageio_ffmpeg
+
+    first = next(images)  # without a renderer no file is begun
+    video = imageio_ffmpeg.write_frames(str(path), size, fps=_FRAMES_PER_SECOND)
+    video.send(None)
+    for image in chain((first,), images):
+        video.send(image.tobytes())
+    video.close()

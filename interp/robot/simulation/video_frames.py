@@ -1,12 +1,13 @@
 """The process that draws frames for `interp.robot.simulation.video`, and nothing else.
 
-``python -m interp.robot.simulation.video_frames FOLDER WIDTH HEIGHT`` reads ``model.xml`` and
-``places.npy`` from the folder and writes the frames to its standard output, three bytes a pixel.
-The flange leaves a trail.
+``python -m interp.robot.simulation.video_frames FOLDER WIDTH HEIGHT FIRST`` reads ``model.xml`` and
+``places.npy`` from the folder and writes the frames from number FIRST on to its standard output,
+three bytes a pixel. The flange leaves a trail, and the arm fills the frame in all its places.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -14,36 +15,85 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from interp.robot.simulation.mujoco_model import FLANGE
 
 __all__: list[str] = []
 
-_TRAIL = 0.003  # m
-_MOST = 9_000  # pieces of trail
+_TRAIL = 3.0  # pixels
+_PIECES = 200  # of the trail: each takes as long to draw as a part of the arm
+_AZIMUTH, _ELEVATION, _MARGIN = 135.0, -20.0, 1.1
+
+Points = npt.NDArray[np.float64]
 
 
-def _draw(folder: Path, width: int, height: int) -> None:
+def _draw(folder: Path, width: int, height: int, first: int) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "model.xml"))
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+    model.vis.quality.offsamples = 0  # a quarter of the time, with the flags below
     data = mujoco.MjData(model)
-    trail: list[Any] = []
-    with mujoco.Renderer(model, height, width, max_geom=_MOST + 1_000) as renderer:
+    places = np.load(folder / "places.npy")
+    flange, parts = _passed(model, data, places)
+    camera = _camera(model, parts, width / height)
+    lengths = np.cumsum(np.linalg.norm(np.diff(flange, axis=0, prepend=flange[:1]), axis=1))
+    piece = max(lengths[-1] / _PIECES, 1e-3)
+    with mujoco.Renderer(model, height, width, max_geom=model.ngeom + _PIECES + 1_000) as renderer:
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
-            renderer.scene.flags[flag] = 0  # half of the time, where nothing but a processor draws
-        for place in np.load(folder / "places.npy"):
-            data.qpos[:] = place
-            mujoco.mj_forward(model, data)
-            renderer.update_scene(data)
-            trail.append(data.site(FLANGE).xpos.copy())
-            for start, end in pairwise(trail[-_MOST:]):
-                _connect(renderer.scene, start, end)
-            sys.stdout.buffer.write(renderer.render().tobytes())
+            renderer.scene.flags[flag] = 0
+        drawn, shown = b"", None
+        for number in range(first, len(places)):
+            if shown is None or np.abs(places[number] - shown).max() > 1e-6:
+                shown = data.qpos[:] = places[number]
+                mujoco.mj_forward(model, data)
+                renderer.update_scene(data, camera)
+                steps = lengths[: number + 1] // piece
+                corners = [*flange[: number + 1][np.diff(steps, prepend=-1.0) > 0], flange[number]]
+                for start, end in pairwise(corners):
+                    _connect(renderer.scene, start, end)
+                drawn = renderer.render().tobytes()
+            sys.stdout.buffer.write(drawn)
+
+
+def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
+    """Where the flange is in each place, (places, 3), and all points at which something moves."""
+    moving = model.geom_bodyid > 0
+    flange, parts = np.empty((len(places), 3)), np.empty((len(places), moving.sum(), 3))
+    for number, place in enumerate(places):
+        data.qpos[:] = place
+        mujoco.mj_kinematics(model, data)
+        flange[number], parts[number] = data.site(FLANGE).xpos, data.geom_xpos[moving]
+    radii = np.tile(model.geom_rbound[moving], len(places))[:, None, None]
+    edges = np.concatenate([np.eye(3), -np.eye(3)])
+    around = (parts.reshape(-1, 1, 3) + radii * edges).reshape(-1, 3)
+    return flange, np.concatenate([flange, around])
+
+
+def _camera(model: Any, points: Points, aspect: float) -> Any:
+    """A camera from which all points are in the frame, and fill it."""
+    azimuth, elevation = math.radians(_AZIMUTH), math.radians(_ELEVATION)
+    ahead = np.array(
+        (
+            math.cos(elevation) * math.cos(azimuth),
+            math.cos(elevation) * math.sin(azimuth),
+            math.sin(elevation),
+        )
+    )
+    right = np.array((math.sin(azimuth), -math.cos(azimuth), 0.0))
+    across, up, deep = ((points @ axis) for axis in (right, np.cross(right, ahead), ahead))
+    centre = [(values.min() + values.max()) / 2 for values in (across, up, deep)]
+    tall = math.tan(math.radians(model.vis.global_.fovy) / 2)
+    reach = np.maximum(np.abs(across - centre[0]) / (tall * aspect), np.abs(up - centre[1]) / tall)
+    camera = mujoco.MjvCamera()
+    camera.azimuth, camera.elevation = _AZIMUTH, _ELEVATION
+    camera.lookat = np.array(centre) @ np.array((right, np.cross(right, ahead), ahead))
+    camera.distance = _MARGIN * (reach - (deep - centre[2])).max()
+    return camera
 
 
 def _connect(scene: Any, start: Any, end: Any) -> None:
     geom = scene.geoms[scene.ngeom]
-    kind = mujoco.mjtGeom.mjGEOM_CAPSULE
+    kind = mujoco.mjtGeom.mjGEOM_LINE
     blue = np.array([0.1, 0.3, 0.8, 1.0], dtype=np.float32)
     mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.zeros(9), blue)
     mujoco.mjv_connector(geom, kind, _TRAIL, start, end)
@@ -51,4 +101,4 @@ def _connect(scene: Any, start: Any, end: Any) -> None:
 
 
 if __name__ == "__main__":
-    _draw(Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]))
+    _draw(Path(sys.argv[1]), *map(int, sys.argv[2:]))

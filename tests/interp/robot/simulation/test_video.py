@@ -8,7 +8,7 @@ import pytest
 
 from interp.robot.models import default_machine
 from interp.robot.simulation.cell import Cell
-from interp.robot.simulation.video import VideoError, frame_count, write_video
+from interp.robot.simulation.video import VideoError, frame_times, write_picture, write_video
 
 pytest.importorskip("mujoco")
 image = pytest.importorskip("PIL.Image")
@@ -39,10 +39,44 @@ def test_a_video(tmp_path: Path, suffix: str) -> None:
             video.seek(number)
             frames.append(np.asarray(video.convert("RGB"), dtype=np.int16))
             assert 40 == video.info["duration"]
-    assert 7 == len(told) == frame_count(TIMES)
+    assert 7 == len(told) == len(frame_times(TIMES))
     orange = [(frame[..., 0] - frame[..., 2] > 80).sum() for frame in frames]
     assert min(orange) > 200
     assert all(np.abs(a - b).max() > 40 for a, b in pairwise(frames))
+
+
+def test_a_video_as_mp4(tmp_path: Path) -> None:
+    """It has the same frames, and a caption is in the one that it is for."""
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    path = tmp_path / "arm.mp4"
+    try:
+        write_video(path, Cell(default_machine()), TIMES, AXES, captions=["0 s", *[""] * 6])
+    except VideoError as error:
+        pytest.skip(str(error))
+    frames = ffmpeg.read_frames(str(path))
+    about = next(frames)
+    assert ((640, 480), 25) == (about["size"], about["fps"])
+    images = [np.frombuffer(one, dtype=np.uint8).reshape(480, 640, 3) for one in frames]
+    white = [(one[:40, :80].min(axis=-1) > 200).sum() for one in images]
+    assert 7 == len(images)
+    assert white[0] > 20
+    assert 0 == sum(white[1:])
+
+
+def test_a_picture_of_the_arm(tmp_path: Path) -> None:
+    """The arm is wholly in it, and fills at least three quarters of its width or height."""
+    path = tmp_path / "arm.png"
+    try:
+        write_picture(path, Cell(default_machine()), TIMES, AXES)
+    except VideoError as error:
+        pytest.skip(str(error))
+    with image.open(path) as picture:
+        pixels = np.asarray(picture.convert("RGB"), dtype=np.int16)
+    rows, columns = np.nonzero(pixels[..., 0] - pixels[..., 2] > 80)
+    assert (600, 800) == pixels.shape[:2]
+    assert 0 < rows.min() < rows.max() < 599
+    assert 0 < columns.min() < columns.max() < 799
+    assert max(np.ptp(rows) / 600, np.ptp(columns) / 800) > 0.5
 
 
 def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,5 +90,5 @@ def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_another_form(tmp_path: Path) -> None:
     """A suffix that nothing writes is told, with those that something does."""
-    with pytest.raises(VideoError, match=r"one of \.gif, \.webp, \.png"):
-        write_video(tmp_path / "arm.mp4", Cell(default_machine()), TIMES, AXES)
+    with pytest.raises(VideoError, match=r"in \.mp4 or \.gif or \.webp"):
+        write_video(tmp_path / "arm.mov", Cell(default_machine()), TIMES, AXES)

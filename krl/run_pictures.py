@@ -1,0 +1,74 @@
+"""Pictures of a run for a report: the film of the arm, and where it went."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from interp.controller.trace import TraceEvent
+from interp.program.load import CheckedProgram
+from interp.robot.simulation.cell import Cell
+from interp.robot.simulation.scene import Scene
+from interp.robot.simulation.video import VideoError, frame_times, write_picture, write_video
+from interp.session import RunResult, RunSetup
+from krl.errors import InputError
+from krl.progress import progress_bar
+from support.files.atomic_write import atomic_path
+
+__all__ = ["write_run_film", "write_run_picture"]
+
+_MOST_SIGNALS = 8
+_LONGEST = 60
+
+
+def write_run_film(target: Path, done: RunResult, program: CheckedProgram, setup: RunSetup) -> None:
+    """Film the arm, with clock, line and the signals that are on in each frame."""
+    rows = _rows(done, setup)
+    if rows is None:
+        return
+    moments = frame_times(rows[1])
+    captions = list(_captions(done.events, program, moments))
+    try:
+        with progress_bar("filming", len(moments)) as bar, atomic_path(target) as part:
+            write_video(part, *rows, captions=captions, on_frame=bar)
+    except VideoError as error:
+        raise InputError(str(error)) from error
+
+
+def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
+    """A picture of the arm at its last place, with its path."""
+    rows = _rows(done, setup)
+    if rows is None:
+        return
+    try:
+        with atomic_path(target) as part:
+            write_picture(part, *rows)
+    except VideoError as error:
+        raise InputError(str(error)) from error
+
+
+def _rows(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | None:
+    """The cell, and its axes over time, measured where they are."""
+    if done.path is None or not len(done.path.times):
+        return None
+    cell = Cell(done.machine, setup.scene or Scene(), setup.robot_file)
+    measured = done.path.axes_measured
+    return cell, done.path.times, done.path.axes if measured is None else measured
+
+
+def _captions(events: Sequence[TraceEvent], program: CheckedProgram, moments: Any) -> Iterator[str]:
+    """What stands in the frame of each moment (µs)."""
+    sources = {unit.module.path: unit.source.text.splitlines() for unit in program.units.values()}
+    signals: dict[str, bool] = {}
+    line, rest = "", iter(events)
+    event = next(rest, None)
+    for moment in moments:
+        while event is not None and event.time <= moment:
+            if event.kind == "motion_start" and event.at is not None:
+                text = sources.get(event.at.file, [])[event.at.line - 1 : event.at.line]
+                line = " ".join([event.place or "", *map(str.strip, text)])[:_LONGEST]
+            elif event.kind in ("in", "out"):
+                name = f"{event.fields.get('signal')}[{event.fields.get('number')}]"
+                signals[name] = bool(event.fields.get("value"))
+            event = next(rest, None)
+        on = [name for name, is_on in signals.items() if is_on]
+        yield f"{moment / 1e6:.2f} s  {line}\n{' '.join(on[:_MOST_SIGNALS])}"
