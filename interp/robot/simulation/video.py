@@ -219,7 +219,7 @@ def _write_mp4(path: Path, images: Iterator[Image], size: tuple[int, int]) -> No
     import imageio_ffmpeg
 
     first = next(images)  # without a renderer no file is begun
-    video = imageio_ffmpeg.write_frames(str(path), size, fps=_FRAMES_PER_SECOND)
+    video = imageio_ffmpeg.write_frames(str(path), size, fps=_FRAMES_PER_SECOND, codec="libx264")
     video.send(None)
     for image in chain((first,), images):
         video.send(image.tobytes())

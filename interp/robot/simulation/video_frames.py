@@ -58,15 +58,19 @@ def _draw(folder: Path, width: int, height: int, first: int) -> None:
 def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
     """Where the flange is in each place, (places, 3), and all points at which something moves."""
     moving = model.geom_bodyid > 0
-    flange, parts = np.empty((len(places), 3)), np.empty((len(places), moving.sum(), 3))
+    is_capsule = (model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE)[moving]
+    size = model.geom_size[moving]
+    radii = np.where(is_capsule, size[:, 0], model.geom_rbound[moving])[:, None, None]
+    halves = np.where(is_capsule, size[:, 1], 0.0)[:, None]
+    around = radii * np.concatenate([np.eye(3), -np.eye(3)])
+    flange, parts = np.empty((len(places), 3)), []
     for number, place in enumerate(places):
         data.qpos[:] = place
         mujoco.mj_kinematics(model, data)
-        flange[number], parts[number] = data.site(FLANGE).xpos, data.geom_xpos[moving]
-    radii = np.tile(model.geom_rbound[moving], len(places))[:, None, None]
-    edges = np.concatenate([np.eye(3), -np.eye(3)])
-    around = (parts.reshape(-1, 1, 3) + radii * edges).reshape(-1, 3)
-    return flange, np.concatenate([flange, around])
+        flange[number] = data.site(FLANGE).xpos
+        middles, along = data.geom_xpos[moving], data.geom_xmat[moving][:, 2::3] * halves
+        parts += [middles[:, None] + end[:, None] + around for end in (along, -along)]
+    return flange, np.concatenate([flange, np.concatenate(parts).reshape(-1, 3)])
 
 
 def _camera(model: Any, points: Points, aspect: float) -> Any:

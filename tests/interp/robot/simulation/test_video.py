@@ -1,5 +1,6 @@
 """A moving picture of the arm, where there is something to draw it with."""
 
+import subprocess
 from itertools import pairwise
 from pathlib import Path
 
@@ -53,18 +54,16 @@ def test_a_video_as_mp4(tmp_path: Path) -> None:
         write_video(path, Cell(default_machine()), TIMES, AXES, captions=["0 s", *[""] * 6])
     except VideoError as error:
         pytest.skip(str(error))
-    frames = ffmpeg.read_frames(str(path))
-    about = next(frames)
-    assert ((640, 480), 25) == (about["size"], about["fps"])
-    images = [np.frombuffer(one, dtype=np.uint8).reshape(480, 640, 3) for one in frames]
-    white = [(one[:40, :80].min(axis=-1) > 200).sum() for one in images]
-    assert 7 == len(images)
-    assert white[0] > 20
-    assert 0 == sum(white[1:])
+    reading = [ffmpeg.get_ffmpeg_exe(), "-v", "error", "-i", str(path)]
+    raw = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-")
+    data = subprocess.run([*reading, *raw], capture_output=True, check=True).stdout
+    images = np.frombuffer(data, dtype=np.uint8).reshape(-1, 480, 640, 3)
+    outlined = [(one[:30, :60].max(axis=-1) < 60).any() for one in images]
+    assert [True, *[False] * 6] == outlined
 
 
 def test_a_picture_of_the_arm(tmp_path: Path) -> None:
-    """The arm is wholly in it, and fills at least three quarters of its width or height."""
+    """The arm is wholly in it, and fills more than half of its height."""
     path = tmp_path / "arm.png"
     try:
         write_picture(path, Cell(default_machine()), TIMES, AXES)
@@ -76,7 +75,7 @@ def test_a_picture_of_the_arm(tmp_path: Path) -> None:
     assert (600, 800) == pixels.shape[:2]
     assert 0 < rows.min() < rows.max() < 599
     assert 0 < columns.min() < columns.max() < 799
-    assert max(np.ptp(rows) / 600, np.ptp(columns) / 800) > 0.5
+    assert np.ptp(rows) > 300
 
 
 def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
