@@ -232,19 +232,24 @@ def measure_planted(
     count: int,
     seed: int,
     *,
+    missing: float = 0.0,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
     """Plant ``count`` mistakes in programs below ``roots``, each by itself.
 
-    ``on_step`` is called once a mistake. The record has for all of them and by kind: ``planted``,
-    the shares ``found`` and ``in_place``, and of the number of findings of a mistake that is found
-    the ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors``
-    are the first that were not found, ``elsewhere`` those that were found in another place.
+    ``missing`` is the share of files that are left out before, drawn by ``seed``; ``on_step`` is
+    called once a mistake. The record has for all of them and by kind: ``planted``, the shares
+    ``found`` and ``in_place``, and of the number of findings of a mistake that is found the
+    ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors`` are
+    the first that were not found, ``elsewhere`` those that were found in another place.
 
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
     chance = random.Random(seed)
-    projects = [_Checked(programs) for programs in _projects(roots)]
+    projects = []
+    for whole in _projects(roots):
+        kept = [path for path in whole if not missing or chance.random() >= missing]
+        projects.append(_Checked({path: whole[path] for path in kept}))
     places = [
         (project, path, lines)
         for project in projects
@@ -260,6 +265,7 @@ def measure_planted(
     done = [trial for trial in trials if trial is not None]
     return {
         "seed": seed,
+        "missing": missing,
         "files": len(places),
         **_figures(done),
         "kinds": [

@@ -171,7 +171,14 @@ class _Collector:
                 self._literal(part.left, part.right)
 
     def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
-        """Note what an undeclared variable stands beside."""
+        """Note what an undeclared variable, or a component of one, stands beside."""
+        if isinstance(variable, ast.Subscript):
+            return  # letters may be given by their codes
+        path: list[str] = []
+        while isinstance(variable, ast.Member | ast.Subscript):
+            if isinstance(variable, ast.Member):
+                path.insert(0, variable.name.text)
+            variable = variable.base
         if not isinstance(variable, ast.Variable):
             return
         name = variable.name
@@ -180,7 +187,8 @@ class _Collector:
             value = value.operand
         kind = _KINDS.get(type(value))
         if kind is not None and self._context.found(name) is None and not name.key.startswith("$"):
-            self._literals.append((name.key, kind, self._place(value, name.text)))
+            shown = ".".join((name.text, *path))
+            self._literals.append((shown.upper(), kind, self._place(value, shown)))
 
     # --------------------------------------------------------------------------- keys
 

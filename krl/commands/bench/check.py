@@ -26,6 +26,10 @@ def check(
         int, typer.Option(min=0, metavar="N", help="Mistakes to plant, one at a time.")
     ] = 120,
     seed: Annotated[int, typer.Option(metavar="N", help="Draws the mistakes.")] = 1,
+    missing: Annotated[
+        float,
+        typer.Option(min=0, max=0.99, metavar="SHARE", help="Leave so many files out, by chance."),
+    ] = 0.0,
 ) -> int:
     """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more.
 
@@ -43,7 +47,9 @@ def check(
             record = measure_check(roots, sizes=wanted, on_step=advance)
         if planted:
             with progress_bar("planting mistakes", planted) as advance:
-                record["planted"] = measure_planted(roots, planted, seed, on_step=advance)
+                record["planted"] = measure_planted(
+                    roots, planted, seed, missing=missing, on_step=advance
+                )
     record = {"bench": "check", **record}
     write_json(record, json_file, indent=1)
     _print(record)

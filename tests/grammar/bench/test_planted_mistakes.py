@@ -69,6 +69,17 @@ def test_the_same_seed_gives_the_same_figures(tmp_path: Path) -> None:
     assert first["found"] > 0.6
 
 
+def test_files_can_be_missing(tmp_path: Path) -> None:
+    """A share of the files is left out by the seed, and mistakes are planted in the others."""
+    for number in range(20):
+        text = CELL.replace("CELL", f"CELL{number}")
+        (tmp_path / f"cell{number}.src").write_text(text, encoding="utf-8")
+    part = measure_planted([tmp_path], 9, 1, missing=0.5)
+    assert 20 == measure_planted([tmp_path], 9, 1)["files"]
+    assert 0 < part["files"] < 20
+    assert 9 == part["planted"]
+
+
 def test_a_mistake_that_nothing_finds_is_a_survivor(tmp_path: Path) -> None:
     """Nothing is found where every name may come from elsewhere, and the record says which."""
     text = "DEF CELL()\n  AXXX = BYYY + CZZZ\nEND\n"

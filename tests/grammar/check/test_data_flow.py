@@ -211,6 +211,9 @@ def test_folds(agrees: Agrees) -> None:
         (["A = 1", "A = 2.5", "A = 3"], False),
         (["A = TRUE", "A = FALSE", "A = 1", "A = 2"], False),
         (["A = 1", "A = -2", 'A = "X"'], True),
+        (["CELL[1].N = 1", "CELL[2].N = 2", 'CELL[3].N = "x"'], True),
+        (["CELL.N = 1", "CELL.M = 2", "CELL.DONE = TRUE"], False),
+        (["TEXT[1] = 65", "TEXT[2] = 66", 'TEXT[3] = "C"'], False),
     ],
 )
 def test_undeclared_variables_of_two_kinds(
