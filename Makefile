@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism test lock audit check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism blends test lock audit check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -24,6 +24,7 @@ help:
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
 	@echo 'make determinism  run each command twenty times in different ways and compare its records'
+	@echo 'make blends       the laws of blends on thousands of programs, other ones each time'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
@@ -69,7 +70,7 @@ fuzz: $(DEV)
 real-code: $(DEV)
 	@$(BIN)/krl bench real-code $(ARGS)
 
-killed hostile: $(DEV)
+killed hostile blends: $(DEV)
 	@$(BIN)/python -m pytest -q -s -m soak tests/soak/test_$@.py $(ARGS)
 
 determinism: $(DEV)

@@ -51,7 +51,7 @@ _TEXT_LENGTH: Final = 80
 _ELEMENTS: Final = {1: 32, 2: 8, 3: 4}
 _MOST_ELEMENTS: Final = 4096
 #: More elements than these get no value.
-_MOST_VALUES: Final = 64
+_MOST_VALUES: Final = 256
 _FIRST_INPUT: Final = 1024
 _LONGEST: Final = 20
 

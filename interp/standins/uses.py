@@ -49,7 +49,8 @@ class DataUse:
     """How a variable, a member or a result is used.
 
     ``types`` are those that it was met with, in the order of the text; ``indices`` is the most
-    indices at once, 0 where there is none, and ``largest`` the largest number in each place.
+    indices at once, 0 where there is none, and ``largest`` the largest number in each place, also
+    that of a loop's counter.
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
     kinds of motions that go to it. ``is_index``: an array has it as an index; ``is_part``: it is a
     member. ``asked_for`` is the first number that a SWITCH or a comparison asks for.
@@ -112,6 +113,8 @@ class Uses:
         self._checked: Checked | None = None
         self._result: Type = UNKNOWN
         self._statements: set[ast.Call] = set()
+        #: The largest number that loops of a routine count to, by the counter.
+        self._counted: dict[str, int] = {}
 
     def read(self, checked: Checked) -> None:
         """Look at one file."""
@@ -124,6 +127,7 @@ class Uses:
         for routine in syntax.content.routines:
             found = checked.resolution.found(routine.name)
             self._result = UNKNOWN if found is None else self._project.types.of(found)
+            self._counted.clear()
             self._look(routine)
 
     # ------------------------------------------------------------------------- statements
@@ -169,6 +173,17 @@ class Uses:
         for number in (node.first, node.last, node.step):
             if number is not None:
                 self._expect(number, INT)
+        ends = (self._largest(one) for one in (node.first, node.last))
+        self._counted[node.counter.key] = max(self._counted.get(node.counter.key, 0), *ends)
+
+    def _largest(self, number: ast.Expression | None) -> int:
+        """The largest value that a number or the counter of a loop has; 0 where it is unknown."""
+        match number:
+            case ast.IntegerLiteral(value=value):
+                return value
+            case ast.Variable(name=name):
+                return self._counted.get(name.key, 0)
+        return 0
 
     def _return(self, node: ast.Return) -> None:
         if node.value is not None:
@@ -315,8 +330,7 @@ class Uses:
                 if array is not None:
                     array.indices = max(array.indices, len(indices))
                     for place, index in enumerate(indices[:3]):
-                        if isinstance(index, ast.IntegerLiteral):
-                            array.largest[place] = max(array.largest[place], index.value)
+                        array.largest[place] = max(array.largest[place], self._largest(index))
                     array.is_text = array.is_text or indices[-1] is None
                 return array
         return None

@@ -361,3 +361,10 @@ def test_paths_of_an_option_are_skipped() -> None:
     run = _run(_main(f'{HOME}MOVE_EMI DEVICE[] "path.emily" FLT 0\nPTP {{A1 5}}\n'))
     assert (("end", ""), ["PTP", "PTP"]) == (_outcome(run), _planned(run))
     assert [3] == [at.line for at, _ in run.controller.skipped_motions]
+
+
+def test_arrays_have_what_a_loop_counts_to() -> None:
+    """An array that a loop goes over is as long as the loop, and each element has a place."""
+    program = _main("FOR I=1 TO 100\nPTP P[I]\nENDFOR\n", declared="INT I\n")
+    run = _run(program)
+    assert (("end", ""), 100) == (_outcome(run), len(_planned(run)))
