@@ -131,8 +131,11 @@ def _fields(of: object, names: Sequence[str]) -> dict[str, Any]:
 def _fates(trials: Sequence[Trial]) -> dict[str, Any]:
     counts = Counter(one.fate for one in trials)
     counted = len(trials) - counts["invalid"] - counts["equivalent"]
+    survived = [one for one in trials if one.fate == "survived"]
     return {
         "mutants": len(trials),
         **{fate: counts[fate] for fate in get_args(Fate)},
+        "unreached": sum(not one.reached for one in survived),
+        "unchanged": sum(bool(one.reached) and not one.changed for one in survived),
         "share": round(counts["red"] / counted, 4) if counted else 0.0,
     }

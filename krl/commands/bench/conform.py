@@ -126,6 +126,10 @@ def _print_mutants(drawn: Mapping[str, Any]) -> None:
         counts = (row["mutants"], *(row[fate] for fate in fates))
         table.add_row(name, *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
     console.print(table)
+    console.print(
+        f"of {drawn['survived']:,} that survived, {drawn['unreached']:,} are on lines that no case "
+        f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried"
+    )
     console.print(f"aim: {drawn['aim']:.0%} of those that a case could notice red")
 
 
