@@ -313,7 +313,7 @@ def test_page(run: Run, tmp_path: Path) -> None:
         (["--robot", "mujoco", "--video", "film.mov"], "film.mov"),
         (["--png", "arm.png"], "krl: --png: only the MuJoCo arm can be filmed; say "),
         (["--robot", "mujoco", "--png", "arm.jpg"], "arm.jpg: should end in .png"),
-        (["--executor", "lua"], "lua"),
+        (["--executor", "lua"], "krl run: Invalid value for '--executor': 'lua' is not one of "),
         (["--max-time", "-1"], "--max-time"),
         (["--trace", "."], "krl: .: a folder, not a file\n"),
     ],

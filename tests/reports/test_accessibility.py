@@ -14,6 +14,7 @@ from grammar.syntax.source import Source
 from reports.auto_page import write_auto_page
 from reports.claims_page import write_claims_page
 from reports.conform_page import write_conformance_page
+from reports.coverage_page import CoveredFile, write_coverage_page
 from reports.diff_page import write_diff_page
 from reports.growth_page import write_growth_page
 from reports.nightly_page import write_nightly_page
@@ -31,7 +32,7 @@ Json = dict[str, Any]
 SCRIPT = next(Path(axe.__file__).parent.glob("axe*.js"))
 PAGES = (
     "survey", "pending", "complete", "no-files", "growth", "conform", "nightly", "run", "stopped",
-    "diff", "claims", "auto",
+    "diff", "claims", "auto", "coverage",
 )  # fmt: skip
 
 
@@ -55,6 +56,13 @@ def pages(
     old, new = ([Source(f"DEF A()\n{line}\nEND\n", "a.src")] for line in ("HALT", "PTP XHOME"))
     change = {"old": "old", "new": "new", **compare(old, new)}
     step = {"id": "0001-for-step", "title": "FOR … STEP", "edits": ["forStatement: STEP"]}
+    covered = CoveredFile(
+        "R1/Program/cell.src",
+        "DEF CELL()\nIF $IN[1] THEN\nHALT\nENDIF\nEND\n",
+        lines={2: 3, 3: 0},
+        branches={2: {"THEN": 0, "ELSE": 3}},
+        routines={"CELL": (1, 3)},
+    )
     grown_alone = {
         "start": "preliminary.g4",
         "rounds": [
@@ -79,6 +87,7 @@ def pages(
         "stopped": write_run_page(recorded("DEF CELL()\nHALT\nEND\n"), at / "run" / "stopped.html"),
         "diff": write_diff_page(change, at / "diff.html"),
         "claims": write_claims_page(RECORDS, at / "claims"),
+        "coverage": write_coverage_page([covered], 1, at / "coverage"),
         "auto": write_auto_page(grown_alone, at / "auto"),
     }
 
