@@ -11,7 +11,6 @@ from krl.cli import main
 
 MOVE = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 90,A6 0}\n"
 
-
 PROGRAMS = {
     "R1/Program/ends": f"ends ( )\n{MOVE}part ( )\n",
     "R1/Program/part": f"part ( )\n{MOVE}",
@@ -45,7 +44,7 @@ def lay(backup: Path, programs: dict[str, str]) -> Path:
 def some(tmp_path: Path, *names: str) -> Path:
     """A backup of these of the programs."""
     programs = {name: text for name, text in PROGRAMS.items() if name.split("/")[-1] in names}
-    return lay(tmp_path / "cell", programs)
+    return lay(tmp_path / "plant", programs)
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +134,7 @@ def test_scripts(tmp_path: Path) -> None:
     (scripts / "waits.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
     found = results(backup, "--scripts", str(scripts))
     assert ("end", "waits") == (found["waits"]["result"], found["cell"]["result"])
-    (scripts / "cell.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
+    (scripts / "plant.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
     assert "end" == results(backup, "--scripts", str(scripts))["cell"]["result"]
 
 
