@@ -12,7 +12,7 @@ from platform import node
 from typing import Any, Final
 
 from conformance.differential.construct_coverage import Counts, counted, language, missing
-from conformance.differential.divergence import Difference, Files, difference, prepared
+from conformance.differential.divergence import Difference, Files, diverged, prepared
 from conformance.differential.reduction import reduce_program
 from conformance.differential.runs import EXECUTORS, Prepared, is_available, trace_of
 from grammar.generation.closed.programs import seeded
@@ -161,9 +161,9 @@ def _run_all(shard: _Shard) -> _Outcome:
         reference, *others = shard.executors
         expected = trace_of(program, EXECUTORS[reference], world)
         for name in others:
-            diverged = difference(name, expected, trace_of(program, EXECUTORS[name], world))
-            if diverged is not None:
-                found.findings.append(Finding(number, diverged, files))
+            where = diverged(program, name, expected, world)
+            if where is not None:
+                found.findings.append(Finding(number, where, files))
         found.counts.update(counted(program, expected))
         found.ends[str(expected[-1][0])] += 1
         facts += len(expected)
@@ -183,9 +183,9 @@ def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
             world = world_seed(seed, finding.number, attempt)
             expected = trace_of(program, EXECUTORS[reference], world)
             name = finding.difference.executor
-            diverged = difference(name, expected, trace_of(program, EXECUTORS[name], world))
-            if diverged is not None and diverged.kind == finding.difference.kind:
-                last[0] = diverged
+            where = diverged(program, name, expected, world)
+            if where is not None and where.kind == finding.difference.kind:
+                last[0] = where
                 return True
         return False
 

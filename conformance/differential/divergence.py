@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from conformance.differential.runs import EXECUTORS, Prepared, trace_of
+from conformance.differential.runs import EXECUTORS, Prepared, trace_of, untraced
 from conformance.differential.traces import Fact, shown
 from grammar.syntax.source import Source
+from interp.executors import COMPILED
+from interp.port.events import EVERY_KIND
 from interp.program.load import load
 
-__all__ = ["Difference", "Files", "difference", "examine", "prepared"]
+__all__ = ["Difference", "Files", "difference", "diverged", "examine", "prepared"]
 
 #: Texts by path; the first file is the one to begin with.
 Files = tuple[tuple[str, str], ...]
@@ -75,11 +77,22 @@ def difference(
     )
 
 
+def diverged(
+    program: Prepared, executor: str, expected: Sequence[Fact], seed: str
+) -> Difference | None:
+    """Where an executor diverges from the facts of another one.
+
+    Native code runs once more without events, as it is left at every statement that is reported.
+    """
+    found = difference(executor, expected, trace_of(program, EXECUTORS[executor], seed))
+    if found is None and executor == COMPILED:
+        requests = [fact for fact in expected if fact[0] not in EVERY_KIND]
+        found = difference(executor, requests, trace_of(program, untraced(executor), seed))
+    return found
+
+
 def examine(program: Prepared, seed: str, executors: Sequence[str]) -> list[Difference]:
     """Run a program on executors; where each of them diverges from the first one, if it does."""
     expected = trace_of(program, EXECUTORS[executors[0]], seed)
-    found = (
-        difference(name, expected, trace_of(program, EXECUTORS[name], seed))
-        for name in executors[1:]
-    )
+    found = (diverged(program, name, expected, seed) for name in executors[1:])
     return [one for one in found if one is not None]

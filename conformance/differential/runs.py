@@ -35,7 +35,7 @@ from interp.port.requests import (
 from interp.program.load import Limits
 from interp.values.faults import LinkError, RuntimeFailure
 
-__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "is_available", "trace_of"]
+__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "is_available", "trace_of", "untraced"]
 
 #: More statements than any generated program executes, and a slice short enough to come up.
 LIMITS: Final = Limits(statements=20_000, per_slice=25)
@@ -51,6 +51,11 @@ Factory = Callable[[Prepared, Limits, Sink], Executor]
 
 def _made(name: str) -> Factory:
     return lambda prepared, limits, sink: prepared.executor(name, limits, sink)
+
+
+def untraced(name: str) -> Factory:
+    """Makes an executor that reports requests only."""
+    return lambda prepared, limits, _sink: prepared.executor(name, limits)
 
 
 #: The executors by name; the first one is the reference.
