@@ -93,7 +93,7 @@ class Signatures:
     def data(self, name: str, use: DataUse, *, is_last: bool, access: str = "GLOBAL ") -> list[str]:
         """The lines that declare a variable, none where nothing tells its type.
 
-        When ``is_last``, a variable of which nothing is known is an INT.
+        When ``is_last``, a variable of which nothing is known is an INT, and arrays have values.
         """
         kind = self._kind(name, use)
         if kind is None and not is_last:
@@ -108,6 +108,8 @@ class Signatures:
             return [f"DECL {access}{kind.name} {name}={kind.value}"]
         sizes = self._sizes(use, is_text=kind.is_text)
         lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
+        if not is_last:  # values tell no type, and there are many
+            return lines
         is_placed = name in self.placed
         type_ = self._find_type(kind.name)
         counted = sizes[:-1] if kind.is_text else sizes
