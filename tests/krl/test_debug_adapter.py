@@ -89,6 +89,8 @@ class Client:
                     found: dict[str, Any] = one["body"]
                     return found
             self.events.append(self._next())
+            # nothing comes behind this one, and one would wait for ever
+            assert event == "terminated" or self.events[-1]["event"] != "terminated", self.events
 
     def stopped(self, command: str, **arguments: Any) -> tuple[str, int]:
         """Why and at which line it stops behind a command."""
