@@ -65,7 +65,7 @@ def write_lcov(files: Sequence[CoveredFile], target: Path) -> None:
 
 
 def _lcov(one: CoveredFile) -> Iterator[str]:
-    yield f"SF:{one.path}"
+    yield f"SF:{printable(one.path)}"
     for name, (line, _) in one.routines.items():
         yield f"FN:{line},{name}"
     for name, (_, count) in one.routines.items():

@@ -26,7 +26,7 @@ from interp.testing.coverage import Coverage, CoverageRecord
 from interp.testing.drivers import VALUES, Driver, DriverError, with_drivers
 from interp.values.faults import LinkError
 from interp.values.json_form import to_json
-from krl.errors import InputError
+from krl.errors import InputError, one_line
 from krl.program_loading import project_root, read_sources
 from krl.program_tests.recording import compared, recording_of
 from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
@@ -233,7 +233,7 @@ def _told(
     program: CheckedProgram | None = None,
     check: Check | None = None,
 ) -> Iterator[str]:
-    yield f"{test.path}:{line}: {test.name}"
+    yield one_line(f"{test.path}:{line}: {test.name}")
     yield f"    expected: {expected}"
     yield f"    seen:     {seen}"
     if program is not None and check is not None and check.line:

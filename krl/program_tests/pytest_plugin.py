@@ -41,11 +41,16 @@ def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTes
         ".src",
     ):
         return None
+    from krl.errors import one_line
     from krl.program_tests.test_files import is_test_file
 
     if not is_test_file(file_path):
         return None
-    found: ProgramTestFile = ProgramTestFile.from_parent(parent, path=file_path)
+    # pytest prints names and writes them to JUnit as they are, and a name may steer a terminal
+    root = parent.config.rootpath
+    place = file_path.relative_to(root) if file_path.is_relative_to(root) else file_path
+    plain = one_line(place.as_posix()).replace("::", ":")
+    found: ProgramTestFile = ProgramTestFile.from_parent(parent, path=file_path, nodeid=plain)
     return found
 
 
@@ -61,14 +66,15 @@ class ProgramTestFile(pytest.File):
 
     def collect(self) -> Iterator[ProgramTestItem]:
         """The items; `pytest.Collector.CollectError` for a file that cannot be used."""
+        from krl.errors import one_line
         from krl.program_tests.test_files import TestFileError
 
         try:
             tests = self.tests
         except TestFileError as error:
-            raise self.CollectError(str(error)) from error
+            raise self.CollectError(one_line(str(error))) from error
         for test in tests:
-            yield ProgramTestItem.from_parent(self, name=test.name, test=test)
+            yield ProgramTestItem.from_parent(self, name=one_line(test.name), test=test)
 
 
 class _Failed(Exception):
@@ -107,13 +113,17 @@ class ProgramTestItem(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *_: Any) -> Any:
         """What was expected and seen, without a traceback through our own code."""
+        from krl.errors import shown
+
         if isinstance(excinfo.value, _Failed):
-            return str(excinfo.value)
+            return "\n".join(map(shown, str(excinfo.value).split("\n")))
         return super().repr_failure(excinfo)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where it stands, and its name."""
-        return self.path, self.test.line - 1, self.name
+        from krl.errors import one_line
+
+        return Path(one_line(str(self.path))), self.test.line - 1, self.name
 
 
 class _Coverage:

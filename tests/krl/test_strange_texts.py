@@ -1,5 +1,6 @@
 """Names of files and texts of programs steer nothing, wherever they come out."""
 
+import csv
 import json
 import re
 import sys
@@ -41,6 +42,7 @@ OUTPUTS = {
     "survey": "recover --no-start --jobs 1 --out out {0}",
     "growth by itself": "recover --auto --jobs 1 --out out {0}",
     "run": "run --robot none --max-time 1 --trace out/t.json --html out/r.html {1}",
+    "path as a table": "run --robot kinematic --max-time 1 --path out/p.csv {1}",
     "compile": "compile -o out/a.krlb {1}",
 }
 
@@ -82,6 +84,10 @@ def _check(path: Path) -> None:
             assert None is STEERING.search(line)
         if path.name != "t.json":  # a record a line
             json.loads(path.read_text(encoding="utf-8"))
+    elif path.suffix == ".csv":
+        with path.open(encoding="utf-8", newline="") as file:
+            cells = [cell for row in csv.reader(file) for cell in row]
+        assert [] == [cell for cell in cells if re.match(r"[=+@\t\r]|-[^0-9.]", cell)]
     elif path.suffix == ".xml":
         ET.parse(path)
     elif path.suffix == ".html":

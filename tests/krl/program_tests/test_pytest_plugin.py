@@ -1,6 +1,9 @@
 """The plug-in gives tests of robot programs to pytest, and `krl test` runs it."""
 
+import json
+import re
 import shutil
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -53,6 +56,29 @@ def test_failures_and_errors_have_no_traceback(pytester: pytest.Pytester) -> Non
         ["*test_bad.toml:2: naem is no key here*", "*expected: out 1 never", "*seen: *work.src:2*"]
     )
     assert "Traceback" not in result.stdout.str()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such names of files")
+@pytest.mark.usefixtures("no_other_plugins")
+def test_names_of_files_and_tests_steer_nothing(pytester: pytest.Pytester) -> None:
+    """Not the terminal, JUnit, lcov or the page: what would is spelt out."""
+    strange = "x\x1b[31m\n::error::\u202e<script>alert(1)\udcff"
+    folder = Path(strange.replace("/", ""))
+    folder.mkdir()
+    (folder / "work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
+    text = f"program = 'work.src'\n[[test]]\nname = {json.dumps(strange[:-1])}\n"
+    (folder / f"test_{folder}.toml").write_text(f"{text}expect = ['out 1 never']", encoding="utf-8")
+    options = (*OPTIONS, "--junitxml=j.xml", "--krl-cov-html=cov", "--krl-lcov=cov.info")
+    result = pytester.runpytest_subprocess(*options)
+    result.assert_outcomes(failed=1)
+    (case,) = ElementTree.parse(pytester.path / "j.xml").findall(".//testcase")
+    told = [
+        *(result.stdout.str(), result.stderr.str(), *case.attrib.values()),
+        *(Path(name).read_text(encoding="utf-8") for name in ("cov.info", "cov/index.html")),
+    ]
+    assert [] == [text for text in told if re.search(r"[\x00-\x08\x0b-\x1f\u202e]", text)]
+    assert [] == [line for line in "\n".join(told).splitlines() if line.startswith("::error")]
+    assert "<script>alert" not in told[-1]
 
 
 def test_krl_test_has_the_exit_status_of_all_commands(
