@@ -87,15 +87,10 @@ def _print(record: Mapping[str, Any]) -> None:
     missing = "" if record["native"] else "; the machine in C was not built"
     console.print(f"Python {record['python']}, {lua}{missing}", soft_wrap=True)
     shown = [name for name in _HEADINGS if any(row["ns"][name] for row in record["kernels"])]
-    table = figures(("µs for WORK(N)", "N", *map(_HEADINGS.__getitem__, shown), "C/Lua"))
+    table = figures(("µs", "N", *map(_HEADINGS.__getitem__, shown)))
     for row in record["kernels"]:
-        ns = row["ns"]
-        table.add_row(
-            row["name"],
-            f"{row['amount']:,}",
-            *(_figure(ns[name]) for name in shown),
-            _ratio(ns["lua"], ns["native"]),
-        )
+        times = (_figure(row["ns"][name]) for name in shown)
+        table.add_row(row["name"], f"{row['amount']:,}", *times)
     console.print(table)
     summary = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("geometric mean", "", "aim"):
@@ -121,10 +116,3 @@ def _before_running(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, fl
 
 def _figure(ns: float | None) -> str:
     return "–" if ns is None else f"{ns / 1e3:,.{0 if ns >= 1e5 else 1}f}"
-
-
-def _ratio(slow: float | None, fast: float | None) -> str:
-    if slow is None or fast is None:
-        return "–"
-    ratio = slow / fast
-    return f"{ratio:,.{0 if ratio >= 100 else 1}f}"
