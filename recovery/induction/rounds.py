@@ -38,7 +38,7 @@ from recovery.induction.folding import Folding, size
 from recovery.induction.inference import Inference, Inferred
 from recovery.induction.literals import split_literals
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
-from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.induction.would_be_keywords import LEAST_FILES_ALONE, WouldBeKeywords
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import RESERVED
 from recovery.negatives.tokens import lines as tokens_of
@@ -63,8 +63,6 @@ _PREFIX_SHARE = 0.6
 _PREFIX_TOKENS = 5
 # Lines that use a word as a name, from which on it stays one.
 _NAMED_LINES = 3
-# Files that show a change of what is there, where they are of one origin.
-_LOOSENING_FILES = 5
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -204,10 +202,11 @@ class Induction:
         if self._corpus is None:
             self._corpus = CorpusLines(self.shown, recognizer.lexer)
         corpus = self._corpus
-        if self._keywords is None or self._keywords.lexer.names != recognizer.lexer.names:
+        known_for = self._keywords and (self._keywords.lexer.names, self._keywords.least)
+        if self._keywords is None or known_for != (recognizer.lexer.names, origins):
             types = OperandRules(recognizer).type_words
             read = self._names_read(failures)
-            self._keywords = WouldBeKeywords(corpus, recognizer.lexer, read, types)
+            self._keywords = WouldBeKeywords(corpus, recognizer.lexer, read, types, origins)
         keywords = self._keywords
         if inner:
             whole = self._with_literals(failures, recognizer)
@@ -384,11 +383,8 @@ class Induction:
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
             files = {p for n in lines for p in known[n].files}
-            # a single origin may add something in two files; what is there it loosens with more
-            is_new = not fixed or any(isinstance(e, AddToken) for e in found.edits)
-            enough = 2 if is_new or len(origins) > 1 else _LOOSENING_FILES
             reason = ""
-            if len(origins) < least or len(files) < enough:
+            if len(origins) < least or len(files) < LEAST_FILES_ALONE:
                 reason = "only one origin shows it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again

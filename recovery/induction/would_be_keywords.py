@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from grammar.parser.lexer import Lexer
 from recovery.induction.corpus_lines import CorpusLines
 
-__all__ = ["WouldBeKeywords"]
+__all__ = ["LEAST_FILES_ALONE", "WouldBeKeywords"]
 
 # Different words up to which surroundings are those of keywords; where names may be too, fewer.
 _FEW = 8
@@ -24,6 +24,8 @@ _FEWER = 3
 _LEAST_ORIGINS = 2
 _LEAST_FILES = 3
 _MANY_FILES = 5
+#: Files that show what recurs in one origin only.
+LEAST_FILES_ALONE = 2
 _LEAST_SHARE = 0.8
 _NAME_SHARE = 0.02
 
@@ -63,12 +65,16 @@ class WouldBeKeywords:
         lexer: Lexer,
         read: Mapping[str, Collection[str]],
         types: Collection[str],
+        least: int = _LEAST_ORIGINS,
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
 
-        ``types`` are reserved words that stand where the names of types may.
+        ``types`` are reserved words that stand where the names of types may. Where ``least`` is 1
+        a word of one origin needs no more files than anything else of one.
         """
         self.lexer = lexer
+        self.least = least
+        alone = _MANY_FILES if least > 1 else LEAST_FILES_ALONE
         self._types = frozenset(types)
         self._name = lexer.kind_of.get("NAME", -9)
         self._values = frozenset(
@@ -106,8 +112,7 @@ class WouldBeKeywords:
         self.words = frozenset(
             word
             for word, count in meant.items()
-            if (len(places[word]) >= _LEAST_ORIGINS and count >= _LEAST_FILES)
-            or count >= _MANY_FILES
+            if (len(places[word]) >= _LEAST_ORIGINS and count >= _LEAST_FILES) or count >= alone
             if heads[word] >= _LEAST_FILES or count >= _LEAST_SHARE * uses[word]
         )
         typed = {

@@ -29,3 +29,13 @@ def test_a_name_before_a_type(toy: Grammar) -> None:
     many = {o: "".join(f"X FIXED{n} HALT\n" for n in range(20)) for o in "ab"}
     assert "FIXED" in _keywords(toy, few, ("HALT",)).words
     assert not [w for w in _keywords(toy, many, ("HALT",)).words if w.startswith("FIXED")]
+
+
+@pytest.mark.parametrize(("least", "found"), [(2, False), (1, True)])
+def test_a_word_of_one_origin(toy: Grammar, least: int, found: bool) -> None:
+    """Two files of one origin show a keyword only where nothing asks for a second origin."""
+    lexer = Recognizer(toy).lexer
+    one = frozenset({"a"})
+    shown = [CorpusFile(f"a/{n}", f"MOVE A{n}\nX := {n}\n", one) for n in range(2)]
+    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), least)
+    assert found == ("MOVE" in keywords.words)
