@@ -319,6 +319,7 @@ def _blocks(program: Sequence[SourceLine]) -> Violation | None:
 _STATEMENTS = _MOTIONS | frozenset(
     "CONTINUE EXIT GOTO HALT INTERRUPT RESUME RETURN TRIGGER WAIT".split()
 )
+_POSITIONS = frozenset("FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
 _DEFINING = frozenset("ENUM IMPORT SIGNAL STRUC".split())
 
 
@@ -331,7 +332,12 @@ def _misplaced(line: SourceLine, *, is_data: bool) -> str | None:
         is_statement = is_call or (line.lead in _STATEMENTS and not is_named)
         return "a data list has no statements" if is_statement else None
     ahead = _words(line)[: _words(line).index(line.lead)] if line.lead else []
-    is_variable = "DECL" in ahead or line.lead == "CONST" or "type" in line.kinds[: len(ahead) + 1]
+    is_variable = (
+        "DECL" in ahead
+        or line.lead == "CONST"
+        or "type" in line.kinds[: len(ahead) + 1]
+        or (not ahead and line.lead in _POSITIONS and behind == ("name",))
+    )
     if not is_variable or line.lead in _DEFINING or behind == ("=",):
         return None
     if "GLOBAL" in ahead or line.lead == "CONST":

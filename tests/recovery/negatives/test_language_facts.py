@@ -165,6 +165,8 @@ def test_broken_facts_are_named(body: str, line: int, fact: str) -> None:
         ("DEFDAT NEG\n WORK()\nENDDAT\n", "a data list has no statements"),
         ("DEFDAT NEG\n EXT WORK()\n SPTP=3\n CONTINUE=1\n INT I=3\nENDDAT\n", None),
         ("DEF NEG()\n INT I=3\nEND\n", "only a data list gives initial values"),
+        ("DEF NEG()\n E6POS P={X 1}\nEND\n", "only a data list gives initial values"),
+        ("DEF NEG()\n E6POS P\n E6POS={X 1}\nEND\n", None),
         ("DEF NEG()\n DECL E6POS P={X 1}\nEND\n", "only a data list gives initial values"),
         (
             "DEF NEG()\n DECL GLOBAL INT I\nEND\n",
