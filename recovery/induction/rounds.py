@@ -63,6 +63,8 @@ _PREFIX_SHARE = 0.6
 _PREFIX_TOKENS = 5
 # Lines that use a word as a name, from which on it stays one.
 _NAMED_LINES = 3
+# Files that show a change of what operands may be, where they are of one origin: it is everywhere.
+_OPERAND_FILES = 5
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -370,6 +372,7 @@ class Induction:
     ) -> tuple[list[Taken], list[Refused]]:
         """The edits that fit together and each deserve it."""
         grammar = self.grammar
+        operands = OperandRules(recognizer).recursive
         taken: list[Taken] = []
         refused: list[Refused] = []
         done: set[int] = set()
@@ -383,8 +386,10 @@ class Induction:
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
             files = {p for n in lines for p in known[n].files}
+            is_wide = len(origins) == 1 and not fixed.isdisjoint(operands)
+            enough = _OPERAND_FILES if is_wide else LEAST_FILES_ALONE
             reason = ""
-            if len(origins) < least or len(files) < LEAST_FILES_ALONE:
+            if len(origins) < least or len(files) < enough:
                 reason = "only one origin shows it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
