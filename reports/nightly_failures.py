@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 from reports.record_fields import Record, nested, records, text
 from reports.sanitizing import shown
 
-__all__ = ["OWN", "Failure", "failed_cases", "failures"]
+__all__ = ["OWN", "Failure", "failures"]
 
 #: How a failure of the nightly run itself, and not of what it runs, begins.
 OWN = "the nightly run "
@@ -39,12 +39,7 @@ def failures(
     """
     return [
         *_steps(steps),
-        *(
-            one
-            for name in _CONFORM
-            if name in made
-            for one in _cases(name, made[name], made.get(f"{name}-again", {}))
-        ),
+        *(one for name in _CONFORM if name in made for one in _cases(name, made[name])),
         *_no_longer_passing(made.get("conform", {}), before or {}),
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
@@ -58,24 +53,14 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
             yield Failure(what=f"step {name}: {status}", page="", command="")
 
 
-def _cases(step: str, record: Record, again: Record) -> Iterator[Failure]:
-    repeated = {text(case, "name"): case for case in records(again, "cases")}
-    for case in failed_cases(record):
-        failed = _failed(case)
+def _cases(step: str, record: Record) -> Iterator[Failure]:
+    for case in records(record, "cases"):
+        failed = [one for one in records(case, "results") if text(one, "verdict") == "fail"]
+        if not failed:
+            continue
         where = ", ".join(f"{text(one, 'executor')}/{text(one, 'robot')}" for one in failed)
         reason = shown(text(failed[0], "reason"), _LONGEST)
-        second = repeated.get(text(case, "name"))
-        flaky = " and not when repeated (flaky)" if second and not _failed(second) else ""
-        yield _of_case(step, case, f"failed on {where}{flaky}: {reason}", failed[0])
-
-
-def failed_cases(record: Record) -> list[Record]:
-    """The cases of a conformance record that fail on any executor and robot."""
-    return [case for case in records(record, "cases") if _failed(case)]
-
-
-def _failed(case: Record) -> list[Record]:
-    return [one for one in records(case, "results") if text(one, "verdict") == "fail"]
+        yield _of_case(step, case, f"failed on {where}: {reason}", failed[0])
 
 
 def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:

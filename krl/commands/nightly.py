@@ -5,8 +5,7 @@ import re
 import shutil
 import sys
 import time
-from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -30,8 +29,6 @@ _PROGRAMS = 12_000
 #: What moves the cursor and colours text on a terminal.
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _TAIL = 4_000
-#: So many cases that failed are repeated.
-_MOST_AGAIN = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +69,7 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
     A run that was broken off goes on where it was: steps whose record is there are not done again.
-    Steps and cases that fail are tried once more. DIR/DATE/summary.md tells it all for an issue or
+    Steps that fail are tried once more. DIR/DATE/summary.md tells it all for an issue or
     a mail. On a terminal each step shows how far it is. Exit status 1 where a step failed, a case
     failed or no longer passes, a law was broken, or executors diverge.
     """
@@ -87,7 +84,7 @@ def nightly(
     made: dict[str, Any] = {}
     went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
     try:
-        for step, how, seconds in _performed(steps, made, folder, minutes, memory * 1_000_000):
+        for step, how, seconds in _performed(steps, folder, minutes, memory * 1_000_000):
             before = went.pop(step.name, None)
             if seconds or not isinstance(before, dict) or "failed" in how:
                 before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
@@ -196,32 +193,16 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     )
 
 
-def _again(step: _Step, made: Mapping[str, Any]) -> Iterator[_Step]:
-    """What repeats the cases that failed in a step, which tells flaky ones from the others."""
-    from reports.nightly_failures import failed_cases
-    from reports.record_fields import text
-
-    if step.name in ("conform", "conform-arm") and step.name in made:
-        names = [text(case, "name") for case in failed_cases(made[step.name])][:_MOST_AGAIN]
-        options = (
-            step.arguments[step.arguments.index("--executor") : -2] if "arm" in step.name else ()
-        )
-        if names:
-            yield _Step(f"{step.name}-again", ("conform", *names, *options), 0.05)
-
-
 def _performed(
-    planned: list[_Step], made: Mapping[str, Any], folder: Path, minutes: float, memory: int
+    steps: list[_Step], folder: Path, minutes: float, memory: int
 ) -> Iterator[tuple[_Step, str, float]]:
     """Each step with how it went: ok, findings, failed with its last line, or cut off.
 
     A step that is done already took no time; one that failed is tried once more, and is flaky where
-    it does not fail then. ``made`` has the records of the steps that were given before.
+    it does not fail then.
     """
     begun = time.monotonic()
-    steps = deque(planned)
-    while steps:
-        step = steps.popleft()
+    for number, step in enumerate(steps, 1):
         began = time.monotonic()
         target = folder / f"{step.name}.json"
         if target.is_file():
@@ -230,7 +211,7 @@ def _performed(
         else:
             left = 60 * minutes - (began - begun)
             most = max(min(60 * minutes * step.share, left), 1)
-            told = f"{step.name} (at most {most / 60:.3g} min, {len(steps)} more to come)"
+            told = f"{step.name} (at most {most / 60:.3g} min, {number} of {len(steps)})"
             _say(began - begun, told)
             _recall(folder, step.name)
             how = _attempt(step, target, most, memory)
@@ -240,7 +221,6 @@ def _performed(
             ended = time.monotonic()
             _say(ended - begun, f"{step.name}: {how}, {(ended - began) / 60:.1f} min")
             yield step, how, ended - began
-        steps.extendleft(_again(step, made))
 
 
 def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
