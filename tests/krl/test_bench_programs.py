@@ -96,7 +96,7 @@ def test_whose_fault_it_is(tmp_path: Path) -> None:
     """A fault is not the program's own where its line names something that stood in."""
     texts = {
         "own": f"own ( )\nREAL X\n{MOVE}nothing ( )\nX=X+1.0\n",
-        "ours": f"ours ( )\n{MOVE}$VEL.CP=other[99]\n$VEL.CP=-other[1]\n",
+        "ours": f"ours ( )\n{MOVE}$VEL.CP=other[999]\n$VEL.CP=-other[1]\n",
     }
     programs = {f"R1/Program/{name}": text for name, text in texts.items()}
     found = results(lay(tmp_path / "cell", programs))
