@@ -26,8 +26,12 @@ def run_limited(
     ``memory`` is how many bytes of addresses each of its processes may have, which only Linux
     enforces. ``hear`` is given what it writes to standard error, piece by piece, from a thread;
     all of it has been given when this returns. Ends with all processes of the command, also when
-    this process is told to end. Raises OSError where the command cannot be started.
+    this process is told to end. A command that cannot be started raises OSError; on Linux it has
+    the status 127 instead.
     """
+    if sys.platform == "linux":  # a limit set from here could come after the command has begun
+        limited = f'ulimit -v {memory // 1024} && exec "$@"'
+        command = ["/bin/sh", "-c", limited, "sh", *command]
     with _ended_by_termination() as started:
         process = subprocess.Popen(
             command,
@@ -38,12 +42,8 @@ def run_limited(
         )
         reader = Thread(target=_pass_on, args=(process, hear), daemon=True)
         try:
-            started(process)
-            if sys.platform == "linux":
-                import resource
-
-                resource.prlimit(process.pid, resource.RLIMIT_AS, (memory, memory))
             reader.start()
+            started(process)
             return process.wait(seconds)
         except subprocess.TimeoutExpired:
             return None

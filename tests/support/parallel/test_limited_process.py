@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 from threading import Event
+from typing import Any
 
 import pytest
 
@@ -57,8 +58,15 @@ def test_time_passes() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only there the limit holds")
-def test_memory_has_a_limit() -> None:
-    """What wants more than allowed fails, and its parent does not."""
+def test_memory_has_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What wants more than allowed fails, though its parent goes on only when it has ended."""
+
+    class Late(subprocess.Popen[bytes]):
+        def __init__(self, command: list[str], **options: Any) -> None:
+            super().__init__(command, **options)
+            os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT)
+
+    monkeypatch.setattr(subprocess, "Popen", Late)
     said: list[str] = []
     assert 1 == run_limited(python("bytearray(1 << 32)"), 600, 1 << 30, said.append)
     assert "MemoryError" in "".join(said)
