@@ -39,12 +39,16 @@ class Arguments:
         return None if text is None else Path(text)
 
     def of(self, kind: type[Any], name: str) -> Any:
-        """An argument of a type, a path or a word too; ``None`` where it is missing."""
+        """An argument of a type, also a path or an enumeration.
+
+        ``None`` where it is missing, empty or of another type; raises `Refused` for a word that the
+        enumeration does not have.
+        """
         if issubclass(kind, Path):
             return self.path(name)
         if issubclass(kind, Enum):
             return self.choice(name, kind)
-        return self.get(name, kind, None)
+        return self.text(name) if kind is str else self.get(name, kind, None)
 
     def choice(self, name: str, kind: type[_E]) -> _E | None:
         """One of some words; raises `Refused` for another one."""

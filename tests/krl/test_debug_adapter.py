@@ -319,7 +319,7 @@ def test_over_standard_input_and_output(project: Path) -> None:
         assert process.stdout is not None
         client = Client(cast(BinaryIO, process.stdout), cast(BinaryIO, process.stdin))
         client.do("initialize")
-        client.do("launch", stopOnEntry=True)
+        client.do("launch", stopOnEntry=True, routine="")  # an empty text says nothing
         client.do("configurationDone")
         assert "entry" == client.wait("stopped")["reason"]
         client.do("disconnect")
