@@ -58,18 +58,18 @@ def append_run(file: Path, run: Mapping[str, Any]) -> None:
 
 
 def _shortened(lines: Sequence[str]) -> list[str]:
-    """Lines of which the last few that have them say what single cases and clusters were."""
+    """The lines, without single cases and clusters but in the last few that have any."""
     seen = dict.fromkeys(_LONG, 1)  # the line that is added is one
     kept = []
     for line in reversed(lines):
-        run = _run(line)
+        run, is_cut = _run(line) or {}, False
         for name, part in _LONG.items():
-            if run and isinstance(section := run.get(name), dict) and part in section:
+            if isinstance(section := run.get(name), dict) and part in section:
                 seen[name] += 1
                 if seen[name] > _IN_FULL:
                     del section[part]
-                    line = _line(run)  # noqa: PLW2901
-        kept.append(line)
+                    is_cut = True
+        kept.append(_line(run) if is_cut else line)
     return kept[::-1]
 
 
