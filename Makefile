@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism blends test lock audit check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism blends test lock audit site check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -30,6 +30,7 @@ help:
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
 	@echo 'make lock         choose versions and hashes for work on the project anew (needs uv)'
 	@echo 'make audit        known weaknesses and licences of what it needs (needs uv)'
+	@echo 'make site         the documents as a site, in reports/out/site (needs uv)'
 	@echo 'make bench        measure the tools; records go to reports/out/bench (ARGS="PATH")'
 	@echo 'make clean        remove .venv, caches and reports/out'
 
@@ -94,6 +95,11 @@ audit: $(DEV)
 	@uvx pip-audit@2.10.1 --disable-pip --require-hashes --requirement requirements-dev.txt
 	@uvx pip-licenses@5.5.5 --python $(BIN)/python --from=mixed --partial-match --summary \
 		--allow-only='MIT;BSD;Apache;ISC;MPL;Mozilla;PSF' --ignore-packages krl-workbench py-opw-kinematics
+
+site:
+	@NO_MKDOCS_2_WARNING=1 uvx --quiet --exclude-newer 2026-11-15 --from mkdocs==1.6.1 --with mkdocs-material==9.8.1 \
+		mkdocs build --strict --site-dir reports/out/site $(ARGS)
+	@echo 'reports/out/site/index.html'
 
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache

@@ -32,6 +32,7 @@ TOP_LEVEL = {
         "LICENSE",
         "Makefile",
         "README.md",
+        "mkdocs.yml",
     ),
     *("pyproject.toml", "requirements-dev.txt", "corpus", "docs", "tests"),
     *PACKAGES,

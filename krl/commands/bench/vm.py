@@ -42,7 +42,8 @@ def vm(
     kernels: Annotated[
         str,
         typer.Option(
-            metavar="NAME,…|DIR", help="Which kernels; or all of a folder. Default: all of ours."
+            metavar="NAMES",
+            help="Which kernels, with commas between, or a folder of them. Default: all of ours.",
         ),
     ] = "",
     rounds: Annotated[
