@@ -171,7 +171,7 @@ enum { CALLED = -1 };
     return left;
 /* `at` is four times the step, and two more where the statement has begun: with one more, the C compiler would take
  * it from what says that a sum is too large, and would work that out as a number each time. */
-#define LEFT()                                                                                     \
+#define LEAVE()                                                                                    \
     machine->at = at >> 2;                                                                         \
     machine->is_begun = at & 2;                                                                    \
     machine->fp = (int32_t)(fp - cells);                                                           \

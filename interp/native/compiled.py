@@ -42,7 +42,7 @@ _MOST_KEPT: Final = 500
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
 #: Steps that are left to the interpreter.
-_LEFT: Final = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
+_INTERPRETED: Final = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
 
 
 def compiler() -> str | None:
@@ -190,7 +190,7 @@ class _Source:
         yield self._each("BLANK", [one for one in kept if one >= received])
         yield from _blank_cells(set(range(received, self._program.frames[number])) - set(kept))
         yield f"goto do_{first};"
-        counted, later = self._runs(body)
+        counted, later = self._blocks(body)
         for place in body:
             step = self._steps[place]
             yield f"do_{place}:;"
@@ -201,35 +201,42 @@ class _Source:
             yield from self._step(place, later.get(place, 0), in_frame, kept, live[place])
         yield "leave:"
         yield self._each("PUT", in_use)
-        yield "LEFT();"
+        yield "LEAVE();"
         yield "}"
 
     def _live(self, body: range, stack: set[int]) -> dict[int, frozenset[int]]:
-        """The places of the stack of operands that are read from each step on before written."""
+        """Liveness: the places of the stack of operands that are read before they are written.
+
+        By the step from which on that is so.
+        """
         found: dict[int, frozenset[int]] = dict.fromkeys(body, frozenset())
-        before: dict[int, list[int]] = {place: [place - 1] for place in body}
+        before: dict[int, list[int]] = {place: [] for place in body}
         for place in body:
-            if self._steps[place].is_jump:
-                before[self._steps[place].d].append(place)
+            for other in self._following(place):
+                before[other].append(place)
         todo = list(body)
         while todo:
             place = todo.pop()
             step = self._steps[place]
             roles = roles_of(step.name)
-            after = found.get(place + 1, frozenset()) if step.name not in ENDS else frozenset()
-            if step.is_jump:
-                after |= found[step.d]
             if step.name == "PYTHON":
                 live = frozenset(one for one in stack if one < step.a)
             elif roles is None and step.name not in (*ENDS, "AT"):
                 live = frozenset(stack)
             else:
                 read, written = map(step.named, roles or ("", ""))
+                after = frozenset[int]().union(*(found[one] for one in self._following(place)))
                 live = (after - written) | stack.intersection(read)
             if live != found[place]:
                 found[place] = live
-                todo += (one for one in before[place] if one in body)
+                todo += before[place]
         return found
+
+    def _following(self, place: int) -> list[int]:
+        """The steps that may come after a step, within its routine."""
+        step = self._steps[place]
+        jump = [step.d] if step.is_jump else []
+        return jump if step.name in ENDS else [*jump, place + 1]
 
     def _kinds_of(self, slots: Iterable[Slot]) -> Iterator[tuple[int, str]]:
         """What cells of variables hold, if they hold anything."""
@@ -244,11 +251,11 @@ class _Source:
         """A macro for each register, with what it holds."""
         return "".join(f"{word}({one}, {self._kinds.get(one, 'ANY')})" for one in sorted(registers))
 
-    def _runs(self, body: range) -> tuple[dict[int, int], dict[int, int]]:
-        """Statements that are counted together, as nothing but a fault can come between.
+    def _blocks(self, body: range) -> tuple[dict[int, int], dict[int, int]]:
+        """Basic blocks: statements that count together, as nothing but a fault can come between.
 
-        How many they are, by the first step of the first of them; and how many have not begun yet,
-        by step.
+        How many a block has, by the first step of its first statement; and how many of its block
+        have not begun yet, by step.
         """
         counted: dict[int, int] = {}
         begun: dict[int, tuple[int, int]] = {}
@@ -262,12 +269,12 @@ class _Source:
                 counted[leader] = counted.get(leader, 0) + 1
             if leader >= 0:
                 begun[place] = leader, counted[leader]
-            if step.is_jump or step.name in (*CALLS, *ENDS, *_LEFT):
+            if step.is_jump or step.name in (*CALLS, *ENDS, *_INTERPRETED):
                 leader = -1
         return counted, {place: counted[first] - count for place, (first, count) in begun.items()}
 
     def _valued(self, steps: range) -> dict[int, frozenset[int]]:
-        """The registers that have a value before each step, wherever the program comes from."""
+        """Definite assignment: the registers with a value before each step, on every way there."""
         found: dict[int, frozenset[int]] = {steps[0]: frozenset()}
         todo = [steps[0]]
         while todo:
@@ -280,10 +287,7 @@ class _Source:
                 can_be_none = step.name == "PASS" or (step.name == "SET_K" and step.tag == 0)
                 after = after | read
                 after = after - written if can_be_none else after | written
-            following = [step.d] if step.is_jump else []
-            if step.name not in ENDS:
-                following.append(number + 1)
-            for other in following:
+            for other in self._following(number):
                 met = after & found.get(other, after)
                 if met != found.get(other):
                     found[other] = met
@@ -291,7 +295,7 @@ class _Source:
         return found
 
     def _in_frame(self, slots: Iterable[Slot], steps: Iterable[int]) -> frozenset[int]:
-        """The cells of variables that are reached by an address."""
+        """The cells of variables whose address is taken."""
         reached = set()
         for number in steps:
             name, _, b, c, *_ = self._steps[number]
@@ -328,7 +332,7 @@ class _Source:
                 if frame != step.a:
                     yield f"fp[{step.a}] = fp[{frame}];"
                 yield self._each("GET", {step.a} - in_frame)
-        elif name in _LEFT:
+        elif name in _INTERPRETED:
             yield f"INTERPRET({place}, {later}, {save})"
         elif name == "AT":
             yield f"statement = {step.b};"
