@@ -118,6 +118,7 @@ def _usage(error: typer.TyperException) -> str:
     """What is wrong with the command line, and where to read how it goes."""
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "krl"
+    # Pydantic puts the words in front of what a converter of an option says.
     said = error.format_message().replace("Value error, ", "").rstrip(".")
     return f"{command}: {said}{'' if said.endswith('?') else '.'} See {command} --help"
 

@@ -21,7 +21,7 @@ _MOST_FILES = 20_000
 _MOST_SHOWN = 5
 
 _P = TypeVar("_P", bound=PurePath)
-_Looked_contra = TypeVar("_Looked_contra", bound=PurePath, contravariant=True)
+_Folder_contra = TypeVar("_Folder_contra", bound=PurePath, contravariant=True)
 
 
 def load_program(
@@ -180,12 +180,12 @@ def project_root(path: Path) -> Path:
     return _root_around(path if path.is_dir() else path.parent, _Disk())
 
 
-class _Folders(Protocol[_Looked_contra]):
+class _Folders(Protocol[_Folder_contra]):
     """What lies in folders, on disk or in an archive."""
 
-    def folders_in(self, folder: _Looked_contra) -> list[str]: ...
+    def folders_in(self, folder: _Folder_contra) -> list[str]: ...
 
-    def has_krl(self, folder: _Looked_contra) -> bool: ...
+    def has_krl(self, folder: _Folder_contra) -> bool: ...
 
 
 def _root_around(folder: _P, folders: _Folders[_P]) -> _P:

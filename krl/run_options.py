@@ -144,9 +144,9 @@ class RunOptions:
 
 
 def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
-    """The command for the command line, with an option a field in place of its ``options``."""
+    """``command`` with an option for each field of `RunOptions` in place of its ``options``."""
     hints = get_type_hints(RunOptions, include_extras=True)
-    made = [
+    parameters = [
         Parameter(one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=hints[one.name])
         for one in fields(RunOptions)
     ]
@@ -154,10 +154,10 @@ def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
 
     @wraps(command)
     def called(*words: Any, **given: Any) -> int:
-        of_options = {one.name: given.pop(one.name) for one in made if one.name in given}
+        of_options = {one.name: given.pop(one.name) for one in parameters if one.name in given}
         return command(*words, options=RunOptions(**of_options), **given)
 
-    spliced = ([one] if one.name != "options" else made for one in own.parameters.values())
+    spliced = ([one] if one.name != "options" else parameters for one in own.parameters.values())
     vars(called)["__signature__"] = own.replace(parameters=list(chain.from_iterable(spliced)))
     return called
 

@@ -22,32 +22,35 @@ _LONGEST = 60
 
 def write_run_film(target: Path, done: RunResult, program: CheckedProgram, setup: RunSetup) -> None:
     """Film the arm, with clock, line and the signals that are on in each frame."""
-    rows = _rows(done, setup)
-    if rows is None:
+    arm = _recorded_arm(done, setup)
+    if arm is None:
         return
-    moments = frame_times(rows[1])
+    moments = frame_times(arm[1])
     captions = list(_captions(done.events, program, moments))
     try:
         with progress_bar("filming", len(moments)) as bar, atomic_path(target) as part:
-            write_video(part, *rows, captions=captions, on_frame=bar)
+            write_video(part, *arm, captions=captions, on_frame=bar)
     except VideoError as error:
         raise InputError(str(error)) from error
 
 
 def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
     """A picture of the arm at its last place, with its path."""
-    rows = _rows(done, setup)
-    if rows is None:
+    arm = _recorded_arm(done, setup)
+    if arm is None:
         return
     try:
         with atomic_path(target) as part:
-            write_picture(part, *rows)
+            write_picture(part, *arm)
     except VideoError as error:
         raise InputError(str(error)) from error
 
 
-def _rows(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | None:
-    """The cell, and its axes over time, measured where they are."""
+def _recorded_arm(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | None:
+    """The cell, the times (µs), and the axes at each of them, as measured where a robot does so.
+
+    ``None`` where no set-points were recorded.
+    """
     if done.path is None or not len(done.path.times):
         return None
     cell = Cell(done.machine, setup.scene or Scene(), setup.robot_file)

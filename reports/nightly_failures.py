@@ -11,10 +11,10 @@ from urllib.parse import urlencode
 from reports.record_fields import Record, nested, records, text
 from reports.sanitizing import shown
 
-__all__ = ["OWN", "Failure", "failures"]
+__all__ = ["OF_THE_RUN", "Failure", "failures"]
 
-#: How a failure of the nightly run itself, and not of what it runs, begins.
-OWN = "the nightly run "
+#: How the text of a failure begins that is of the nightly run itself, and not of a step.
+OF_THE_RUN = "the nightly run "
 _FINE = ("ok", "findings")
 #: The steps that run cases; their pages lie in folders of the same names.
 _CONFORM = ("conform", "conform-arm")

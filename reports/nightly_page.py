@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.embedding import embedded_json
-from reports.nightly_failures import OWN
+from reports.nightly_failures import OF_THE_RUN
 from reports.number_format import Figure, counted, percent, share
 from reports.page import render, source
 from reports.record_fields import Record, count, nested, number, records, text, texts
@@ -184,7 +184,7 @@ def _failure(record: Record) -> _Failure:
     page = text(record, "page")
     is_ours = page.startswith(_PAGES)
     return _Failure(
-        text(record, "what").startswith(OWN),
+        text(record, "what").startswith(OF_THE_RUN),
         shown(text(record, "what"), 400),
         page if is_ours else "",
         shown(text(record, "command"), 200),

@@ -69,8 +69,8 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
     A run that was broken off goes on where it was: steps whose record is there are not done again.
-    Steps that fail are tried once more. DIR/DATE/summary.md tells it all for an issue or
-    a mail. On a terminal each step shows how far it is. Exit status 1 where a step failed, a case
+    A step that fails is tried once more. DIR/DATE/summary.md sums the run up for an issue or a
+    mail. On a terminal each step shows how far it is. Exit status 1 where a step failed, a case
     failed or no longer passes, a law was broken, or executors diverge.
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
@@ -95,7 +95,7 @@ def nightly(
                 made[step.name] = record
         failed = _reported(made, went, folder, history)
     except Exception as error:
-        _tell_of_own(f"failed: {type(error).__name__}: {error}", went, folder)
+        _write_breakdown(f"failed: {type(error).__name__}: {error}", went, folder)
         raise
     return FINDINGS if failed else FINE
 
@@ -103,7 +103,7 @@ def nightly(
 def _reported(
     made: dict[str, Any], went: dict[str, dict[str, Any]], folder: Path, history: Path
 ) -> "list[Failure]":
-    """Write history, record, pages and summary of a run, say what is new; gives what failed."""
+    """What failed; writes history, record, pages and summary of a run, and says what is new."""
     from reports.claims_page import write_claims_page
     from reports.history import append_run, changes, known_before, nightly_record, read_history
     from reports.nightly_failures import failures
@@ -135,24 +135,24 @@ def _reported(
 
 
 def _broken_off(folder: Path) -> "Iterator[Failure]":
-    """The run before this one, where it did not come to its end."""
-    from reports.nightly_failures import OWN, Failure
+    """A failure for the run before this one, where that did not write its record at the end."""
+    from reports.nightly_failures import OF_THE_RUN, Failure
 
     earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
     if earlier and not (last := max(earlier)).joinpath("night.json").exists():
-        yield Failure(what=f"{OWN}of {last.name} broke off", page="", command="")
+        yield Failure(what=f"{OF_THE_RUN}of {last.name} broke off", page="", command="")
 
 
-def _tell_of_own(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:
-    """Let a run that cannot tell its results be red all the same, wherever one looks."""
-    from reports.nightly_failures import OWN, Failure
+def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:
+    """Write summary, record and page with the one failure that a run has broken down."""
+    from reports.nightly_failures import OF_THE_RUN, Failure
     from reports.nightly_page import write_nightly_page
     from reports.nightly_summary import nightly_summary
     from support.files.atomic_write import write_atomic
 
-    own = Failure(what=OWN + what, page="", command="")
+    own = Failure(what=OF_THE_RUN + what, page="", command="")
     run = {"date": folder.name, "steps": went, "failures": [own]}
-    with suppress(Exception):  # what is wrong may be wrong here too, and is raised in any case
+    with suppress(Exception):  # as writing may be what failed; the caller raises that
         write_atomic(folder / "summary.md", nightly_summary(run))
         write_json(run, folder / "night.json")
         write_nightly_page(run, folder)
@@ -224,7 +224,7 @@ def _performed(
 
 
 def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
-    """Have a step write its record; how it went, in one line."""
+    """How a step went, in one line; it writes its record to ``target``."""
     command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
     returned, last = _watched(command, most, memory)
     if returned is None:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["recover_auto"]
 
-# Generated negatives by which edits are tried, drawn evenly from more; their seed is none of the
-# benches' and not that of the measurement.
+# How many generated negatives edits are tried by, drawn evenly from more, and their seed, which is
+# none that a bench or the comparison with the target uses.
 _NEGATIVES = 1_500
 _SEED = 11
 

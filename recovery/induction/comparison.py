@@ -1,4 +1,4 @@
-"""A grown grammar beside a target: what it reads of the same files, and what it reads too much."""
+"""A grown grammar compared with a target: files read by both, and what it should not read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Comparison", "Share", "compared"]
 
 _SENTENCES = 1_000
 _NEGATIVES = 10_000
-# Not the seed of the negatives by which edits are tried.
+# Other than the seed of the negatives by which edits are tried.
 _SEED = 4242
 
 
@@ -29,10 +29,11 @@ class Share(TypedDict):
 
 
 class Comparison(TypedDict):
-    """What is read of the files that the target parses, shown and held out, and what is too much.
+    """How much the grown grammar reads that it should, and that it should not.
 
-    That are random sentences of the grown grammar that the target rejects, and the generated
-    negatives that the grown grammar accepts.
+    ``shown`` and ``held``: of the files that the target parses, how many it parses too.
+    ``sentences_rejected``: of its random sentences, how many the target rejects.
+    ``negatives_accepted``: of generated negatives, how many it accepts.
     """
 
     shown: Share
@@ -44,7 +45,7 @@ class Comparison(TypedDict):
 def compared(
     grown: Grammar, target: Grammar, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
 ) -> Comparison:
-    """The grown grammar beside the target; sentences and negatives are always the same draw."""
+    """The grown grammar compared with the target, with sentences and negatives of a fixed seed."""
     reader, judge = Recognizer(grown), Recognizer(target)
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]

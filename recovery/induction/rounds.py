@@ -63,7 +63,7 @@ _PREFIX_SHARE = 0.6
 _PREFIX_TOKENS = 5
 # Lines that use a word as a name, from which on it stays one.
 _NAMED_LINES = 3
-# Files that show a change of what operands may be, where they are of one origin: it is everywhere.
+# Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 _OPERAND_FILES = 5
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12

@@ -24,7 +24,7 @@ _FEWER = 3
 _LEAST_ORIGINS = 2
 _LEAST_FILES = 3
 _MANY_FILES = 5
-#: Files that show what recurs in one origin only.
+#: Files that what recurs in a single origin needs.
 LEAST_FILES_ALONE = 2
 _LEAST_SHARE = 0.8
 _NAME_SHARE = 0.02
@@ -69,8 +69,8 @@ class WouldBeKeywords:
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
 
-        ``types`` are reserved words that stand where the names of types may. Where ``least`` is 1
-        a word of one origin needs no more files than anything else of one.
+        ``types`` are reserved words that stand where the names of types may. ``least`` is
+        how many origins a form needs; where it is 1, two files of one origin show a word too.
         """
         self.lexer = lexer
         self.least = least

@@ -58,7 +58,7 @@ def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator
 
 
 def evenly(negatives: Iterable[Negative], count: int) -> list[Negative]:
-    """Up to ``count`` of them, of each reason as many as of another as far as there are so many."""
+    """Up to ``count`` of the negatives, taken from their reasons in turn."""
     by_reason: dict[str, list[Negative]] = defaultdict(list)
     for negative in negatives:
         by_reason[negative.reason].append(negative)

@@ -324,7 +324,10 @@ _DEFINING = frozenset("ENUM IMPORT SIGNAL STRUC".split())
 
 
 def _misplaced(line: SourceLine, *, is_data: bool) -> str | None:
-    """What a line has that belongs to the other of routine and data list [SCO-03, SCO-04]."""
+    """What is wrong with a line of a data list that belongs in a routine, or the other way round.
+
+    [SCO-03, SCO-04]
+    """
     head, behind = line.kinds[0], line.kinds[1:2]
     if is_data:
         is_call = head == "name" and behind == ("(",)

@@ -64,7 +64,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 @contextmanager
 def _ended_by_termination() -> Iterator[Callable[[subprocess.Popen[bytes]], None]]:
-    """Let a signal that ends this process end the one that is told of, at whatever moment."""
+    """SIGTERM kills the process given to what this yields, even if it came before, and this one."""
     running: list[subprocess.Popen[bytes]] = []
     signals: list[int] = []
 

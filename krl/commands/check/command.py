@@ -121,10 +121,9 @@ def check(
 ) -> int:
     """Check programs: syntax, names, types, control flow, and what is not allowed where.
 
-    Exit status 1 where there are errors or warnings, or as --fail-on has it; notes alone leave it
-    0. A comment
-    '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl explain
-    CODE' says what a code means.
+    Exit status 1 where there are errors or warnings, which --fail-on changes; notes alone leave it
+    0. A comment '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl
+    explain CODE' says what a code means.
     """
     from grammar.check.batch import CheckOptions
 
@@ -198,10 +197,7 @@ class _Check:
     cache: Path | None
 
     def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
-        """Check, write the findings that are new, and say on stderr what there was.
-
-        Gives their severities.
-        """
+        """The severities of the findings that are new, which it writes and counts on stderr."""
         report, kept = self._found()
         more = ""
         if self.baseline is not None:
