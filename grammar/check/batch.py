@@ -53,8 +53,8 @@ __all__ = ["CheckOptions", "CheckReport", "check_paths"]
 _WORTH_A_PROCESS = 1_000_000
 # A project of so many bytes is shared by all processes.
 _LARGE = 400_000
-# So many bytes wait for their turn, so that memory stays flat.
-_MOST_WAITING = 48_000_000
+# So many bytes a process wait for their turn, so that memory stays flat.
+_MOST_WAITING = 2_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +230,11 @@ class _Project:
             for process, again in enumerate(_shares(stale, pool.count))
         ]
 
+    @property
+    def is_done(self) -> bool:
+        """Whether `result` need not wait."""
+        return all(part.done() for part in ([self._whole] if self._whole else self._parts))
+
     def keep(self, result: ProjectResult, store: ResultStore) -> None:
         """Keep what was found, and what is now known of files."""
         store.put(known_records(self.places, self._files, self._known, self.options))
@@ -295,6 +300,10 @@ def _run(
     """The results of projects, in their order; only so many wait for their turn."""
     waiting: deque[_Project | ProjectResult] = deque()
     size = 0
+    most = _MOST_WAITING * pool.count
+
+    def is_done(project: _Project | ProjectResult) -> bool:
+        return isinstance(project, ProjectResult) or project.is_done
 
     def first() -> ProjectResult:
         nonlocal size
@@ -316,7 +325,7 @@ def _run(
             project.start(number, pool, store)
             waiting.append(project)
             size += project.size
-        while waiting and (size > _MOST_WAITING or isinstance(waiting[0], ProjectResult)):
+        while waiting and (size > most or is_done(waiting[0])):
             yield first()
     while waiting:
         yield first()

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 __all__ = ["gc_paused"]
 
 # Bytes of source after which garbage is collected all the same, so that memory stays flat.
-_OFTEN = 8_000_000
+_OFTEN = 2_000_000
 
 _since = [0]
 

@@ -13,7 +13,7 @@ from grammar.check import project_check
 from grammar.check.batch import CheckReport, check_paths
 from grammar.check.project_check import CheckOptions
 from grammar.diagnostics.diagnostic import Diagnostic
-from support.files.discovery import IngestError
+from support.files.discovery import Found, IngestError, Skipped, read
 
 CELL = Path(__file__).parents[3] / "corpus" / "programs" / "search_demo"
 CALLER = "DEF CALLER()\nSHIFT(5)\nEXIT\nEND\n"
@@ -211,6 +211,23 @@ def test_progress_reaches_the_end(tmp_path: Path) -> None:
     check(root, on_found=told.append, on_done=done.append)
     assert [3] == told
     assert 3 == sum(done)
+
+
+def test_a_project_is_done_before_the_next_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Progress goes by projects, and memory holds one of them, however many there are."""
+    for name in ("one", "two", "three"):
+        lay(tmp_path / "all" / name / "KRC" / "R1" / "Program", SHIFT__src=CALLED)
+    events: list[str] = []
+
+    def reading(found: Found) -> bytes | Skipped:
+        events.append("read")
+        return read(found)
+
+    monkeypatch.setattr(module, "read", reading)
+    check(tmp_path / "all", on_done=lambda number: events.append("done") if number else None)
+    assert ["read", "done"] * 3 == events
 
 
 def test_nothing_to_check_is_said(tmp_path: Path) -> None:
