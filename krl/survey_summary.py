@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["print_survey", "share"]
 
 _ROWS = 15
+_WIDE = 120  # columns: on narrower terminals the title needs the room of the example
 _WORDS = 12
 _SKIPPED = 5
 
@@ -37,7 +38,7 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
         )
     clusters = record["clusters"]
     if clusters:
-        console.print(_table(clusters[:_ROWS]))
+        console.print(_table(clusters[:_ROWS], has_examples=console.width >= _WIDE))
         if len(clusters) > _ROWS:
             console.print(f"… and {len(clusters) - _ROWS} more clusters")
         console.print(_advice(record))
@@ -59,13 +60,14 @@ def share(part: float, whole: float) -> str:
     return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
 
-def _table(clusters: "list[ClusterRecord]") -> Table:
+def _table(clusters: "list[ClusterRecord]", *, has_examples: bool) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, expand=True)
-    table.add_column("what fails", no_wrap=True, overflow="ellipsis", ratio=2)
+    table.add_column("what fails", no_wrap=True, overflow="ellipsis", ratio=1)
     for heading in ("unlocks", "files", "origins", "lines"):
         table.add_column(heading, justify="right", no_wrap=True, min_width=len(heading))
-    table.add_column("for example", no_wrap=True, overflow="ellipsis", ratio=3)
     table.add_column("cluster", no_wrap=True, min_width=10)
+    if has_examples:
+        table.add_column("for example", no_wrap=True, overflow="ellipsis", ratio=1)
     for c in clusters:
         # Text, never markup, and nothing that could steer the terminal: source is other people's
         table.add_row(
@@ -74,8 +76,8 @@ def _table(clusters: "list[ClusterRecord]") -> Table:
             f"{c['files']:,}",
             f"{c['origins']:,}",
             f"{c['failures']:,}",
-            Text(one_line(c["example"]["text"])),
             c["id"],
+            *([Text(one_line(c["example"]["text"]))] if has_examples else ()),
         )
     return table
 

@@ -147,6 +147,7 @@ class ClusterRecord(TypedDict):
     """Failing lines with one cause; ``answered_by`` is only in the record of the start."""
 
     id: str
+    signature: str
     title: str
     failures: int
     lines: int

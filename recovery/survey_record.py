@@ -130,6 +130,7 @@ def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> ClusterR
     example = cluster.example
     return {
         "id": cluster.id,
+        "signature": cluster.signature,
         "title": cluster.title,
         "failures": len(cluster.members),
         "lines": len(cluster.members),

@@ -14,6 +14,7 @@ from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negat
 from recovery.clustering.causes import find_causes
 from recovery.clustering.file_trial import FailingFile, FileTrial
 from recovery.clustering.regression import ParsedFiles
+from recovery.clustering.title import TitleWriter
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.signature import Signature, SignatureBuilder
@@ -35,12 +36,15 @@ class Member:
 class Cluster:
     """Failures with one cause.
 
-    ``unlocks``: files that would parse if only it were mended. ``line`` is the failing line that
-    represents it and ``example`` a failure of that line; ``restores`` has for each of the
-    ``proposals`` the files in which it mends every line that fails by itself.
+    ``title`` says to people what is wrong; ``id`` is made from ``signature``, so it stays while the
+    signature of the failing line does. ``unlocks``: files that would parse if only it were mended.
+    ``line`` is the failing line that represents it and ``example`` a failure of that line;
+    ``restores`` has for each of the ``proposals`` the files in which it mends every line that
+    fails by itself.
     """
 
     id: str
+    signature: str
     title: str
     context: FailureContext
     line: LinePattern
@@ -197,9 +201,24 @@ def _assembled(
     for file, _, wanted in needs:
         if len(wanted) == 1:
             alone[next(iter(wanted))] += len(file.places)
-    titles = _titles([_heaviest(cause, groups) for cause in causes], groups.signatures)
+    heaviest = [_heaviest(cause, groups) for cause in causes]
+    rules = [groups.signatures[n].rule for n in heaviest]
+    signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
+    writer = TitleWriter(groups.recognizer)
+    titles = _distinct(
+        [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)], rules
+    )
     clusters = [
-        _cluster(cause, titles[number], members[number], alone[number], groups, needs)
+        _cluster(
+            cause,
+            heaviest[number],
+            signatures[number],
+            titles[number],
+            members[number],
+            alone[number],
+            groups,
+            needs,
+        )
         for number, cause in enumerate(causes)
     ]
     order = _greedy(found.files, [(f, wanted) for f, _, wanted in needs], clusters)
@@ -222,18 +241,32 @@ def _heaviest(cause: Cause, groups: _FailingLines) -> int:
     )
 
 
+def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter) -> str:
+    """What is wrong with the line of that number, which represents a cause."""
+    best = cause.proposals[0] if cause.proposals else None
+    return writer.title(
+        groups.lines[number],
+        groups.contexts[groups.specimens[number].failed.form],
+        groups.signatures[number].bracket,
+        [groups.lines[n] for n in cause.lines],
+        best if best and number in best.mended else None,
+    )
+
+
 def _cluster(
     cause: Cause,
+    heaviest: int,
+    signature: str,
     title: str,
     members: Sequence[Member],
     unlocks: int,
     groups: _FailingLines,
     needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
 ) -> Cluster:
-    heaviest = _heaviest(cause, groups)
     example = groups.specimens[heaviest]
     return Cluster(
-        id=_identity(title),
+        id=_identity(signature),
+        signature=signature,
         title=title,
         context=groups.contexts[example.failed.form],
         line=groups.lines[heaviest],
@@ -252,19 +285,18 @@ def _places(files: Iterable[SurveyedFile]) -> int:
     return sum(len(file.places) for file in files)
 
 
-def _identity(title: str) -> str:
-    return "c-" + hashlib.sha256(title.encode()).hexdigest()[:8]
+def _identity(signature: str) -> str:
+    return "c-" + hashlib.sha256(signature.encode()).hexdigest()[:8]
 
 
-def _titles(lines: Sequence[int], signatures: Sequence[Signature]) -> list[str]:
-    """Titles, made distinct by the rule and then by a number where two clusters share one."""
-    plain = Counter(signatures[n].title for n in lines)
+def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
+    """Texts made distinct by the rule and then by a number where two clusters share one."""
+    plain = Counter(texts)
     out: list[str] = []
-    for n in lines:
-        title, rule = signatures[n].title, signatures[n].rule
-        title = title if plain[title] == 1 else f"{title} (in {rule})"
-        same = sum(t == title or t.startswith(f"{title} #") for t in out)
-        out.append(f"{title} #{same + 1}" if same else title)
+    for text, rule in zip(texts, rules, strict=True):
+        named = text if plain[text] == 1 else f"{text} (in {rule})"
+        same = sum(t == named or t.startswith(f"{named} #") for t in out)
+        out.append(f"{named} #{same + 1}" if same else named)
     return out
 
 

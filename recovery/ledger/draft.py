@@ -77,7 +77,7 @@ def _construct(
     files, origins, lines = (int(cluster[key]) for key in ("files", "origins", "failures"))
     evidence = Evidence(files, min(origins, lines), lines, seen=tuple(seen[:_PLACES_SEEN]))
     found = Construct(
-        name=name_from(str(cluster["title"])),
+        name=name_from(str(cluster["signature"])),
         title=str(cluster["title"]),
         edits=tuple(from_data(edit) for edit in proposal["edits"]),
         evidence=evidence,

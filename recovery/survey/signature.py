@@ -38,7 +38,7 @@ class Signature:
     ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
     plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
     ``bracket`` the bracket that is open before it, and ``is_first`` whether it comes right behind
-    that: this is shown in the title, and distinguishes no kinds by itself.
+    that: this is shown in the text, and distinguishes no kinds by itself.
     """
 
     rule: str
@@ -48,8 +48,8 @@ class Signature:
     is_first: bool = field(default=False, compare=False)
 
     @property
-    def title(self) -> str:
-        """A short readable name: ``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``."""
+    def text(self) -> str:
+        """``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``: what IDs of clusters are made from."""
         parts = [self.lead] if self.lead else []
         if self.bracket:
             parts += [_ELLIPSIS, self.bracket]

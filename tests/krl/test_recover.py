@@ -188,7 +188,7 @@ def test_the_record_says_what_was_surveyed(surveyed: Surveyed) -> None:
     data = record(surveyed.out)
     assert PRELIMINARY.as_posix() == data["grammar"]
     assert (5, 1, 1) == (data["files"], data["parsed"], len(data["skipped"]))
-    assert [("FOR … STEP", 3), ("RETURN … INTEGER", 1)] == [
+    assert [("FOR with STEP", 3), ("RETURN followed by an integer", 1)] == [
         (entry["title"], entry["unlocks"]) for entry in data["clusters"]
     ]
 
@@ -263,7 +263,7 @@ def test_another_grammar_finds_something_else(corpus: Path, tmp_path: Path) -> N
     text = PRELIMINARY.read_text("utf-8").replace(": RETURN\n", ": RETURN expression?\n")
     wider.write_text(text, encoding="utf-8")
     assert 0 == recover(corpus, "--out", tmp_path / "out", "--grammar", wider)
-    assert ["FOR … STEP"] == [entry["title"] for entry in record(tmp_path / "out")["clusters"]]
+    assert ["FOR with STEP"] == [entry["title"] for entry in record(tmp_path / "out")["clusters"]]
 
 
 def test_negatives_judge_the_proposals(tmp_path: Path) -> None:

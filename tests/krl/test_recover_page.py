@@ -78,7 +78,7 @@ def test_every_cluster_of_the_survey_is_listed(
     """A row for each cluster, in the order of the record, with what it unlocks."""
     titles = [entry["title"] for entry in record["clusters"]]
     assert len(titles) >= 3
-    assert "FOR … STEP" in titles
+    assert "FOR with STEP" in titles
     assert titles == texts(page, "#rows > .row .open")
     for row, entry in zip(
         page.find_elements(By.CSS_SELECTOR, "#rows > .row"), record["clusters"], strict=True
@@ -113,7 +113,7 @@ def test_an_opened_cluster_shows_what_would_mend_it(
 ) -> None:
     """The proposals stand with their figures, and the reproducer with its program."""
     number, entry = next(
-        (n, e) for n, e in enumerate(record["clusters"]) if e["title"] == "FOR … STEP"
+        (n, e) for n, e in enumerate(record["clusters"]) if e["title"] == "FOR with STEP"
     )
     card = opened(page, number)
     rows = card.find_elements(By.CSS_SELECTOR, ".proposals tbody tr")

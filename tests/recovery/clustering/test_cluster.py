@@ -60,7 +60,7 @@ def test_failures_mended_by_one_edit_are_one_cluster() -> None:
     """What a person would call one missing construct is one cluster, whatever the names in it."""
     found = clusters_of("DECL INT A,B", "DECL REAL X,Y,Z", "DECL BOOL ON_OFF,OLD", "HALT")
     assert [{"000.src", "001.src", "002.src"}] == [files(c) for c in found.ranked]
-    assert ["DECL … ,"] == [c.title for c in found.ranked]
+    assert ["DECL … ,"] == [c.signature for c in found.ranked]
 
 
 def test_failures_mended_by_different_edits_are_different_clusters() -> None:
@@ -197,6 +197,7 @@ def test_identities_and_titles_are_unique(corpus: tuple[Survey, Clusters]) -> No
     _, clusters = corpus
     assert len({c.id for c in clusters.ranked}) == len(clusters.ranked)
     assert len({c.title for c in clusters.ranked}) == len(clusters.ranked)
+    assert len({c.signature for c in clusters.ranked}) == len(clusters.ranked)
 
 
 def test_copies_count() -> None:

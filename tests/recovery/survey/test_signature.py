@@ -1,4 +1,4 @@
-"""A failing line gets the title that a person would give it."""
+"""A failing line has the signature that a person would see in it."""
 
 from collections.abc import Sequence
 
@@ -37,9 +37,9 @@ def signatures(*programs: str) -> list[list[Signature]]:
     return list(out.values())
 
 
-def titles(*programs: str) -> list[str]:
-    """The title of the first failure of each program."""
-    return [first.title for first, *_ in signatures(*programs)]
+def signature_texts(*programs: str) -> list[str]:
+    """The text of the first failure of each program."""
+    return [first.text for first, *_ in signatures(*programs)]
 
 
 def each(*lines: str) -> list[str]:
@@ -47,11 +47,11 @@ def each(*lines: str) -> list[str]:
     return [program(line) for line in lines]
 
 
-# --------------------------------------------------------------------------------- titles
+# --------------------------------------------------------------------------------- texts
 
 
 @pytest.mark.parametrize(
-    ("line", "title"),
+    ("line", "text"),
     [
         ("DECL INT A,B", "DECL … ,"),
         ("X[1,2]=3", "… [ … ,"),
@@ -70,16 +70,16 @@ def each(*lines: str) -> list[str]:
         ("A={POS: X F(1)}", "… { … name"),
     ],
 )
-def test_title_is_the_word_the_line_begins_with_and_what_could_not_come(
-    line: str, title: str
+def test_text_is_the_word_the_line_begins_with_and_what_could_not_come(
+    line: str, text: str
 ) -> None:
     """The keyword in front, the bracket that is open, and the token that failed."""
-    assert [title] == titles(program(line))
+    assert [text] == signature_texts(program(line))
 
 
 def test_a_program_cut_off_fails_at_the_end_of_the_file() -> None:
     """The end of the file is named as such."""
-    assert ["… end of file"] == titles("DEF A()\nHALT\n")
+    assert ["… end of file"] == signature_texts("DEF A()\nHALT\n")
 
 
 def test_shape_names_the_rule_at_work() -> None:
@@ -114,25 +114,25 @@ def test_a_word_between_operands_of_many_kinds_is_a_keyword() -> None:
         "FOR J=1 TO F(2) STEP LARGE",
         "FOR J=9 TO 1 step -1",
     )
-    assert 4 * ["FOR … STEP"] == titles(*programs)
+    assert 4 * ["FOR … STEP"] == signature_texts(*programs)
 
 
 def test_a_word_before_many_operands_opens_its_line() -> None:
     """SWITCH in front of many selectors names its line alone."""
     programs = each("SWITCH X", "SWITCH MODE", "Switch COUNT+1", "SWITCH $MODE_OP")
-    assert 4 * ["SWITCH …"] == titles(*programs)
+    assert 4 * ["SWITCH …"] == signature_texts(*programs)
 
 
 def test_a_word_alone_on_its_line_is_a_keyword() -> None:
     """A word that stands alone time and again, in several files, is no name."""
     programs = [program("ENDSPLINE", "A=1", "ENDSPLINE") for _ in range(4)]
-    assert 4 * ["ENDSPLINE …"] == titles(*programs)
+    assert 4 * ["ENDSPLINE …"] == signature_texts(*programs)
 
 
 def test_a_word_behind_many_names_is_a_keyword() -> None:
     """What counts is one side: PUBLIC follows names of all kinds and nothing follows it."""
     programs = [f"DEFDAT {name} PUBLIC\nENDDAT\n" for name in ("A", "B", "C1", "D_2")]
-    assert 4 * ["DEFDAT … PUBLIC"] == titles(*programs)
+    assert 4 * ["DEFDAT … PUBLIC"] == signature_texts(*programs)
 
 
 def test_keywords_in_the_middle_of_a_line_are_told_with_their_places() -> None:
@@ -148,7 +148,7 @@ def test_keywords_in_the_middle_of_a_line_are_told_with_their_places() -> None:
 
 
 def only_names(lines: Sequence[str], word: str) -> bool:
-    """Whether the word is no keyword on any of the lines, one a file, and in no title."""
+    """Whether the word is no keyword on any of the lines, one a file, and in no text."""
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
@@ -156,7 +156,7 @@ def only_names(lines: Sequence[str], word: str) -> bool:
     meant = {
         said for _, failed, form in failures for _, said in signature_builder.keywords(failed, form)
     }
-    return word not in meant and not any(word in t.split() for t in titles(*each(*lines)))
+    return word not in meant and not any(word in t.split() for t in signature_texts(*each(*lines)))
 
 
 def test_a_name_beside_its_type_is_no_keyword() -> None:
@@ -169,7 +169,7 @@ def test_a_name_beside_its_type_is_no_keyword() -> None:
 def test_a_word_of_one_file_is_no_keyword() -> None:
     """Whoever repeats a word in one program only may have called something so."""
     ((first, *_),) = signatures(program(*(f"GLUE {name}" for name in "BCDEFGHIJ")))
-    assert "… name" == first.title
+    assert "… name" == first.text
 
 
 def test_a_word_that_is_used_as_a_name_too_is_none() -> None:
@@ -198,17 +198,17 @@ def test_the_order_of_files_does_not_matter() -> None:
         "A B",
         "SWITCH=1 2",
     )
-    assert titles(*programs) == titles(*programs[::-1])[::-1]
+    assert signature_texts(*programs) == signature_texts(*programs[::-1])[::-1]
 
 
-def test_what_comes_right_behind_a_bracket_is_a_title_of_its_own_but_no_shape() -> None:
-    """A dimension left out has another title; whether one edit mends both is not yet known."""
+def test_what_comes_right_behind_a_bracket_is_a_text_of_its_own_but_no_shape() -> None:
+    """A dimension left out has another text; whether one edit mends both is not yet known."""
     ((one,), (other,)) = signatures(*each("X[1,2]=3", "X[,]=3"))
-    assert ("… [ … ,", "… [ ,") == (one.title, other.title)
+    assert ("… [ … ,", "… [ ,") == (one.text, other.text)
     assert one == other
 
 
 def test_a_word_that_alone_comes_behind_a_keyword_is_one() -> None:
     """`BRAKE F` in several files, and never another name there: F is meant as a keyword."""
-    assert 4 * ["BRAKE … F"] == titles(*each(*["BRAKE F"] * 4))
+    assert 4 * ["BRAKE … F"] == signature_texts(*each(*["BRAKE F"] * 4))
     assert only_names(["BRAKE F", "BRAKE G", "BRAKE H", "BRAKE I"], "F")

@@ -1,0 +1,132 @@
+"""Titles of clusters: what is wrong with a failing line, as a maintainer would say it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from grammar.notation.addresses import element_at
+from grammar.notation.edits import MakeOptional
+from grammar.parser.failures import FailureContext
+from grammar.parser.lexer import ERROR
+from grammar.parser.recognizer import Recognizer
+from recovery.clustering.cause import Proposal
+from recovery.proposals.edit_site import LinePattern
+
+__all__ = ["TitleWriter"]
+
+# More than so many tokens that could have come say nothing to a reader.
+_MOST_EXPECTED = 2
+_CLOSER = {"(": ")", "[": "]", "{": "}"}
+
+
+class TitleWriter:
+    """Says what could not be read on a line, and what the grammar wanted there."""
+
+    def __init__(self, recognizer: Recognizer) -> None:
+        self._recognizer = recognizer
+        self._lexer = recognizer.lexer
+        self._kind_of = {text: kind for kind, text in enumerate(self._lexer.display)}
+
+    def title(
+        self,
+        line: LinePattern,
+        context: FailureContext,
+        bracket: str,
+        others: Sequence[LinePattern] = (),
+        best: Proposal | None = None,
+    ) -> str:
+        """A sentence without a full stop: ``INT without DECL`` or ``FOR with STEP``.
+
+        ``bracket`` is the one open before the failing token, ``others`` all lines of the cause, and
+        ``best`` the proposal that mends the line, where there is one.
+        """
+        kinds, index = line.form.kinds, line.form.index
+        meant = dict(line.keywords)
+        lead = self._keyword(line, 0)
+        came = meant.get(index) or self._phrase(kinds[index])
+        missing = self._left_out(best) or self._omitted_keyword(line, context)
+        at_end = kinds[index] >= 0 and self._lexer.names[kinds[index]] in ("NEWLINE", "EOF")
+        if missing:
+            subject = context.rule if index or at_end else came
+            said = f"{lead or subject} without {missing}"
+        elif 0 in meant and index <= 1:
+            followers = {self._keyword(other, 1) for other in others or (line,)}
+            follower = followers.pop() if len(followers) == 1 else ""
+            said = f"unknown keyword {lead}" + (f" before {follower}" if follower else "")
+        elif at_end:
+            what = f"{lead} line" if lead else came.removeprefix("the end of ")
+            said = f"{what} ends{self._instead(context) or f' within {context.rule}'}"
+        elif index == 0:
+            said = f"{came} begins a line{self._instead(context)}"
+        else:
+            said = self._behind(line, context, bracket, lead, came)
+            said += "" if context.expected == ("NEWLINE",) else self._instead(context)
+        return said[:1].upper() + said[1:]
+
+    def _behind(
+        self, line: LinePattern, context: FailureContext, bracket: str, lead: str, came: str
+    ) -> str:
+        """What came where in a line that began well."""
+        before = line.form.kinds[line.form.index - 1]
+        if bracket:
+            is_first = before == self._kind_of.get(bracket)
+            where = f"right behind '{bracket}'" if is_first else f"in '{bracket}{_CLOSER[bracket]}'"
+            return f"{lead} with {came} {where}" if lead else f"{came} {where}"
+        if line.form.index == 1:
+            return f"{lead or self._phrase(before)} followed by {came}"
+        if lead:
+            return f"{lead} with {came}"
+        if "NEWLINE" in context.expected:
+            return f"line goes on with {came}"
+        return f"{came} in {context.rule}"
+
+    def _instead(self, context: FailureContext) -> str:
+        """What was wanted, where that is short enough to say."""
+        wanted = [text for text in context.expected if text != "NEWLINE"] or ["NEWLINE"]
+        if len(wanted) > _MOST_EXPECTED:
+            return ""
+        phrases = [self._phrase(self._kind_of[text]) for text in wanted]
+        return f" where {' or '.join(phrases)} is expected"
+
+    def _left_out(self, best: Proposal | None) -> str:
+        """The keyword that a proposal makes optional, if it does nothing else."""
+        match best.edits if best else ():
+            case [MakeOptional(rule=name, at=at, count=1)]:
+                rule = self._recognizer.grammar.by_name[name]
+                text = rule.source_of(element_at(rule, at))
+                return text if self._lexer.is_keyword(self._kind_of.get(text, ERROR)) else ""
+        return ""
+
+    def _omitted_keyword(self, line: LinePattern, context: FailureContext) -> str:
+        """The one keyword with which the line could be read, were it before the failing token."""
+        kinds, index = line.form.kinds, line.form.index
+        if line.is_enormous or dict(line.keywords).keys() & {0, index}:
+            return ""
+        state, _ = self._recognizer.run(self._recognizer.restore(line.form.before), kinds[:index])
+        found = [
+            word
+            for word in context.expected
+            if self._lexer.is_keyword(kind := self._kind_of[word])
+            and self._recognizer.run(state, (kind, *kinds[index:]))[1] is None
+        ]
+        return found[0] if len(found) == 1 else ""
+
+    def _keyword(self, line: LinePattern, place: int) -> str:
+        """The keyword, or the name meant as one, at a place of a line; or nothing."""
+        kind = line.form.kinds[place] if place < len(line.form.kinds) else ERROR
+        known = self._lexer.display[kind] if self._lexer.is_keyword(kind) else ""
+        return dict(line.keywords).get(place, known)
+
+    def _phrase(self, kind: int) -> str:
+        """A kind of token in a sentence: ``DECL``, ``','``, ``an enum constant``."""
+        if kind == ERROR:
+            return "an unknown character"
+        name, text = self._lexer.names[kind], self._lexer.display[kind]
+        if name in ("NEWLINE", "EOF"):
+            return "the end of the line" if name == "NEWLINE" else "the end of the file"
+        if self._lexer.is_keyword(kind):
+            return text
+        if text != name:
+            return f"'{text}'"
+        words = name.lower().replace("_", " ")
+        return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"

@@ -1,0 +1,74 @@
+"""The title of a cluster says what is wrong, in the words of a maintainer."""
+
+import pytest
+
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
+from recovery.clustering.cluster import Cluster, cluster
+from recovery.survey.survey import survey_texts
+
+PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
+
+
+def cluster_of(*lines: str, closer: str = "END\n") -> Cluster:
+    """The first cluster of programs of one line each."""
+    texts = [f"DEF A()\n{line}\n{closer}" for line in lines]
+    found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], PRELIMINARY)
+    return cluster(found).ranked[0]
+
+
+@pytest.mark.parametrize(
+    ("line", "title"),
+    [
+        ("RETURN 1", "RETURN followed by an integer"),
+        ("A B", "A name followed by a name"),
+        ("B?", "A name followed by an unknown character"),
+        ("A=1.B", "Line goes on with '.'"),
+        ("LIN P1 CONTINUE", "LIN with CONTINUE"),
+        ("LIN P1[1] CONTINUE", "LIN with CONTINUE where '.' or C_DIS is expected"),
+        ("WAIT SEC", "WAIT line ends within wait"),
+        ("DECL INT", "DECL line ends where a name is expected"),
+        ("X[1,2]=3", "',' in '[]'"),
+        ("X[,]=3", "',' right behind '['"),
+        ("A=F(1,X[2,3])", "',' in '[]'"),
+        ("PTP {A1 0}", "PTP with an integer in '{}' where ':' is expected"),
+        ("?", "An unknown character begins a line"),
+    ],
+)
+def test_a_title_says_what_came_and_where(line: str, title: str) -> None:
+    """The failing token, what stands before it, and what was wanted where that is one thing."""
+    assert title == cluster_of(line).title
+
+
+def test_a_file_cut_off_lacks_the_end_of_a_rule() -> None:
+    """The end of the file is no line of its own."""
+    assert "Procedure without END" == cluster_of("HALT", closer="").title
+
+
+def test_a_keyword_left_out_is_named() -> None:
+    """Where one keyword before the failing token lets the line be read, that is what is missing."""
+    assert "INT without DECL" == cluster_of("INT A").title
+
+
+@pytest.mark.parametrize(
+    ("lines", "title"),
+    [
+        (("SWITCH A", "SWITCH B", "SWITCH C", "SWITCH D"), "Unknown keyword SWITCH"),
+        (
+            tuple(f"GLOBAL INTERRUPT OFF {n}" for n in range(12)),
+            "Unknown keyword GLOBAL before INTERRUPT",
+        ),
+        (tuple(f"FOR I=1 TO 9 STEP {n}" for n in "ABCD"), "FOR with STEP"),
+    ],
+)
+def test_a_word_that_no_rule_knows_is_taken_for_a_keyword(
+    lines: tuple[str, ...], title: str
+) -> None:
+    """Words that stand as keywords do are named in the title."""
+    assert title == cluster_of(*lines).title
+
+
+def test_the_identity_hangs_on_the_signature_and_not_on_the_title() -> None:
+    """The same failing line has the same ID, whatever the sentence says."""
+    found = cluster_of("DECL INT A,B")
+    assert ("c-b8bdbb72", "DECL … ,", "DECL with ','") == (found.id, found.signature, found.title)
