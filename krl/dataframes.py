@@ -29,6 +29,7 @@ __all__ = [
     "clusters",
     "failures",
     "findings",
+    "frame",
     "growth",
     "nightly_runs",
     "path",

@@ -45,7 +45,7 @@ def test_the_same_is_no_difference(
 def test_file_that_went_is_counted(
     states: tuple[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Data that went with its file is no silence in the summary."""
+    """The summary counts a file that was removed, also where only data went with it."""
     Path(states[1], "a.dat").unlink()
     Path(states[1], "a.src").write_text(OLD, encoding="utf-8")
     assert 1 == main(["diff", *states])

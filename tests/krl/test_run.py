@@ -223,7 +223,7 @@ def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
         archive.writestr("KRC/R1/System/help.src", "DEF help ( )\nHALT\nEND\n")
     status, out, _ = run(None, str(tmp_path / "backup.zip" / "KRC/R1/Program/go.src"))
     assert 0 == status
-    assert "R1/System/help.src" in out
+    assert "R1/Program/go.src: halt after 0 s at R1/System/help.src:2\n" == out
 
 
 def test_data_in_an_archive(run: Run, tmp_path: Path) -> None:
