@@ -18,6 +18,9 @@ import numpy.typing as npt
 
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
+    RATE_MARGIN,
+    TOLERANCE_DEGREES,
+    TOLERANCE_MM,
     between,
     change_rates,
     crosses_box,
@@ -38,12 +41,8 @@ __all__ = ["evaluate_on_path"]
 
 Array = npt.NDArray[np.float64]
 
-#: The usual tolerances: mm, degrees, a share of the speed, a share of the limits of axes.
-_NEAR: Final = 0.05
-_ANGLE: Final = 0.01
+#: The usual tolerance of a speed, as a share of it.
 _SPEED: Final = 0.01
-#: Differences of set-points overestimate what they approximate by so much at most.
-_MARGIN: Final = 1.02
 #: How far a simulated arm may be off its path where a case does not say, in mm [design section 4].
 _TRACKING: Final = 0.5
 
@@ -144,7 +143,7 @@ def _numbers(one: Expectation) -> Array:
     return np.array(found)
 
 
-def _near(one: Expectation, off: float, unit: str = "mm", usual: float = _NEAR) -> Evaluated:
+def _near(one: Expectation, off: float, unit: str = "mm", usual: float = TOLERANCE_MM) -> Evaluated:
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if off <= margin else "unmet"), f"{off:.4f} {unit} off"
 
@@ -177,7 +176,7 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
     off = from_synchronous(axes)
     if off is None:
         return "unmet", "no axis moves"
-    return _near(one, off, "degrees", _ANGLE)
+    return _near(one, off, "degrees", TOLERANCE_DEGREES)
 
 
 def _distance(part: _Part, point: Array) -> float:
@@ -233,7 +232,7 @@ def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
         return "unmet", "there is no blend"
     *point, wanted = _numbers(one)
     off = float(np.linalg.norm(part.at(moment) - np.array(point)))
-    margin = _NEAR if one.tolerance is None else one.tolerance
+    margin = TOLERANCE_MM if one.tolerance is None else one.tolerance
     return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm before or behind it"
 
 
@@ -251,7 +250,7 @@ def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) ->
     if one.kind == "pose":  # an angle and one a turn further are the same
         off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
     actual = " ".join(f"{number:.4f}" for number in found)
-    usual = _NEAR if one.kind == "pose" else _ANGLE
+    usual = TOLERANCE_MM if one.kind == "pose" else TOLERANCE_DEGREES
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if float(off.max()) <= margin else "unmet"), actual
 
@@ -322,7 +321,7 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     worst = np.abs(rates).max(axis=0) / most
     axis = int(np.argmax(worst))
     actual = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
-    return ("met" if float(worst.max()) <= _MARGIN else "unmet"), actual
+    return ("met" if float(worst.max()) <= RATE_MARGIN else "unmet"), actual
 
 
 def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:

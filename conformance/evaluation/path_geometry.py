@@ -5,10 +5,15 @@ Points are in mm, shape (n, 3). What is analytic here comes from the case, never
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "RATE_MARGIN",
+    "TOLERANCE_DEGREES",
+    "TOLERANCE_MM",
     "between",
     "change_rates",
     "circle_of",
@@ -23,6 +28,12 @@ __all__ = [
 ]
 
 Array = npt.NDArray[np.float64]
+
+#: How far the tool may be off where nothing else is said, and an axis, a linear one in mm.
+TOLERANCE_MM: Final = 0.05
+TOLERANCE_DEGREES: Final = 0.01
+#: `change_rates` overestimate speeds, accelerations and jerks by so much at most.
+RATE_MARGIN: Final = 1.02
 
 #: So many points stand for the arc of a blend: 0.001 mm apart from it for arcs of 1 m.
 _POINTS = 4_001

@@ -12,6 +12,9 @@ import numpy.typing as npt
 
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_geometry import (
+    RATE_MARGIN,
+    TOLERANCE_DEGREES,
+    TOLERANCE_MM,
     change_rates,
     from_circle,
     from_line,
@@ -24,13 +27,8 @@ __all__ = ["Deviation", "deviations"]
 
 Array = npt.NDArray[np.float64]
 
-#: Differences of set-points overestimate what they approximate by so much at most.
-_MARGIN: Final = 1.02
-#: Degrees or mm of an axis, and mm of the tool, that a path may be off.
-_ANGLE: Final = 0.01
-_NEAR: Final = 0.05
-#: A path of fewer rows has neither jerk nor shape.
-_FEWEST: Final = 5
+#: A path of fewer rows has no jerk, and no shape that it could miss.
+_FEWEST: Final = 4
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
@@ -69,12 +67,14 @@ def _excesses(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
         most = [getattr(one, what) if one else math.inf for one in limits]
         share = np.abs(rows) / np.array(most)
         row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
-        if not share[row, axis] <= _MARGIN:
+        if not share[row, axis] <= RATE_MARGIN:
             actual = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
             yield Deviation(int(path.times[row]), _LIMITS, actual, rule)
     for column, one in enumerate(axes):
         places = path.axes[:, column]
-        beyond = ~((places >= one.lower - _ANGLE) & (places <= one.upper + _ANGLE))
+        beyond = ~(
+            (places >= one.lower - TOLERANCE_DEGREES) & (places <= one.upper + TOLERANCE_DEGREES)
+        )
         if beyond.any():
             first = int(np.argmax(beyond))
             actual = f"{one.name} stands at {places[first]:.3f}"
@@ -100,13 +100,13 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
         match str(start.fields.get("motion_kind")).removesuffix("_REL"):
             case "LIN" | "SLIN":
                 off = float(from_line(points, points[0], points[-1]).max())
-                law, most, rule = "the path of a LIN is a line", _NEAR, ""
+                law, most, rule = "the path of a LIN is a line", TOLERANCE_MM, ""
             case "CIRC" | "SCIRC":
                 off = _off_circle(points)
-                law, most, rule = "the path of a CIRC is a circle", _NEAR, ""
+                law, most, rule = "the path of a CIRC is a circle", TOLERANCE_MM, ""
             case "PTP" | "SPTP":
                 off = from_synchronous(axes) or 0.0
-                law, most, rule = "the axes of a PTP are synchronous", _ANGLE, "MOT-01.b"
+                law, most, rule = "the axes of a PTP are synchronous", TOLERANCE_DEGREES, "MOT-01.b"
             case _:
                 continue
         if not off <= most:

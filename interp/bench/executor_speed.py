@@ -119,20 +119,19 @@ def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
     loaded = time.process_time()
     _verified = once.verified  # made now
     translated = time.process_time()
-    often = _prepared(kernel, amount, _REPEATS)
+    programs = {1: once, _REPEATS: _prepared(kernel, amount, _REPEATS)}
     start: dict[str, float] = {}
     best: dict[str, _Timed] = {}
     with tempfile.TemporaryDirectory(prefix="krl-bench-") as work:
         foreign = dict(_foreign(kernel, amount, Path(work)))
         for _ in range(rounds):
             for name in (*available(), *([COMPILED] if is_available(COMPILED) else [])):
-                seconds, timed = _run(often if name in _FAST else once, name)
-                repeats = _REPEATS if name in _FAST else 1
-                timed = _Timed(timed.seconds / repeats, timed.result)
+                repeats = _repeats(name)
+                seconds, timed = _run(programs[repeats], name, repeats)
                 start[name] = min(seconds, start.get(name, math.inf))
                 best[name] = _better(kernel, name, timed, best)
             for name, command in foreign.items():
-                best[name] = _better(kernel, name, _run_foreign(command), best)
+                best[name] = _better(kernel, name, _run_foreign(name, command), best)
     results = {name: one.result for name, one in best.items()}
     if len(set(results.values())) > 1:
         raise MeasurementError(f"{kernel.name}: the results differ: {results}")
@@ -144,6 +143,11 @@ def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
         "translate_ms": 1e3 * (translated - loaded),
         "start_ms": {name: 1e3 * seconds for name, seconds in start.items()},
     }
+
+
+def _repeats(name: str) -> int:
+    """How often an executor or a language does the work in a round."""
+    return _REPEATS if name in _FAST else 1
 
 
 def _better(kernel: Kernel, name: str, timed: _Timed, best: Mapping[str, _Timed]) -> _Timed:
@@ -158,7 +162,7 @@ def _amount(kernel: Kernel) -> int:
     amount, working = 1, 0
     while amount <= _MOST:
         try:
-            _, timed = _run(_prepared(kernel, amount, 1), "tree")
+            _, timed = _run(_prepared(kernel, amount, 1), "tree", 1)
         except MeasurementError:
             if working == 0:
                 raise
@@ -184,8 +188,11 @@ END
     return Prepared(load([Source(begin + kernel.krl, "krl_bench.src")], "krl_bench.src"))
 
 
-def _run(program: Prepared, executor: str) -> tuple[float, _Timed]:
-    """Make an executor and run the program; the seconds of both."""
+def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]:
+    """Make an executor and run a program that does the work so often.
+
+    The seconds that the first takes, and those of the work once with its result.
+    """
     gc.collect()
     began = time.process_time()
     running = program.executor(executor, _LIMITS)
@@ -198,7 +205,7 @@ def _run(program: Prepared, executor: str) -> tuple[float, _Timed]:
     ended = time.process_time()
     if not isinstance(request, End):
         raise MeasurementError(f"{executor}: {request}")
-    return ready - began, _Timed(ended - ready, result)
+    return ready - began, _Timed((ended - ready) / repeats, result)
 
 
 def _mean(rows: Sequence[Mapping[str, Any]], slow: str, fast: str) -> float | None:
@@ -268,11 +275,10 @@ def _foreign(kernel: Kernel, amount: int, work: Path) -> Iterator[tuple[str, lis
         yield "python", [sys.executable, "-c", driver(_IN_PYTHON, file)]
 
 
-def _run_foreign(command: Sequence[str]) -> _Timed:
-    """Seconds for the work once, and its result."""
+def _run_foreign(name: str, command: Sequence[str]) -> _Timed:
+    """Seconds for the work once in a language, and its result."""
     seconds, result = _output(command).split()
-    repeats = 1 if command[0] == sys.executable else _REPEATS
-    return _Timed(max(float(seconds), 1e-9) / repeats, int(result))
+    return _Timed(max(float(seconds), 1e-9) / _repeats(name), int(result))
 
 
 def _output(command: Sequence[str]) -> str:

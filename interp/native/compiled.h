@@ -73,9 +73,9 @@ static inline krl_cell krl_cell_of_ANY(krl_register value)
 /* Calls in C that are open at once. */
 enum { MOST_NESTED = 200 };
 
-/* Runs from the step `at` on, or from the beginning where it is called in C, which is CALLED; `open` calls and
- * `extent` are what the machine has them for while it is not running. Gives the statements left when the
- * routine returns to a call in C, or 0 where the interpreter goes on. */
+/* Runs from the step `at` on, or from the beginning if `at` is CALLED: then compiled code has called it. `left`,
+ * `open` and `extent` stand for the fields of the machine, which have their values only while the interpreter runs.
+ * Gives the statements left when the routine returns to compiled code, or 0 where the interpreter goes on. */
 typedef int32_t krl_routine_in_c(struct krl_machine *machine, krl_cell *const fp, int32_t at, int32_t left,
                                  int32_t open, int32_t extent);
 enum { CALLED = -1 };

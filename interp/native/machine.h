@@ -127,7 +127,7 @@ enum krl_stop {
     KRL_STOP_LEFT,   /* a frame that Python has made has ended; its result is on the stack */
     KRL_STOP_ACTION, /* an action has ended; its frame is still there */
     KRL_STOP_END,    /* the routine that the program began with has ended */
-    KRL_STOP_COMPILED /* the program that was compiled goes on; nobody outside sees this */
+    KRL_STOP_COMPILED /* the program that was compiled goes on; `krl_run` never gives this */
 };
 
 struct krl_stopped {
