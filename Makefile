@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz real-code killed hostile determinism blends test lock audit site check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz fuzz-readers real-code killed hostile determinism blends test lock audit site check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -20,6 +20,7 @@ help:
 	@echo 'make conformance  run the conformance cases on every executor and write the page'
 	@echo 'make nightly      everything once, at most an hour, and what changed since last night'
 	@echo 'make fuzz         random programs on all executors (ARGS="--programs 100000")'
+	@echo 'make fuzz-readers bytes that break a reader, guided by coverage (ARGS="image -max_total_time=600")'
 	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
@@ -67,6 +68,11 @@ nightly: $(DEV)
 
 fuzz: $(DEV)
 	@$(BIN)/krl fuzz $(ARGS)
+
+# Without ARGS a minute for each reader.
+fuzz-readers: $(DEV)
+	@$(BIN)/pip install --quiet --disable-pip-version-check atheris==3.0.0
+	@$(BIN)/python -m tests.soak.fuzz_readers $(or $(ARGS),-max_total_time=60)
 
 real-code: $(DEV)
 	@$(BIN)/krl bench real-code $(ARGS)

@@ -226,9 +226,10 @@ def project_paths(path: Path) -> list[Path]:
 
 def _as_given(root: Path, path: Path) -> Path:
     """A folder around a path, relative where that is."""
-    if root == path.resolve() or path.is_absolute():
-        return path if root == path.resolve() else root
-    return Path(os.path.relpath(root))
+    if root == path.resolve():
+        return path
+    is_near = not path.is_absolute() and root.drive == Path.cwd().drive
+    return Path(os.path.relpath(root)) if is_near else root
 
 
 class _Disk:

@@ -5,10 +5,9 @@ the option of `krl check` that is named so; docs/settings.md has them all.
 """
 
 import difflib
-import json
 import os
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -31,8 +30,6 @@ __all__ = [
 ]
 
 FILE_NAME: Final = "krl.toml"
-_LARGEST: Final = 1_000_000
-_LARGEST_BASELINE: Final = 64_000_000
 
 _Level = Literal["error", "warning", "note", "off"]
 
@@ -111,17 +108,13 @@ def _nearest(path: Path) -> Path | None:
 
 def read_settings(file: Path) -> Settings:
     """The settings in a file; raises `InputError` with the key that is wrong."""
-    from support.files.untrusted import open_file
+    from support.files.untrusted import read_text, toml_of
 
     try:
-        with open_file(file) as stream:
-            data = stream.read(_LARGEST + 1)
-        if len(data) > _LARGEST:
-            raise InputError(f"{file}: too large for settings")
-        table = tomllib.loads(data.decode("utf-8-sig"))
+        table = toml_of(read_text(file, "utf-8-sig"))
     except OSError as error:
         raise InputError(f"{file}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise InputError(f"{file}: {error}") from None
     try:
         return _settings(file.absolute().parent, table)
@@ -146,23 +139,31 @@ def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
 def read_baseline(file: Path) -> "Baseline":
     """The findings that are known; raises `InputError` where they cannot be read."""
     from grammar.diagnostics.baseline import Baseline
-    from support.files.untrusted import open_file
+    from support.files.untrusted import json_of, read_text
 
     try:
-        with open_file(file) as stream:
-            data = stream.read(_LARGEST_BASELINE)
-        return Baseline.read(json.loads(data))
+        return Baseline.read(json_of(read_text(file)))
     except OSError as error:
         hint = f": make it with --write-baseline {file}" if not file.exists() else ""
         raise InputError(f"{file}: {error.strerror or error}{hint}") from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise InputError(f"{file}: {error}") from None
 
 
 def baseline_place(baseline: Path) -> Callable[[str], str]:
-    """Paths as they are seen from a baseline: the same from whatever folder one checks."""
+    """Paths as they are seen from a baseline: the same from whatever folder one checks.
+
+    A path on another drive of Windows is whole.
+    """
     home = baseline.absolute().parent
-    return lambda path: Path(os.path.relpath(Path(path).absolute(), home)).as_posix()
+
+    def place(path: str) -> str:
+        whole = Path(path).absolute()
+        with suppress(ValueError):
+            whole = Path(os.path.relpath(whole, home))
+        return whole.as_posix()
+
+    return place
 
 
 # ------------------------------------------------------------------------------- kinds of values

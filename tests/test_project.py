@@ -151,6 +151,17 @@ def test_git_leaves_krl_alone(name: str) -> None:
 
 
 @needs_git
+def test_every_system_can_check_the_project_out() -> None:
+    """No two names differ in letter case alone, and Windows has each name."""
+    paths = _git("ls-files", "-z").rstrip("\0").split("\0")
+    assert len(paths) == len({path.casefold() for path in paths})
+    parts = {part for path in paths for part in path.split("/")}
+    reserved = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?|.*[ .]|.*[<>:\"|?*\\].*", re.I)
+    assert set() == {part for part in parts if reserved.fullmatch(part)}
+    assert max(map(len, paths)) < 150  # below a folder of the longest path that Windows opens
+
+
+@needs_git
 @pytest.mark.parametrize("name", ["corpus/open/a__b/main.src", "reports/out/recover/index.html"])
 def test_git_ignores_what_is_not_ours(name: str) -> None:
     """Fetched files and written pages cannot be committed by accident."""

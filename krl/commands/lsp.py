@@ -11,7 +11,7 @@ import typer
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
-__all__ = ["lsp"]
+__all__ = ["Bounded", "lsp"]
 
 _LARGEST = 64_000_000
 _LONGEST_LINE = 1_000
@@ -35,11 +35,11 @@ def lsp(
         os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out,
         contextlib.redirect_stdout(sys.stderr),
     ):
-        ours.start_io(cast(BinaryIO, _Bounded(sys.stdin.buffer)), out)
+        ours.start_io(cast(BinaryIO, Bounded(sys.stdin.buffer)), out)
     return FINE
 
 
-class _Bounded:
+class Bounded:
     """Standard input as the server reads it, with limits: the length of a message is a claim."""
 
     def __init__(self, stream: BinaryIO) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from krl.cli import main
 from krl.errors import InputError
-from krl.project_settings import read_settings, settings_of
+from krl.project_settings import baseline_place, read_settings, settings_of
 
 PROGRAM = "DEF A()\nINT N\nN = 1.5\nEXIT\n$OUT[N] = TRUE\nEND\n"
 
@@ -133,6 +133,37 @@ def test_a_damaged_baseline_is_one_line(
     first, second = capsys.readouterr().err.splitlines()
     assert "known.json" in first
     assert "make it with --write-baseline" in second
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "known.json",
+            '{"version": 1, "findings": [{"path": "", "code": "", "text": "", "count": 1e999}]}',
+        ),
+        ("krl.toml", f"a{'.a' * 200} = 1"),
+    ],
+)
+def test_what_asks_too_much_of_a_reader_is_one_line(
+    cell: Path, name: str, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A count beyond all numbers, and a key that would take minutes to read, are refused."""
+    (cell / name).write_text(text, encoding="utf-8")
+    known = ["--baseline", "cell/known.json"] if name == "known.json" else []
+    assert 2 == main(["check", "cell", *known])
+    assert name in capsys.readouterr().err
+
+
+def test_a_baseline_on_another_drive_knows_whole_paths(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Windows has no way from one drive to another, which Python tells as an error."""
+
+    def on_another_drive(*_: object) -> str:
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr("os.path.relpath", on_another_drive)
+    file = Path("KRC/a.src").absolute()
+    assert file.as_posix() == baseline_place(Path("known.json"))(str(file))
 
 
 def test_mending_writes_files_and_showing_does_not(

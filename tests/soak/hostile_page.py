@@ -63,6 +63,21 @@ parser are all those before an acceptance or all those after.
 """
 
 
+_READERS = """\
+## Readers, guided by coverage
+
+`make fuzz-readers` gives bytes to what reads them: decoding, archives, lexer and recogniser with
+the check, grammars, `krl.toml`, baselines, images with their verifier, recordings, and the messages
+of an editor. [Atheris](https://github.com/google/atheris) (Linux, macOS) changes the bytes and
+keeps what takes a new branch. A reader fails where it raises anything but its refusal, refuses
+without a reason, needs two minutes for 4 kB, or breaks a law: a text gives its bytes back, no path
+of an archive leads out, a text has failures exactly where it is no program, an image that is
+accepted is written as it was. `make fuzz-readers ARGS="image -max_total_time=600"` looks at one for
+ten minutes; what it found stays in `reports/out/fuzz-readers` and is where the next run begins.
+Input that breaks a reader goes into `tests/soak/reader_inputs`, which `make test` reads every time.
+"""
+
+
 def added(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """The counts of several slices of the same inputs, as one."""
     entries: dict[str, Counter[str]] = {name: Counter() for name in ENTRIES}
@@ -161,6 +176,7 @@ def page(counts: Mapping[str, Any], growth: str = "") -> str:
             "",
             "krl reads no YAML at all, and of archives only `.zip`.",
             "",
+            _READERS,
             growth,
             "## Limits",
             "",
