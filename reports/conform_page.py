@@ -28,7 +28,16 @@ _WITHOUT: Json = {
     "divergence": None,
     "reason": "",
 }
-_SCRIPTS = ("page", "conform-trend", "conform-timing", "conform-path", "conform-case", "conform")
+_SCRIPTS = (
+    "vendor/uPlot.iife.min",
+    "page",
+    "line-chart",
+    "conform-trend",
+    "conform-timing",
+    "conform-path",
+    "conform-case",
+    "conform",
+)
 _CHECK = ("file", "line", "text", "state", "actual")
 
 
@@ -56,7 +65,7 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     page = render(
         "conform.html.j2",
         script=f'"use strict";\n{{\n{script}}}\n',
-        styles=["page.css", "conform.css"],
+        styles=["vendor/uPlot.min.css", "page.css", "conform.css"],
         data=data,
         view=conform_view(record),
     )

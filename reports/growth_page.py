@@ -14,7 +14,15 @@ from support.files.atomic_write import write_atomic
 
 _MAX_STEPS = 2000
 _MAX_FILES = 100
-_SCRIPTS = ("page", "source", "construct", "growth-chart", "growth-table")
+_SCRIPTS = (
+    "vendor/uPlot.iife.min",
+    "page",
+    "source",
+    "construct",
+    "line-chart",
+    "growth-chart",
+    "growth-table",
+)
 
 Json = dict[str, Any]
 
@@ -43,7 +51,7 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
     page = render(
         "growth.html.j2",
         script=f'"use strict";\n{{\n{script}}}\n',
-        styles=["page.css", "growth.css"],
+        styles=["vendor/uPlot.min.css", "page.css", "growth.css"],
         data=data,
         view=growth_view(record),
     )

@@ -40,7 +40,13 @@ def render_survey_page(record: Mapping[str, Any]) -> str:
         data = embedded_json({"sections": sections})
         if len(data) <= _MAX_DATA_CHARACTERS:
             break
-    return render("survey.html.j2", script=_script(), styles=["page.css"], data=data, view=view)
+    return render(
+        "survey.html.j2",
+        script=_script(),
+        styles=["vendor/uPlot.min.css", "page.css"],
+        data=data,
+        view=view,
+    )
 
 
 def _section(record: Record, shown: Section, detail: Detail) -> dict[str, Any]:
@@ -65,9 +71,11 @@ def _script() -> str:
     parts = "\n".join(source(f"survey-{name}.js") for name in ("cards", "table", "chart"))
     return f""""use strict";
 {{
+{source("vendor/uPlot.iife.min.js")}
 {source("page.js")}
 {source("source.js")}
 {source("construct.js")}
+{source("line-chart.js")}
 function present(data, prefix) {{
 const byId = (id) => document.getElementById(prefix + id);
 const {{ clusters, strings }} = data;

@@ -134,3 +134,8 @@ function whenResized(holder, draw) {
     draw();
   }).observe(holder);
 }
+
+/** Calls `draw` whenever light turns to dark or back. */
+const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+/** A colour of the style sheet. */
+const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

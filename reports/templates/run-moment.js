@@ -47,11 +47,6 @@ function atNextFrame(act) {
   };
 }
 
-/** Calls `draw` whenever light turns to dark or back. */
-const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
-/** A colour of the style sheet. */
-const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-
 /** The names of what touches something at a time. */
 const touching = (time) => new Set(page.observations.flatMap(({ t, end: until, kind, parts }) => (kind === "collision" && t <= time && time <= until ? parts : [])));
 

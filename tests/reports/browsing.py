@@ -4,6 +4,12 @@ from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
 
+#: A function for scripts: whether anything is drawn on a canvas.
+HAS_INK = """
+const hasInk = (canvas) => canvas.getContext("2d")
+  .getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value);
+"""
+
 
 def load(browser: webdriver.Chrome, address: str) -> None:
     """Load an address anew, also where nothing but the fragment differs."""

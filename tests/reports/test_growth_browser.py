@@ -9,7 +9,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
 from reports.growth_page import write_growth_page
-from tests.reports.browsing import find, find_all, load, row_titles
+from tests.reports.browsing import HAS_INK, find, find_all, load, row_titles
 
 pytestmark = pytest.mark.browser
 
@@ -84,13 +84,9 @@ def test_the_chart_names_the_step_under_the_pointer_and_opens_it(
 ) -> None:
     """All charts show the same step meanwhile."""
     load(browser, pages("believable"))
-    hit = find(browser, "#rate .hit")
-    offset = browser.execute_script(
-        "const box = arguments[0].getBoundingClientRect();"
-        "return 46 + (box.width - 8) * 10 / 40 - box.width / 2 - 46",
-        hit,
-    )
-    ActionChains(browser).move_to_element_with_offset(hit, round(offset), 0).perform()
+    plot = find(browser, "#rate .u-over")
+    offset = round(plot.size["width"] * (10 / 40 - 1 / 2))
+    ActionChains(browser).move_to_element_with_offset(plot, offset, 0).perform()
     assert find(browser, "#rate .tip").text.startswith("10. TRIGGER WHEN PATH … ONSTART\n+")
     assert all("after 10: " in e.text for e in find_all(browser, ".metric .now"))
     ActionChains(browser).click().perform()
@@ -106,7 +102,8 @@ def test_each_metric_has_its_chart(browser: webdriver.Chrome, pages: Callable[[s
     }
     assert ["failing lines", "TERM", "VAR", "MCC", "AVS", "HAL", "LL1"] == list(shown)
     assert "76 → 96" == shown["TERM"]
-    assert 7 == len(find_all(browser, ".metric svg path.curve"))
+    drawn = "return [...document.querySelectorAll('.metric canvas')].filter(hasInk).length"
+    assert 7 == browser.execute_script(f"{HAS_INK} {drawn}")
 
 
 def test_hostile_text_is_shown_and_does_not_run(

@@ -297,8 +297,9 @@ def test_the_chart_names_the_step_under_the_pointer_and_opens_it(
 ) -> None:
     """The list beside the chart shows the same step; a click leads to its card."""
     load(browser, pages("believable"))
-    dot = find_all(browser, "#chart .dot")[2]
-    ActionChains(browser).move_to_element(dot).perform()
+    plot, steps = find(browser, "#chart .u-over"), len(find_all(browser, "#steps a"))
+    offset = round(plot.size["width"] * (2 / steps - 1 / 2))
+    ActionChains(browser).move_to_element_with_offset(plot, offset, 0).perform()
     tip = find(browser, ".tip").text
     assert tip == "2. GLOBAL before DEF\n+46 files, then 415 of 583 parse (71.1 %)"
     assert "GLOBAL before DEF" in find(browser, "#steps a.on").text
