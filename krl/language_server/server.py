@@ -6,6 +6,7 @@ import asyncio
 import inspect
 import logging
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -102,7 +103,10 @@ class _Desk:
 
     async def initialised(self, _given: lsp.InitializedParams) -> None:
         """Take in the folders that the editor has open; what is asked meanwhile is answered."""
-        for folder in list(self._server.workspace.folders.values()):
+        folders: list[lsp.WorkspaceFolder] = []
+        with suppress(RuntimeError):  # an editor that did not say `initialize` first
+            folders += self._server.workspace.folders.values()
+        for folder in folders:
             path = to_fs_path(folder.uri)
             if path is not None:
                 count = 0
