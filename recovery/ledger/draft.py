@@ -76,8 +76,9 @@ def _construct(
     ]
     files, origins, lines = (int(cluster[key]) for key in ("files", "origins", "failures"))
     evidence = Evidence(files, min(origins, lines), lines, seen=tuple(seen[:_PLACES_SEEN]))
+    signature = cluster.get("signature", cluster["title"])  # older records have one text for both
     found = Construct(
-        name=name_from(str(cluster["signature"])),
+        name=name_from(str(signature)),
         title=str(cluster["title"]),
         edits=tuple(from_data(edit) for edit in proposal["edits"]),
         evidence=evidence,

@@ -62,6 +62,18 @@ def test_what_two_origins_show_is_corroborated(out: Path, tmp_path: Path) -> Non
     assert tomllib.loads(file.read_text(encoding="utf-8"))["state"] == "corroborated"
 
 
+def test_a_survey_of_before_is_understood(out: Path, tmp_path: Path) -> None:
+    """Where a record has one text for title and signature, the name comes from that."""
+    record = json.loads((out / "survey.json").read_text(encoding="utf-8"))
+    (tmp_path / "old").mkdir()
+    for cluster in record["clusters"]:
+        cluster["title"] = cluster.pop("signature")
+    (tmp_path / "old" / "survey.json").write_text(json.dumps(record), encoding="utf-8")
+    assert propose(tmp_path / "old", tmp_path / "ledger") == 0
+    (file,) = (tmp_path / "ledger").iterdir()
+    assert "0001-for-step.toml" == file.name
+
+
 def test_a_file_is_never_replaced(out: Path, tmp_path: Path) -> None:
     """Proposing again takes the next number."""
     assert (0, 0) == (propose(out, tmp_path), propose(out, tmp_path))
