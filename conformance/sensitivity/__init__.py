@@ -12,8 +12,8 @@
 ==================== ===============================================================================
 
 ``survivors.tsv`` is what `krl bench conform` left over with ``--mutants 100 --seed 52101`` and
-``--mutants 60 --seed 52202``, the last time that it was written (``--survivors``), without those
-that cases written since make red: what cases are still missing for.
+``--mutants 60 --seed 52202``, the last time that it was written (``--survivors``), without 14 that
+cases written since make red: what cases are still missing for.
 
 A case notices a fault if it passes without it and does not pass with it.
 """
