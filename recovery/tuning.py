@@ -238,7 +238,7 @@ GENERATED_NEGATIVES = 250
 NEGATIVES_SEED = 1
 
 # -------------------------------------------------------------------------------- merging causes
-# `recovery.clustering.cause_merging`, `edit_merging`.
+# `recovery.clustering.cause_merging`, `edit_merging`, `title`.
 
 #: Causes that a later one is compared with: the first ones hold back most. Bound on time.
 MOST_COMPARED = 40
@@ -247,6 +247,8 @@ FORM_SYMBOLS = 4
 #: Edits that a merged cause may have: a person has to see at a glance that they are one. Not
 #: measured.
 MOST_MERGED_EDITS = 3
+#: Tokens that could have come which a title names: more say nothing to a reader. Not measured.
+MOST_EXPECTED = 2
 
 # ---------------------------------------------------------------------------------- reproducers
 # `recovery.reproducer`.

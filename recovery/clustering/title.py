@@ -11,11 +11,10 @@ from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
+from recovery.tuning import MOST_EXPECTED
 
 __all__ = ["TitleWriter"]
 
-# More than so many tokens that could have come say nothing to a reader.
-_MOST_EXPECTED = 2
 _CLOSER = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -83,7 +82,7 @@ class TitleWriter:
     def _instead(self, context: FailureContext) -> str:
         """What was wanted, where that is short enough to say."""
         wanted = [text for text in context.expected if text != "NEWLINE"] or ["NEWLINE"]
-        if len(wanted) > _MOST_EXPECTED:
+        if len(wanted) > MOST_EXPECTED:
             return ""
         phrases = [self._phrase(self._kind_of[text]) for text in wanted]
         return f" where {' or '.join(phrases)} is expected"
