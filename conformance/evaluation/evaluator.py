@@ -57,33 +57,21 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
     ]
     ended = evaluate_ending(case.expectations, seen, case.main)
     every = chain(_unsaid_outputs(case, seen), ended) if is_run else _unsaid(case, seen)
-    always = chain(_unsaid_path(case, seen), _unsaid_laws(case, seen))
     return [
         *said,
         *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
-        *always,
+        *_unsaid_laws(case, seen),
     ]
 
 
-def _unsaid_path(case: Case, seen: Observation) -> Iterator[Check]:
-    """Set-points keep limits and shapes, in every case and whatever it is about."""
-    if not seen.is_exact:  # a recording is measured, and of an arm that is not known here
-        return
-    for one in deviations(seen):
-        moving = [each for each in seen.of_kind("motion_start") if (each.time or 0) <= one.time]
-        file, line = (moving[-1].file, moving[-1].line) if moving else (case.main, 0)
-        actual = f"{one.actual} at {one.time / 1e6:.3f} s"
-        is_sure = not one.rule or basis(one.rule).may_fail
-        yield Check(file, line, one.law, "unmet", actual, is_sure, one.rule)
-
-
 def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
-    """Events stand in an order that no program can change."""
-    if not seen.is_exact:  # of a recording not all events are known
+    """What holds in every case, whatever it is about: limits, shapes, and the order of events."""
+    if not seen.is_exact:  # of a recording not all events are known, nor is its arm
         return
-    for one in violations(seen):
-        file = one.event.file or case.main
-        yield Check(file, one.event.line, one.law, "unmet", one.actual, basis=one.rule)
+    for one in chain(deviations(seen), violations(seen)):
+        file, line = (one.event.file, one.event.line) if one.event else ("", 0)
+        is_sure = not one.rule or basis(one.rule).may_fail
+        yield Check(file or case.main, line, one.law, "unmet", one.actual, is_sure, one.rule)
 
 
 def _said_all(case: Case, seen: Observation) -> list[Check]:

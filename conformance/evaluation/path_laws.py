@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -20,10 +19,11 @@ from conformance.evaluation.path_geometry import (
     from_line,
     from_synchronous,
 )
+from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["Deviation", "deviations"]
+__all__ = ["deviations"]
 
 Array = npt.NDArray[np.float64]
 
@@ -32,17 +32,7 @@ _FEWEST: Final = 4
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
-@dataclass(frozen=True, slots=True)
-class Deviation:
-    """Where a path breaks a law: when in µs, the law, what is seen, by which rule of KRL if any."""
-
-    time: int
-    law: str
-    actual: str
-    rule: str = ""
-
-
-def deviations(seen: Observation) -> Iterator[Deviation]:
+def deviations(seen: Observation) -> Iterator[Violation]:
     """What of a path is beyond the machine data, at most one of a kind, and which motions stray.
 
     Nothing where there is no path; no limits where the machine data are not known.
@@ -53,7 +43,7 @@ def deviations(seen: Observation) -> Iterator[Deviation]:
         yield from _strays(seen, path)
 
 
-def _excesses(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
+def _excesses(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     """Software limits [MOT-15], highest speeds [MOT-06], accelerations [MOT-02] and jerks."""
     if seen.machine is None:
         return
@@ -69,7 +59,7 @@ def _excesses(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
         row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
         if not share[row, axis] <= RATE_MARGIN:
             actual = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
-            yield Deviation(int(path.times[row]), _LIMITS, actual, rule)
+            yield _violation(seen, int(path.times[row]), _LIMITS, actual, rule)
     for column, one in enumerate(axes):
         places = path.axes[:, column]
         beyond = ~(
@@ -78,11 +68,17 @@ def _excesses(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
         if beyond.any():
             first = int(np.argmax(beyond))
             actual = f"{one.name} stands at {places[first]:.3f}"
-            yield Deviation(int(path.times[first]), _LIMITS, actual, "MOT-15")
+            yield _violation(seen, int(path.times[first]), _LIMITS, actual, "MOT-15")
             return
 
 
-def _strays(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
+def _violation(seen: Observation, time: int, law: str, actual: str, rule: str) -> Violation:
+    """With the motion that is under way at a time in µs."""
+    begun = [one for one in seen.of_kind("motion_start") if (one.time or 0) <= time]
+    return Violation(begun[-1] if begun else None, law, f"{actual} at {time / 1e6:.3f} s", rule)
+
+
+def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     """Motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
 
     With a fixed tool it is the base in the tool that has the shape [ORI-07].
@@ -110,7 +106,7 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Deviation]:
             case _:
                 continue
         if not off <= most:
-            yield Deviation(start.time or 0, law, f"{off:.4f} off", rule)
+            yield _violation(seen, start.time or 0, law, f"{off:.4f} off", rule)
 
 
 def _own_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:

@@ -20,9 +20,12 @@ _MOST_AHEAD: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """An event that breaks a law: the law, what was seen, and the rule of KRL that says it."""
+    """An event that breaks a law: the law, what was seen, and the rule of KRL that says it.
 
-    event: Event
+    Without an event where what breaks it comes before all of them.
+    """
+
+    event: Event | None
     law: str
     actual: str
     rule: str = ""
