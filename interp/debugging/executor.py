@@ -7,7 +7,7 @@ as without a debugger.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from interp.controller.trace import TaskName
 from interp.port.events import Sink
@@ -16,22 +16,34 @@ from interp.port.inspection import Inspectable
 from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, Value
 from interp.values.faults import Fault
 
-if TYPE_CHECKING:
-    from interp.debugging.debugger import Debugger
-
 __all__ = ["DebuggedExecutor"]
 
 
-class DebuggedExecutor:
-    """Runs ``inside``, and shows ``debugger`` every statement it wants to see; see `Executor`."""
+class Hook(Protocol):
+    """What is shown the statements and faults of debugged executors: the debugger."""
 
-    def __init__(
-        self, debugger: Debugger, task: TaskName, inside: Inspectable, per_slice: int
-    ) -> None:
+    @property
+    def unseen(self) -> int:
+        """How many statements may begin before one has to be shown."""
+
+    def begins(self, executor: DebuggedExecutor) -> int | None:
+        """A statement is about to begin; the line to go on at instead, if any."""
+
+    def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
+        """The program has come to a fault that it does not handle."""
+
+    def around(self, inside: Any, per_slice: int, task: TaskName) -> DebuggedExecutor:
+        """An executor that is shown too."""
+
+
+class DebuggedExecutor:
+    """Runs ``inside``, and shows ``hook`` every statement it wants to see; see `Executor`."""
+
+    def __init__(self, hook: Hook, task: TaskName, inside: Inspectable, per_slice: int) -> None:
         self.task: TaskName = task
         self.inside = inside
         self.at = At("", 0, 0)
-        self._debugger = debugger
+        self._hook = hook
         self._per_slice = per_slice
         #: When the slice ends that the outside has given.
         self._due = inside.begun + per_slice
@@ -54,19 +66,19 @@ class DebuggedExecutor:
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
         """Compute until the controller is needed."""
-        inside, debugger = self.inside, self._debugger
+        inside, hook = self.inside, self._hook
         if self._again is not None:  # behind an action, as it was asked before
             self._open, self._again = self._again, None
             return inside.advance(None)
         if isinstance(self._open, Slice):
             reply = None  # it may ask sooner than the controller would have it
         while True:
-            inside.ask_at(min(self._due, inside.begun + debugger.unseen))
+            inside.ask_at(min(self._due, inside.begun + hook.unseen))
             request = inside.advance(reply)
             reply = None
             self.at = request.at
             if isinstance(request, Slice):
-                line = debugger.begins(self)
+                line = hook.begins(self)
                 if line is not None:  # its statement asks before it begins, as every one does
                     inside.select(line)
                     continue
@@ -76,7 +88,7 @@ class DebuggedExecutor:
                 self._again = self._actions.pop()[1]
                 return request
             elif isinstance(request, Fail):
-                debugger.fails(self, request)
+                hook.fails(self, request)
             if not isinstance(request, End):
                 self._due = inside.begun + self._per_slice
             self._open = request
@@ -101,4 +113,4 @@ class DebuggedExecutor:
     def companion(self, routine: str, sink: Sink | None = None) -> Executor:
         """A second executor over the same data lists, the submit's, which is debugged too."""
         companion = self.inside.companion(routine, sink)
-        return self._debugger.around(companion, self._per_slice, "submit")
+        return self._hook.around(companion, self._per_slice, "submit")
