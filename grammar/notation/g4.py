@@ -47,8 +47,9 @@ def _reader(start: str) -> Lark:
     return Lark(text, parser="lalr", start=start, propagate_positions=True, maybe_placeholders=True)
 
 
+@lru_cache(maxsize=16)
 def read(text: str, *, source: str = "grammar") -> Grammar:
-    """Read the text of a ``.g4`` file.
+    """Read the text of a ``.g4`` file; the same text is the same grammar and read once.
 
     Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
     rule is defined twice, refers to what does not exist, or is left-recursive.

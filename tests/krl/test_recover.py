@@ -214,26 +214,25 @@ def test_nothing_is_written_but_where_it_was_asked_for(surveyed: Surveyed, elsew
     assert [] == list(elsewhere.iterdir())
 
 
-def test_a_second_survey_of_the_same_is_the_same(corpus: Path, tmp_path: Path) -> None:
+def test_a_second_survey_of_the_same_is_the_same(
+    surveyed: Surveyed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What is kept from one survey to the next changes nothing but the time."""
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    first = record(tmp_path / "out")
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    assert settled(first) == settled(record(tmp_path / "out"))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(surveyed.root / "cache"))
+    monkeypatch.setenv("LOCALAPPDATA", str(surveyed.root / "cache"))
+    assert 0 == recover(surveyed.root / "corpus", "--out", tmp_path)
+    assert settled(record(surveyed.out)) == settled(record(tmp_path))
 
 
-def test_a_second_survey_sees_what_has_changed(corpus: Path, tmp_path: Path) -> None:
+def test_a_second_survey_sees_what_has_changed(tmp_path: Path) -> None:
     """A file mended since the last survey parses in the next one."""
+    corpus = lay(tmp_path / "corpus", back=RETURN, fine=FINE)
     assert 0 == recover(corpus, "--out", tmp_path / "out")
     (corpus / "back" / "back.src").write_bytes(FINE)
     (corpus / "fine" / "fine.src").write_bytes(RETURN)
     assert 0 == recover(corpus, "--out", tmp_path / "out")
-    data = record(tmp_path / "out")
-    assert {"fine.src"} == {
-        failure["path"].split("/")[-1]
-        for failure in data["failures"]
-        if failure["rule"] != "forStatement"
-    }
+    failures = record(tmp_path / "out")["failures"]
+    assert ["fine.src"] == [failure["path"].split("/")[-1] for failure in failures]
 
 
 # ------------------------------------------------------------------------------- the options
@@ -245,25 +244,27 @@ def test_jobs_make_no_difference(surveyed: Surveyed, tmp_path: Path) -> None:
     assert settled(record(surveyed.out)) == settled(record(tmp_path))
 
 
-def test_files_folders_and_archives_can_be_named_together(corpus: Path, tmp_path: Path) -> None:
+def test_files_folders_and_archives_can_be_named_together(tmp_path: Path) -> None:
     """Each thing named is surveyed, once, in any order."""
+    corpus = lay(tmp_path / "corpus", fine=FINE, back=RETURN, other=FINE)
     archive = tmp_path / "cell.zip"
     with zipfile.ZipFile(archive, "w") as stream:
         stream.writestr("KRC/R1/Program/a.src", RETURN + b"\n")
-    places = [corpus / "step0", archive, corpus / "back" / "back.src"]
+    places = [corpus / "fine", archive, corpus / "back" / "back.src"]
     assert 0 == recover(*places, "--out", tmp_path / "1")
     assert 0 == recover(*places[::-1], places[0], "--out", tmp_path / "2")
     assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
     assert 3 == record(tmp_path / "1")["files"]
 
 
-def test_another_grammar_finds_something_else(corpus: Path, tmp_path: Path) -> None:
+def test_another_grammar_finds_something_else(tmp_path: Path) -> None:
     """The grammar named is the one that is read under."""
+    corpus = lay(tmp_path / "corpus", back=RETURN)
     wider = tmp_path / "wider.g4"
     text = PRELIMINARY.read_text("utf-8").replace(": RETURN\n", ": RETURN expression?\n")
     wider.write_text(text, encoding="utf-8")
     assert 0 == recover(corpus, "--out", tmp_path / "out", "--grammar", wider)
-    assert ["FOR with STEP"] == [entry["title"] for entry in record(tmp_path / "out")["clusters"]]
+    assert 1 == record(tmp_path / "out")["parsed"]
 
 
 def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
@@ -282,19 +283,18 @@ def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
 
 
 def test_the_working_directory_makes_no_difference(tmp_path: Path) -> None:
-    """As a process of its own, from any folder, absolute paths are all it needs."""
+    """As a process of its own, from another folder, absolute paths are all it needs."""
     corpus = lay(tmp_path / "corpus", back=RETURN)
-    outs = [tmp_path / "one", tmp_path / "two"]
-    for out, folder in zip(outs, (tmp_path, corpus), strict=True):
-        options = ["--out", str(out), "--jobs", "1", "--grammar", str(PRELIMINARY)]
-        done = subprocess.run(
-            [sys.executable, "-m", "krl", "recover", str(corpus), *options],
-            cwd=folder,
-            capture_output=True,
-            check=False,
-        )
-        assert (0, b"") == (done.returncode, done.stderr)
-    assert settled(record(outs[0])) == settled(record(outs[1]))
+    assert 0 == recover(corpus, "--out", tmp_path / "here")
+    options = ["--out", str(tmp_path / "there"), "--jobs", "1", "--grammar", str(PRELIMINARY)]
+    done = subprocess.run(
+        [sys.executable, "-m", "krl", "recover", str(corpus), *options],
+        cwd=corpus,
+        capture_output=True,
+        check=False,
+    )
+    assert (0, b"") == (done.returncode, done.stderr)
+    assert settled(record(tmp_path / "here")) == settled(record(tmp_path / "there"))
 
 
 def test_the_default_grammar_is_found_from_anywhere(tmp_path: Path) -> None:
@@ -460,19 +460,17 @@ def test_the_page_comes_before_the_causes(
 
 
 @pytest.mark.parametrize("given", [["--no-start"], ["--grammar", "{grown}/KRL.g4"]])
-def test_the_start_can_be_left_out(
-    given: list[str], grown: Path, corpus: Path, tmp_path: Path
-) -> None:
+def test_the_start_can_be_left_out(given: list[str], grown: Path, tmp_path: Path) -> None:
     """When asked, and where another grammar is named."""
+    corpus = lay(tmp_path / "corpus", step=STEP % b"2")
     options = [word.format(grown=grown) for word in given]
     assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), *options])
     assert "start" not in record(tmp_path / "out")
 
 
-def test_a_grammar_that_is_the_start_is_surveyed_once(
-    grown: Path, corpus: Path, tmp_path: Path
-) -> None:
+def test_a_grammar_that_is_the_start_is_surveyed_once(grown: Path, tmp_path: Path) -> None:
     """Nothing has grown yet."""
+    corpus = lay(tmp_path / "corpus", back=RETURN)
     (grown / "KRL.g4").write_bytes((grown / "preliminary.g4").read_bytes())
     assert 0 == main(["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"])
     assert "start" not in record(tmp_path / "out")
@@ -489,9 +487,10 @@ def test_where_nothing_is_missing_the_page_tells_the_story(tmp_path: Path) -> No
 
 
 def test_a_damaged_ledger_is_one_clear_line(
-    grown: Path, corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    grown: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Said before the work; without the start it does not matter."""
+    corpus = lay(tmp_path / "corpus", step=STEP % b"2")
     (grown / "constructs" / "0001-for-step.toml").write_text("title = ", encoding="utf-8")
     assert 2 == main(["recover", str(corpus), "--out", str(tmp_path / "out")])
     said, complaint = capsys.readouterr()

@@ -29,6 +29,12 @@ ENDFCT
 """
 
 
+@pytest.fixture(autouse=True)
+def _little_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first amount is enough: what is stated here does not hang on how long it takes."""
+    monkeypatch.setattr("interp.bench.executor_speed._LEAST", 0.0)
+
+
 def test_record_of_the_bench(tmp_path: Path) -> None:
     """Every executor that is here has a time, and the means are those of the ratios."""
     (tmp_path / "sum.src").write_text(SUM.format("N"))
@@ -55,8 +61,9 @@ def test_results_that_differ(tmp_path: Path) -> None:
         measure_executors(list(kernels_in(tmp_path).values()), rounds=1)
 
 
-def test_amount_that_fails_at_last(tmp_path: Path) -> None:
+def test_amount_that_fails_at_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a kernel cannot do more, the most that it does is measured."""
+    monkeypatch.setattr("interp.bench.executor_speed._LEAST", math.inf)
     (tmp_path / "index.src").write_text(
         SUM.format("N").replace("RETURN", "SUM = 7 / (4 - N)\nRETURN")
     )
