@@ -12,16 +12,19 @@ from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.program.load import CheckedProgram, Limits
 from interp.values.faults import LinkError
+from support.files.kept_values import kept
 
 if TYPE_CHECKING:
     from interp.bytecode.verifier.verify import Verified
 
-__all__ = ["COMPILED", "EXECUTORS", "Prepared", "available", "is_available"]
+__all__ = ["CODE", "COMPILED", "EXECUTORS", "Prepared", "available", "is_available"]
 
 #: The reference first.
 EXECUTORS: Final = ("tree", "vm", "native")
 #: The machine in C with native code of the program: takes a C compiler, only where it is asked for.
 COMPILED: Final = "compiled"
+#: The packages that what is kept of a program depends on.
+CODE: Final = ("grammar", "interp", "support")
 
 
 def available() -> tuple[str, ...]:
@@ -57,6 +60,14 @@ class Prepared:
     @cached_property
     def verified(self) -> Verified:
         """As bytecode that was verified; raises `LinkError`."""
+        program = self.program
+        units = program.units.values()
+        texts = (text for unit in units for text in (unit.module.path, unit.source.text))
+        return kept(
+            CODE, (program.main.module.path, f"{program.is_strict}", *texts), self._verified
+        )
+
+    def _verified(self) -> Verified:
         from interp.bytecode.compiler import compile_program
         from interp.bytecode.verifier.verify import verify
 

@@ -23,6 +23,7 @@ from interp.port.events import EVERY_KIND, Kind
 from interp.port.executor import Executor
 from interp.port.requests import Value
 from interp.program.load import CheckedProgram, Limits
+from interp.program.variables import data_lists
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.data_list import DataListError
@@ -35,20 +36,20 @@ from interp.robot.kinematics.machine_data import (
 )
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.stand_in import arm_or_stand_in, machine_data_of, understood
-from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.planning.deferred_arm import DeferredArm
 from interp.robot.simulation.factory import RobotName, make_robot
-from interp.robot.simulation.observations import Observation, Observer
 from interp.robot.simulation.robot import Robot
 from interp.robot.simulation.scene import Scene
-from interp.robot.simulation.tracking import PathRecord, Tracking
 from interp.standins.uses import FOLDER
-from interp.tree import system_values
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
 
 if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger
+    from interp.robot.planning.planned_arm import PlannedArm
+    from interp.robot.simulation.observations import Observation, Observer
     from interp.robot.simulation.robot_files import RobotFile
+    from interp.robot.simulation.tracking import PathRecord, Tracking
 
 __all__ = [
     "EXECUTORS",
@@ -153,7 +154,7 @@ def run_program(
         prepared = Prepared(prepared, setup.routine)
     program, profile, note = prepared.program, setup.profile, ""
     program.start(prepared.routine)  # what is wrong with it is said alike for all executors
-    values = system_values(program)
+    values = _system_values(program)
     if setup.robot_file is not None:
         machine = setup.robot_file.machine
     elif setup.machine is not None:
@@ -172,15 +173,12 @@ def run_program(
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
         machine, torque_note = _with_torques(machine, program)
     start = setup.start or _home(values, machine, _BENT if profile.is_tolerant else _UPRIGHT)
-    try:
-        arm = PlannedArm(machine, start, is_selected=not profile.is_tolerant)
-    except Fault as fault:
-        raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
+    arm = _arm(machine, start, profile)
     if setup.make_robot is not None:
         robot = setup.make_robot(machine, profile.cycle)
     else:
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
-    tracking = Tracking(arm, robot, machine, profile.cycle, start, _observer(machine, setup))
+    tracking = _tracking(arm, robot, machine, start, setup)
     trace = Trace(take, kinds=_kinds(program, setup))
     sink, submit_sink = trace.sink(), trace.sink("submit")
     limits = setup.limits or Limits(per_slice=profile.statements)
@@ -209,19 +207,61 @@ def run_program(
     if debugger is not None:
         debugger.attach(controller)
     outcome = _run(controller, setup, on_time)
-    path = tracking.record() if robot.step else None
     return RunResult(
         outcome,
         trace.events,
-        path,
+        tracking.record() if tracking is not None and robot.step else None,
         machine,
         tuple(start),
         controller,
         executor,
         note,
-        tracking.observations(),
+        tracking.observations() if tracking is not None else (),
         torque_note,
     )
+
+
+def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
+    """What data lists give system variables; without any, nothing is loaded to work that out."""
+    if next(data_lists(program), None) is None:
+        return {}
+    from interp.tree import system_values
+
+    return system_values(program)
+
+
+def _arm(machine: MachineData, start: Sequence[float], profile: Profile) -> DeferredArm:
+    """The arm; raises `LinkError` where it cannot stand at its start."""
+
+    def made() -> PlannedArm:
+        from interp.robot.planning.planned_arm import PlannedArm
+
+        return PlannedArm(machine, start, is_selected=not profile.is_tolerant)
+
+    arm = DeferredArm(made)
+    every = zip((*machine.axes, *machine.externals), machine.standing(start), strict=True)
+    stands = all(axis.lower <= value <= axis.upper for axis, value in every)
+    if not stands or machine.palletising is not None or not machine.is_wrist_central:
+        try:  # what cannot be is told before the program runs
+            arm.target()
+        except Fault as fault:
+            raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
+    return arm
+
+
+def _tracking(
+    arm: DeferredArm,
+    robot: Robot,
+    machine: MachineData,
+    start: Sequence[float],
+    setup: RunSetup,
+) -> Tracking | None:
+    """Who sends set-points, where there is somebody to take them."""
+    if not robot.step and setup.scene is None:
+        return None
+    from interp.robot.simulation.tracking import Tracking
+
+    return Tracking(arm, robot, machine, setup.profile.cycle, start, _observer(machine, setup))
 
 
 def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:

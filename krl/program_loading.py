@@ -31,14 +31,22 @@ def load_program(
 
     ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
     checker finds is no obstacle: what it is about fails when it is reached. With ``stands_in`` the
-    project gets stand-ins for what it lacks. Raises `InputError` for what cannot be read, and
+    project gets stand-ins for what it lacks. A program that was loaded before is not checked anew
+    (`support.files.kept_values`). Raises `InputError` for what cannot be read, and
     `interp.values.faults.LinkError` for what cannot be run.
     """
+    from interp.executors import CODE
     from interp.program.load import load
+    from support.files.kept_values import kept
 
     sources, main, left = read_sources(file)
-    program = load(sources, main, strict=strict, stands_in=stands_in, unread=left)
-    return program, left
+
+    def loaded() -> "tuple[CheckedProgram, list[str]]":
+        unread = left.copy()
+        return load(sources, main, strict=strict, stands_in=stands_in, unread=unread), unread
+
+    texts = (text for one in sources for text in (one.path, one.text))
+    return kept(CODE, (main, f"{strict} {stands_in}", *left, *texts), loaded)
 
 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":

@@ -64,6 +64,10 @@ class Unknown:
     def __str__(self) -> str:
         return "an unknown type"
 
+    def __reduce__(self) -> str:
+        """There is one, in every process and in what is read from a file."""
+        return "UNKNOWN"
+
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
@@ -72,6 +76,10 @@ class Scalar:
     name: str
 
     def __str__(self) -> str:
+        return self.name
+
+    def __reduce__(self) -> str:
+        """There is one of each, as there is one `UNKNOWN`."""
         return self.name
 
 

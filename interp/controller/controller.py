@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 from grammar.semantics.types import Type
 from interp.controller.advance_run import AdvanceRun
@@ -40,7 +41,9 @@ from interp.port.executor import Executor
 from interp.port.requests import At, Path, Value
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.machine_data import MachineData
-from interp.robot.simulation.tracking import Tracking
+
+if TYPE_CHECKING:
+    from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["ArmState", "Controller"]
 

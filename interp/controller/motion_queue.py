@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from interp.controller.arm_control import ArmControl
 from interp.controller.messages import message_fault, own_fault
@@ -39,11 +39,13 @@ from interp.robot.api.commands import (
     Transaction,
 )
 from interp.robot.arm import Motion, Place, Position
-from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 from interp.values.poses import Pose
 from interp.values.values import EnumValue
+
+if TYPE_CHECKING:
+    from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["MotionQueue", "PlannedPoint", "TriggerCall"]
 

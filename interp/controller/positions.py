@@ -9,8 +9,8 @@ is within $H_POS_TOL of $H_POS; $IN_HOME1 to 5 likewise, with $AXIS_HOME and $H_
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import Any, Final
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Final
 
 from interp.controller.predefined_values import empty_structure
 from interp.controller.state import ControllerState
@@ -22,11 +22,13 @@ from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.carrier import Carrier
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.robot.kinematics.targets import turn_of
-from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import fault
 from interp.values.poses import IDENTITY, Pose
 from interp.values.values import EnumValue, StructureValue, single
+
+if TYPE_CHECKING:
+    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["FramesInForce", "Positions", "axes_value", "pose_of", "pose_value", "word_of"]
 
@@ -129,7 +131,7 @@ class Positions:
         self._arm = core.arm
         self._frames = frames
         self._tracking = tracking
-        self._kinematics = None if state.machine is None else kinematics_of(state.machine)
+        self._machine = state.machine
         self._kept: dict[str, Position] = {}
         shown: Mapping[str, tuple[str, str, Callable[[], Position]]] = {
             "actual": ("$AXIS_ACT", "$POS_ACT", self.actual),
@@ -148,6 +150,10 @@ class Positions:
         for axes, pose, position in shown.values():
             variables.connect([axes], Computed(partial(_axes_at, position)))
             variables.connect([pose], Computed(partial(self._point_at, position)))
+
+    @cached_property
+    def _kinematics(self) -> Kinematics | None:
+        return None if self._machine is None else kinematics_of(self._machine)
 
     def actual(self) -> Position:
         """The set-point at this time."""
@@ -179,6 +185,8 @@ class Positions:
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
         """Status and Turn of axes; a Status of 0 where there is no machine data."""
+        from interp.robot.kinematics.targets import turn_of
+
         robot = axes[:ROBOT_AXES]
         status = 0 if self._kinematics is None else int(self._kinematics.status(robot))
         return status, turn_of(robot)

@@ -7,7 +7,7 @@ advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import INT, UNKNOWN
@@ -23,8 +23,6 @@ from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path, Value
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Kinematics
-from interp.robot.kinematics.targets import solve, turn_of
 from interp.values.faults import Fault, fault
 from interp.values.poses import IDENTITY, Pose
 from interp.values.values import (
@@ -37,6 +35,9 @@ from interp.values.values import (
     text_of,
     zero,
 )
+
+if TYPE_CHECKING:
+    from interp.robot.kinematics.solver import Kinematics
 
 __all__ = ["PredefinedRoutines"]
 
@@ -240,6 +241,8 @@ class PredefinedRoutines:
 
     def _forward(self, _task: Task, request: Invoke) -> Reply:
         """The pose of axes, in the base and tool of the advance run [FCT-03]."""
+        from interp.robot.kinematics.targets import turn_of
+
         target = target_of(known(request.arguments[0]))
         axes = [target.get(name, 0.0) for name in _AXES]
         kinematics, placement = self._kinematics()
@@ -251,6 +254,8 @@ class PredefinedRoutines:
 
     def _inverse(self, _task: Task, request: Invoke) -> Reply:
         """The axes of a pose; the status is not 0 where it cannot be reached [FCT-03]."""
+        from interp.robot.kinematics.targets import solve
+
         target = target_of(known(request.arguments[0]))
         start = target_of(known(request.arguments[1]))
         kinematics, placement = self._kinematics()

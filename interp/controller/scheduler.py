@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from interp.controller.advance_run import AdvanceRun
 from interp.controller.arm_control import ArmControl
@@ -28,8 +28,10 @@ from interp.controller.tasks import Answer, Blocked, Task
 from interp.controller.waits import Waits
 from interp.port.requests import At, Crash, End, Fail, Request, Slice
 from interp.robot.simulation.robot import RobotFault
-from interp.robot.simulation.tracking import Tracking
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
+
+if TYPE_CHECKING:
+    from interp.robot.simulation.tracking import Tracking
 
 __all__ = ["HOUR", "Ending", "RunOutcome", "Scheduler"]
 

@@ -1,5 +1,6 @@
 """Which commands `krl` has."""
 
+from collections.abc import Iterable
 from importlib import import_module
 from typing import Annotated, Final
 
@@ -34,14 +35,18 @@ _COMMANDS: Final = {
 
 
 def app(*words: str) -> typer.Typer:
-    """The command line. Where its first word is a command, no other is loaded: that takes time."""
+    """The command line; only what its first word asks for is loaded, as that takes time."""
     made = typer.Typer(
         context_settings={"help_option_names": ["-h", "--help"]},
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )
     made.callback(invoke_without_command=True)(_krl)
-    for name in words[:1] if words and words[0] in _COMMANDS else _COMMANDS:
+    if words[:1] == ("--version",):
+        wanted: Iterable[str] = ()
+    else:
+        wanted = words[:1] if words and words[0] in _COMMANDS else _COMMANDS
+    for name in wanted:
         module, _, attribute = _COMMANDS[name].partition(":")
         command = getattr(import_module(module), attribute)
         if isinstance(command, typer.Typer):

@@ -83,3 +83,26 @@ def test_start_is_quick() -> None:
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert "[]\n" == done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "unwanted"),
+    [
+        (["--version"], ("krl.commands.run", "krl.commands.bench", "rich")),
+        (["check", "one.src"], ("interp", "numpy", "rich", "lark")),
+        (["run", "one.src"], ("numpy", "interp.robot.planning.planned_arm", "rich", "lark")),
+    ],
+)
+def test_a_command_loads_what_it_does(
+    words: list[str], unwanted: tuple[str, ...], tmp_path: Path
+) -> None:
+    """A program without a motion runs without the planner of motions, for instance."""
+    (tmp_path / "one.src").write_text("DEF one()\nINT n\nn = 1\nn = n + 1\nEND\n")
+    program = (
+        f"import sys; from krl.cli import main; main({words!r});"
+        f"print([one for one in {unwanted!r} if one in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert "[]" == done.stderr.splitlines()[-1]

@@ -5,6 +5,7 @@ from zipfile import ZipFile
 
 import pytest
 
+from krl.cli import main
 from krl.program_loading import load_program, project_root
 
 FILES = {
@@ -114,3 +115,22 @@ def test_unreadable_file_is_left_out(tmp_path: Path) -> None:
         len(program.units),
         [reason.partition(":")[0] for reason in left],
     )
+
+
+def test_a_program_that_was_loaded_before_runs_as_it_did(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is neither checked nor compiled again, and its trace is the same."""
+    lines = "".join(f"n{i} = 1 + {i}\nx = x + n{i} * 0.5\n" for i in range(400))
+    names = "".join(f"INT n{i}\n" for i in range(400))
+    text = f"DEF long ( )\nREAL x\n{names}x = 0\n{lines}missing ( x )\nEND\n"
+    (tmp_path / "long.src").write_text(text)
+    traces = []
+    for number in range(2):
+        trace = tmp_path / f"{number}.jsonl"
+        words = [str(tmp_path / "long.src"), "--trace", str(trace), "--trace-level", "full"]
+        assert 0 == main(["run", *words])
+        traces.append((trace.read_bytes(), capsys.readouterr()))
+        monkeypatch.setattr("interp.program.load.load", None)
+        monkeypatch.setattr("interp.bytecode.compiler.compile_program", None)
+    assert traces[0] == traces[1]

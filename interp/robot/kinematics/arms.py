@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from interp.robot.kinematics.central_wrist import CentralWrist
+from typing import TYPE_CHECKING
+
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError, Palletising
-from interp.robot.kinematics.numeric import NumericKinematics
-from interp.robot.kinematics.palletiser import Palletiser
-from interp.robot.kinematics.solver import Kinematics
+
+if TYPE_CHECKING:
+    from interp.robot.kinematics.solver import Kinematics
 
 __all__ = ["kinematics_of"]
 
@@ -16,6 +17,10 @@ def kinematics_of(machine: MachineData) -> Kinematics:
 
     Raises `interp.robot.kinematics.machine_data.MachineDataError` for what none of them solves.
     """
+    from interp.robot.kinematics.central_wrist import CentralWrist
+    from interp.robot.kinematics.numeric import NumericKinematics
+    from interp.robot.kinematics.palletiser import Palletiser
+
     if machine.own_chain is not None or not machine.is_wrist_central:
         if machine.palletising is Palletising.LINKED_A5:
             raise MachineDataError("an axis 5 that is guided by a parallelogram, in an odd wrist")

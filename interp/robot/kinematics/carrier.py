@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from interp.robot.kinematics.chain import Chain
 from interp.values.poses import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 __all__ = ["Carrier"]
 
@@ -45,4 +47,6 @@ class Carrier:
 
     def poses(self, externals: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """The same for external axes (n, axes): homogeneous matrices (n, 4, 4)."""
+        import numpy as np
+
         return np.array([self.pose(row).matrix for row in externals.tolist()]).reshape(-1, 4, 4)

@@ -12,16 +12,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from interp.robot.kinematics.carrier import Carrier
 from interp.values.poses import IDENTITY, Pose
 
-__all__ = ["IpoMode", "Placement"]
+if TYPE_CHECKING:
+    from interp.robot.kinematics.solver import Array
 
-Array = npt.NDArray[np.float64]
+__all__ = ["IpoMode", "Placement"]
 
 
 class IpoMode(Enum):
@@ -65,9 +64,11 @@ class Placement:
 
     def befores(self, externals: Array) -> Array:
         """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one (4, 4) for all."""
+        from numpy.linalg import inv
+
         if not self.is_carried:
-            return np.array(self.before.matrix, dtype=np.float64)
-        feet = np.linalg.inv(self.feet(externals)).astype(np.float64)
+            return _poses(self.before, None, externals)
+        feet = inv(self.feet(externals)).astype("float64")
         return feet @ _poses(self.base, self.table, externals)
 
     @property
@@ -94,6 +95,8 @@ class Placement:
 
 
 def _poses(fixed: Pose, carrier: Carrier | None, externals: Array) -> Array:
+    from interp.robot.kinematics.solver import matrix_of
+
     if carrier is None:
-        return np.array(fixed.matrix, dtype=np.float64)
+        return matrix_of(fixed)
     return carrier.poses(externals)

@@ -18,7 +18,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grammar.syntax.source import Source
 from interp.robot.kinematics.arms import kinematics_of
@@ -31,9 +31,11 @@ from interp.robot.kinematics.machine_data import (
     read_machine,
     with_axis_limits_of,
 )
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.models import default_machine
 from interp.values.poses import Pose
+
+if TYPE_CHECKING:
+    from interp.robot.kinematics.solver import Kinematics
 
 __all__ = ["Places", "arm_or_stand_in", "fitting_arm", "machine_data_of", "understood"]
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Protocol
 
 from interp.robot.arm import Load, Samples
 from interp.values.faults import Fault
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 __all__ = ["KinematicRobot", "Measured", "NoRobot", "Robot", "RobotFault", "check_samples"]
 
@@ -100,6 +101,8 @@ class KinematicRobot:
 
 def check_samples(samples: Samples) -> None:
     """Raise `RobotFault` at the first set-point that is no number."""
+    import numpy as np
+
     sound = np.isfinite(samples.axes).all(axis=1)
     if not sound.all():
         raise RobotFault(

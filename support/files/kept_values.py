@@ -1,0 +1,76 @@
+"""Values that take long to make, kept for the user and found by all that they are made of.
+
+They lie as pickles below `support.files.user_cache`, where native code lies too: whoever can write
+there can run what they like as this user anyway. What comes from elsewhere is never read this way
+(`support.files.restricted_pickle` is for that).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import hashlib
+import os
+import pickle
+import zlib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Final, TypeVar
+
+from support.files.atomic_write import write_atomic
+from support.files.code_digest import code_digest
+from support.files.user_cache import user_cache
+
+__all__ = ["kept"]
+
+#: Characters: what is made of less is made sooner than the digest of the code is.
+_FEWEST: Final = 10_000
+_MOST_KEPT: Final = 50
+
+_T = TypeVar("_T")
+
+
+def kept(packages: Sequence[str], made_of: Sequence[str], make: Callable[[], _T]) -> _T:
+    """What ``make`` gives, or gave before for the same texts and the same code of ``packages``.
+
+    Nothing is kept of short texts, of values that cannot be pickled, and where there is no place.
+    What ``make`` raises is raised, and not kept.
+    """
+    folder = user_cache()
+    if folder is None or sum(map(len, made_of)) < _FEWEST:
+        return make()
+    key = hashlib.sha256(code_digest(*packages).encode())
+    for text in made_of:
+        data = text.encode("utf-8", "surrogatepass")
+        key.update(b"%d:" % len(data) + data)
+    file = folder / "values" / f"{key.hexdigest()}.pickle"
+    with contextlib.suppress(Exception), _without_collection():  # damage may raise anything
+        value: _T = pickle.loads(zlib.decompress(file.read_bytes()))
+        os.utime(file)
+        return value
+    value = make()
+    with contextlib.suppress(
+        OSError, RecursionError, pickle.PicklingError, AttributeError, TypeError
+    ):
+        file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        write_atomic(file, zlib.compress(pickle.dumps(value, 5), 1))
+        _drop_old(file.parent)
+    return value
+
+
+@contextlib.contextmanager
+def _without_collection() -> Iterator[None]:
+    """Nothing of what is read becomes garbage, and to look for it takes longer than to read."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _drop_old(folder: Path) -> None:
+    files = sorted(folder.glob("*.pickle"), key=lambda one: one.stat().st_mtime)
+    for old in files[:-_MOST_KEPT]:
+        old.unlink(missing_ok=True)
