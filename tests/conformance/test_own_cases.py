@@ -1,4 +1,6 @@
-"""All cases of this project, on the tree interpreter and on the fastest machine built here."""
+"""All cases of this project, on the tree interpreter and, in part, on the fastest machine here."""
+
+from random import Random
 
 import pytest
 
@@ -7,14 +9,22 @@ from conformance.lint import SUITES
 from conformance.runner import run_case
 from conformance.suite.case import Case
 
-MACHINE = "vm" if missing(Setup("native", "none")) else "native"
-SETUPS = [Setup("tree", "kinematic"), Setup(MACHINE, "none")]
+ARM = Setup("tree", "kinematic")
+MACHINE = Setup("vm" if missing(Setup("native", "none")) else "native", "none")
 
 
 @pytest.mark.parametrize("suite", SUITES)
 def test_no_case_fails(suite: str, own_cases: list[Case]) -> None:
-    """Every case of a suite has what it expects, and executors do the same event by event."""
-    found = [run_case(case, SETUPS) for case in own_cases if case.suite == suite]
+    """Every case of a suite has what it expects.
+
+    On a third of them, drawn by seed, executors do the same event by event; `.ci/run` judges all.
+    """
+    chance = Random(suite)
+    found = [
+        run_case(case, [ARM, MACHINE][: 1 + (chance.random() < 1 / 3)])
+        for case in own_cases
+        if case.suite == suite
+    ]
     assert {} == {
         one.case.name: [result.reason for result in one.results if result.verdict == "fail"]
         for one in found
