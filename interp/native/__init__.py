@@ -21,6 +21,7 @@ file                     what it is
 ``run.c``                the interpreter: steps that call and leave
 ``dispatch.h``           how the interpreter goes from one step to the next
 `register_code`          which registers steps use, and steps as text
+`register_flow`          where steps lead and what registers hold
 `compiled`               register code as native code, by a C compiler
 ``compiled.h``           what that is written with
 ``array_operations.h``   what steps do with arrays

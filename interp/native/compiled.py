@@ -21,11 +21,12 @@ from typing import Final
 
 from grammar.semantics.types import BOOL, REAL, Type
 from interp.bytecode.cell_layout import kind_at
-from interp.bytecode.program import CodeKind, Mode, Parameter, Program, Slot, stack_cells
+from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 from interp.native.machine import Machine
-from interp.native.register_code import CALLS, ENDS, Step, roles_of
+from interp.native.register_code import CALLS, Step, roles_of
+from interp.native.register_flow import INTERPRETED, RegisterFlow
 from support.files.user_cache import user_cache
 
 __all__ = ["CompiledMachine", "compiler", "keep", "library_of", "source_of"]
@@ -41,8 +42,6 @@ _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
-#: Steps that are left to the interpreter.
-_INTERPRETED: Final = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
 
 
 def compiler() -> str | None:
@@ -53,7 +52,7 @@ def compiler() -> str | None:
 
 def source_of(program: Program, core: Core) -> str:
     """The register code of a program as C."""
-    return "\n".join(_Source(program, core).lines()) + "\n"
+    return "\n".join(_lines(program, core)) + "\n"
 
 
 def keep(verified: Verified) -> Path:
@@ -115,132 +114,110 @@ class CompiledMachine(Machine):
         super()._begin(number)
 
 
-class _Source:
-    """Writes the steps of all routines.
+def _lines(program: Program, core: Core) -> Iterator[str]:
+    """The tables, a function for each routine, then what the module looks for."""
+    steps, arrays = [Step(*one) for one in core.steps()], core.arrays()
+    firsts = [core.step(number, 0) for number in range(len(program.codes))]
+    bodies = map(range, firsts, [*firsts[1:], len(steps)])
+    routines = {
+        number: _Routine(program, number, steps, body, arrays)
+        for number, (code, body) in enumerate(zip(program.codes, bodies, strict=True))
+        if code.kind is CodeKind.ROUTINE
+    }
+    yield '#include "compiled.h"'
+    yield "static const struct krl_array arrays[] = {"
+    for base, width, dimensions, *sizes in arrays or [(0, 0, 0, 1, 1, 1)]:
+        yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}}},"
+    yield "};"
+    yield "static const struct krl_step steps[] = {"
+    for name, a, b, c, d, tag, line in steps:
+        words = ", ".join(map(_int, (a, b, c, d, line)))
+        yield f"{{0, {words}, KRL_STEP_{name}, {tag}}},"
+    yield "};"
+    yield from (f"CODE({number});" for number in routines)
+    for routine in routines.values():
+        yield from routine.lines()
+    entries = sorted(entry for routine in routines.values() for entry in routine.entries)
+    yield f"const int32_t krl_entries[] = {{{', '.join(map(str, [*entries, -1]))}}};"
+    names = (f"code_{number}" if number in routines else "NULL" for number in range(len(firsts)))
+    yield f"PROGRAM({', '.join(names)})"
+
+
+class _Routine:
+    """Writes the function of a routine: the steps at the places of ``body``.
 
     Steps work on copies of cells, which the compiler keeps in registers of the processor. The cells
     themselves are what else looks at them: where the machine stops or calls, and in variables that
     are reached by an address.
     """
 
-    def __init__(self, program: Program, core: Core) -> None:
+    def __init__(
+        self,
+        program: Program,
+        number: int,
+        steps: Sequence[Step],
+        body: range,
+        arrays: Sequence[Sequence[int]],
+    ) -> None:
         self._program = program
-        self._steps = [Step(*one) for one in core.steps()]
-        self._arrays = core.arrays()
-        self._kinds: dict[int, str] = {}
-        firsts = [core.step(number, 0) for number in range(len(program.codes))]
-        ends = [*firsts[1:], len(self._steps)]
-        bodies = zip(program.codes, map(range, firsts, ends), strict=True)
-        self._bodies = {
-            number: body
-            for number, (code, body) in enumerate(bodies)
-            if code.kind is CodeKind.ROUTINE
-        }
-        jumps = [(place, step.d) for place, step in enumerate(self._steps) if step.is_jump]
-        self._targets = {target for _, target in jumps}
-        self._loops = {target for place, target in jumps if target <= place}
-        self._owners = {code.owner for code in program.codes if code.captures}
+        self._number = number
+        self._steps = steps
+        self._body = body
+        self._flow = RegisterFlow(steps, body)
+        self._slots = program.slots(program.codes[number])
+        self._kinds = dict(self._kinds_of_variables())
+        self._used = {one for place in body for one in steps[place].registers()}
+        #: What lies in cells only, and the copies of all other cells that steps name.
+        self._in_frame = self._addressed(arrays)
+        self._copies = sorted(self._used - self._in_frame)
+        self._variables = [one for one in self._copies if one < program.frames[number]]
+        self._live = self._flow.live(set(self._copies).difference(self._variables))
+
+    @property
+    def entries(self) -> set[int]:
+        """Where the interpreter may enter it: at its beginning, and where a loop begins."""
+        return {self._body[0], *self._flow.loops}
 
     def lines(self) -> Iterator[str]:
-        """All lines of the file."""
-        yield '#include "compiled.h"'
-        yield "static const struct krl_array arrays[] = {"
-        for base, width, dimensions, *sizes in self._arrays or [(0, 0, 0, 1, 1, 1)]:
-            yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}}},"
-        yield "};"
-        yield "static const struct krl_step steps[] = {"
-        for name, a, b, c, d, tag, line in self._steps:
-            words = ", ".join(map(_int, (a, b, c, d, line)))
-            yield f"{{0, {words}, KRL_STEP_{name}, {tag}}},"
-        yield "};"
-        yield from (f"CODE({number});" for number in self._bodies)
-        for number, body in self._bodies.items():
-            yield from self._code(number, body)
-        loops = (self._loops.intersection(body) for body in self._bodies.values())
-        entries = sorted({body[0] for body in self._bodies.values()}.union(*loops))
-        yield f"const int32_t krl_entries[] = {{{', '.join(map(str, [*entries, -1]))}}};"
-        codes = range(len(self._program.codes))
-        names = (f"code_{number}" if number in self._bodies else "NULL" for number in codes)
-        yield f"PROGRAM({', '.join(names)})"
-
-    def _code(self, number: int, body: range) -> Iterator[str]:
-        """The function of a routine."""
-        code = self._program.codes[number]
-        first, slots = body[0], self._program.slots(code)
-        in_frame = self._in_frame(slots, body)
-        used = {one for place in body for one in self._steps[place].registers()}
-        kept = sorted(used - in_frame)
-        self._kinds = dict(self._kinds_of(slots))
-        received = sum(slot.cells for slot in slots if isinstance(slot.variable, Parameter))
+        """The function."""
+        number, frame = self._number, self._program.frames[self._number]
+        received = sum(one.cells for one in self._slots if isinstance(one.variable, Parameter))
+        is_owner = any(code.owner == number for code in self._program.codes if code.captures)
         yield f"CODE({number}) {{"
-        yield f"ENTER({number}, {max(used, default=0) + 1}, {int(number in self._owners)}) {{"
-        known = self._valued(body)
-        in_use = [one for one in kept if one < self._program.frames[number]]
-        live = self._live(body, set(kept).difference(in_use))
-        for place in sorted(self._loops.intersection(body)):
-            valued = known.get(place, frozenset())
-            yield f"case {place}:"
-            yield self._each("GET_VALUE", valued.intersection(kept))
-            yield self._each("GET", set(in_use) - valued)
-            yield self._each("BLANK", set(kept).difference(in_use, valued))
-            yield f"goto do_{place};"
+        yield f"ENTER({number}, {max(self._used, default=0) + 1}, {int(is_owner)}) {{"
+        yield from self._loop_entries()
         yield "}"
         yield "start:"
-        yield self._each("GET", [one for one in kept if one < received])
-        yield self._each("BLANK", [one for one in kept if one >= received])
-        yield from _blank_cells(set(range(received, self._program.frames[number])) - set(kept))
-        yield f"goto do_{first};"
-        counted, later = self._blocks(body)
-        for place in body:
-            step = self._steps[place]
+        yield self._each("GET", [one for one in self._copies if one < received])
+        yield self._each("BLANK", [one for one in self._copies if one >= received])
+        yield from _blank_cells(set(range(received, frame)) - set(self._copies))
+        yield f"goto do_{self._body[0]};"
+        counted, later = self._flow.blocks()
+        for place in self._body:
             yield f"do_{place}:;"
             if place in counted:
-                yield f"BEGIN({place}, {counted[place]}, {self._each('PUT', live[place])})"
-            if step.line >= 0:
+                yield f"BEGIN({place}, {counted[place]}, {self._each('PUT', self._live[place])})"
+            if self._steps[place].line >= 0:
                 yield f"STATEMENT({place})"
-            yield from self._step(place, later.get(place, 0), in_frame, kept, live[place])
+            yield from self._step(place, later.get(place, 0))
         yield "leave:"
-        yield self._each("PUT", in_use)
+        yield self._each("PUT", self._variables)
         yield "LEAVE();"
         yield "}"
 
-    def _live(self, body: range, stack: set[int]) -> dict[int, frozenset[int]]:
-        """Liveness: the places of the stack of operands that are read before they are written.
+    def _loop_entries(self) -> Iterator[str]:
+        assigned = self._flow.assigned()
+        for place in self._flow.loops:
+            valued = assigned.get(place, frozenset())
+            yield f"case {place}:"
+            yield self._each("GET_VALUE", valued.intersection(self._copies))
+            yield self._each("GET", set(self._variables) - valued)
+            yield self._each("BLANK", set(self._copies).difference(self._variables, valued))
+            yield f"goto do_{place};"
 
-        By the step from which on that is so.
-        """
-        found: dict[int, frozenset[int]] = dict.fromkeys(body, frozenset())
-        before: dict[int, list[int]] = {place: [] for place in body}
-        for place in body:
-            for other in self._following(place):
-                before[other].append(place)
-        todo = list(body)
-        while todo:
-            place = todo.pop()
-            step = self._steps[place]
-            roles = roles_of(step.name)
-            if step.name == "PYTHON":
-                live = frozenset(one for one in stack if one < step.a)
-            elif roles is None and step.name not in (*ENDS, "AT"):
-                live = frozenset(stack)
-            else:
-                read, written = map(step.named, roles or ("", ""))
-                after = frozenset[int]().union(*(found[one] for one in self._following(place)))
-                live = (after - written) | stack.intersection(read)
-            if live != found[place]:
-                found[place] = live
-                todo += before[place]
-        return found
-
-    def _following(self, place: int) -> list[int]:
-        """The steps that may come after a step, within its routine."""
-        step = self._steps[place]
-        jump = [step.d] if step.is_jump else []
-        return jump if step.name in ENDS else [*jump, place + 1]
-
-    def _kinds_of(self, slots: Iterable[Slot]) -> Iterator[tuple[int, str]]:
+    def _kinds_of_variables(self) -> Iterator[tuple[int, str]]:
         """What cells of variables hold, if they hold anything."""
-        for slot in slots:
+        for slot in self._slots:
             variable, type_ = slot.variable, self._program.types[slot.variable.type]
             for place in range(slot.cells):
                 is_value = not isinstance(variable, Parameter) or variable.mode is Mode.IN
@@ -251,104 +228,60 @@ class _Source:
         """A macro for each register, with what it holds."""
         return "".join(f"{word}({one}, {self._kinds.get(one, 'ANY')})" for one in sorted(registers))
 
-    def _blocks(self, body: range) -> tuple[dict[int, int], dict[int, int]]:
-        """Basic blocks: statements that count together, as nothing but a fault can come between.
-
-        How many a block has, by the first step of its first statement; and how many of its block
-        have not begun yet, by step.
-        """
-        counted: dict[int, int] = {}
-        begun: dict[int, tuple[int, int]] = {}
-        leader = -1
-        for place in body:
-            step = self._steps[place]
-            if place in self._targets:
-                leader = -1
-            if step.line >= 0:
-                leader = place if leader < 0 else leader
-                counted[leader] = counted.get(leader, 0) + 1
-            if leader >= 0:
-                begun[place] = leader, counted[leader]
-            if step.is_jump or step.name in (*CALLS, *ENDS, *_INTERPRETED):
-                leader = -1
-        return counted, {place: counted[first] - count for place, (first, count) in begun.items()}
-
-    def _valued(self, steps: range) -> dict[int, frozenset[int]]:
-        """Definite assignment: the registers with a value before each step, on every way there."""
-        found: dict[int, frozenset[int]] = {steps[0]: frozenset()}
-        todo = [steps[0]]
-        while todo:
-            number = todo.pop()
-            step, after = self._steps[number], found[number]
-            if step.name in CALLS:
-                after = frozenset(one for one in after if one < step.a)
-            else:
-                read, written = map(step.named, roles_of(step.name) or ("", ""))
-                can_be_none = step.name == "PASS" or (step.name == "SET_K" and step.tag == 0)
-                after = after | read
-                after = after - written if can_be_none else after | written
-            for other in self._following(number):
-                met = after & found.get(other, after)
-                if met != found.get(other):
-                    found[other] = met
-                    todo.append(other)
-        return found
-
-    def _in_frame(self, slots: Iterable[Slot], steps: Iterable[int]) -> frozenset[int]:
+    def _addressed(self, arrays: Sequence[Sequence[int]]) -> frozenset[int]:
         """The cells of variables whose address is taken."""
         reached = set()
-        for number in steps:
-            name, _, b, c, *_ = self._steps[number]
+        for place in self._body:
+            name, _, b, c, *_ = self._steps[place]
             if name in ("REFER", "COPY_VIEW"):
                 reached.add(b)
             elif name in ("INDEX_LOCAL", "GET_LOCAL", "PUT_LOCAL", "PUT_LOCAL_K"):
                 reached.add(c)
             elif re.search("_(WIDE|TWO|THREE)_LOCAL", name):
-                reached.add(self._arrays[c][0])
-        variables = [range(slot.offset, slot.offset + slot.cells) for slot in slots]
+                reached.add(arrays[c][0])
+        variables = [range(slot.offset, slot.offset + slot.cells) for slot in self._slots]
         whole = (cells for cells in variables if not reached.isdisjoint(cells))
         return frozenset(reached.union(*whole))
 
-    def _step(
-        self,
-        place: int,
-        later: int,
-        in_frame: frozenset[int],
-        kept: Sequence[int],
-        live: frozenset[int],
-    ) -> Iterator[str]:
+    def _step(self, place: int, later: int) -> Iterator[str]:
+        """A step, before which ``later`` statements were counted that have not begun."""
         step = self._steps[place]
-        name, roles, save = step.name, roles_of(step.name), self._each("PUT", live)
+        name, roles, save = step.name, roles_of(step.name), self._each("PUT", self._live[place])
         if name in CALLS:
-            callee = self._program.codes[step.b]
-            end = step.a + sum(map(stack_cells, callee.parameters))
-            yield self._each("PUT", [one for one in kept if step.a <= one < end])
-            below = self._each("PUT", [one for one in kept if one < step.a])
-            size, frame, prepare = self._program.frames[step.b], step.a, ""
-            if name == "CALL_COPY":
-                frame, prepare = step.d, f"RECEIVE({place})"
-            yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {below})"
-            if callee.result is not None:
-                if frame != step.a:
-                    yield f"fp[{step.a}] = fp[{frame}];"
-                yield self._each("GET", {step.a} - in_frame)
-        elif name in _INTERPRETED:
+            yield from self._call(place)
+        elif name in INTERPRETED:
             yield f"INTERPRET({place}, {later}, {save})"
         elif name == "AT":
             yield f"statement = {step.b};"
         elif name == "RETURN":
             yield f"RETURN({place}, {save})"
         elif roles is None:
-            yield self._each("PUT", kept)
-            yield f"DO_IN_FRAME({name}, {place}, {later}, {save}){self._each('GET', kept)}"
+            yield self._each("PUT", self._copies)
+            yield f"DO_IN_FRAME({name}, {place}, {later}, {save}){self._each('GET', self._copies)}"
         else:
-            yield self._each("GET", in_frame.intersection(step.named(roles[0])))
-            written = self._each("PUT", in_frame.intersection(step.named(roles[1])))
+            yield self._each("GET", self._in_frame.intersection(step.named(roles[0])))
+            written = self._each("PUT", self._in_frame.intersection(step.named(roles[1])))
             jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
             if name == "RETURN_VALUE":
                 yield f"RETURN_VALUE({place}, {save})"
             else:
                 yield f"DO({name}, {place}, {later}, {save}, {written}, {jump})"
+
+    def _call(self, place: int) -> Iterator[str]:
+        """A call: what it passes is put where the frame begins, and its result is found there."""
+        step = self._steps[place]
+        callee = self._program.codes[step.b]
+        end = step.a + sum(map(stack_cells, callee.parameters))
+        yield self._each("PUT", [one for one in self._copies if step.a <= one < end])
+        below = self._each("PUT", [one for one in self._copies if one < step.a])
+        is_copied = step.name == "CALL_COPY"
+        frame, prepare = (step.d, f"RECEIVE({place})") if is_copied else (step.a, "")
+        size = self._program.frames[step.b]
+        yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {below})"
+        if callee.result is not None:
+            if frame != step.a:
+                yield f"fp[{step.a}] = fp[{frame}];"
+            yield self._each("GET", {step.a} - self._in_frame)
 
 
 def _blank_cells(cells: set[int]) -> Iterator[str]:

@@ -1,0 +1,47 @@
+"""What is known of the steps of a routine before they run."""
+
+from __future__ import annotations
+
+from interp.native.register_code import Step
+from interp.native.register_flow import RegisterFlow
+
+
+def _step(name: str, a: int = 0, b: int = 0, c: int = 0, d: int = 0, *, line: int = -1) -> Step:
+    return Step(name, a, b, c, d, 1, line)
+
+
+#: A loop over steps 1 to 4; register 0 is a variable, 8 and 9 are the stack of operands.
+_STEPS = [
+    _step("SET_K", a=0, line=0),
+    _step("MOVE", a=8, b=0, line=1),
+    _step("ADD_INT", a=9, b=8, c=0),
+    _step("JUMP_IF", b=9, d=5, line=2),
+    _step("JUMP", d=1),
+    _step("RETURN_VALUE", b=9, line=3),
+]
+_FLOW = RegisterFlow(_STEPS, range(len(_STEPS)))
+
+
+def test_a_loop_begins_where_a_jump_leads_back_to() -> None:
+    """A jump forwards begins none."""
+    assert [1] == _FLOW.loops
+    assert [[1], [2], [3], [5, 4], [1], []] == [_FLOW.after(place) for place in range(6)]
+
+
+def test_an_operand_lives_until_it_is_read_last() -> None:
+    """On whichever way; what is written first is not live before."""
+    live = {place: sorted(found) for place, found in _FLOW.live({8, 9}).items()}
+    assert {0: [], 1: [], 2: [8], 3: [9], 4: [], 5: [9]} == live
+
+
+def test_a_register_is_assigned_where_it_has_a_value_on_every_way() -> None:
+    """At the beginning of the loop only what was set before it."""
+    assigned = {place: sorted(found) for place, found in _FLOW.assigned().items()}
+    assert {0: [], 1: [0], 2: [0, 8], 3: [0, 8, 9], 4: [0, 8, 9], 5: [0, 8, 9]} == assigned
+
+
+def test_statements_between_jumps_and_targets_count_together() -> None:
+    """Behind the first of two there is one that was counted and has not begun."""
+    counted, later = _FLOW.blocks()
+    assert {0: 1, 1: 2, 5: 1} == counted
+    assert {0: 0, 1: 1, 2: 1, 3: 0, 5: 0} == later
