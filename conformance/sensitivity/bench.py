@@ -54,11 +54,16 @@ def measure(
     cases: Sequence[Case],
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
+    executor: str = _EXECUTOR,
 ) -> dict[str, Any]:
-    """Try the faults; ``on_done`` is called for each as soon as it has its verdict."""
+    """Try the faults under an executor; ``on_done`` is called for each when it has its verdict."""
     begun = time.perf_counter()
-    verdicts = try_faults(faults, cases, jobs, on_done)
-    return {**record_of(verdicts), "seconds": round(time.perf_counter() - begun, 3)}
+    verdicts = try_faults(faults, cases, jobs, on_done, executor)
+    return {
+        **record_of(verdicts),
+        "faults_executor": executor,
+        "seconds": round(time.perf_counter() - begun, 3),
+    }
 
 
 def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:

@@ -62,26 +62,29 @@ def try_faults(
     cases: Sequence[Case],
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
+    executor: str = "tree",
 ) -> list[Verdict]:
     """What becomes of each fault, in their order; the same whatever ``jobs`` is.
 
     With more than one job the faults have to be among `all_faults`. ``on_done`` is called for
-    each fault as soon as it has its verdict.
+    each fault as soon as it has its verdict. ``executor`` runs the cases.
     """
     running = [case for case in cases if case.phase == "run"]
     ordered = tuple(sorted(running, key=lambda case: (not case.may_fail, case.name)))
     verdicts: list[Verdict] = []
-    for found in _verdicts(faults, ordered, jobs):
+    for found in _verdicts(faults, ordered, jobs, executor):
         verdicts.append(found)
         on_done(1)
     return verdicts
 
 
-def _verdicts(faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int) -> Iterator[Verdict]:
+def _verdicts(
+    faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int, executor: str
+) -> Iterator[Verdict]:
     if jobs <= 1:
-        return (_verdict_of(one, cases) for one in faults)
+        return (_verdict_of(one, cases, executor) for one in faults)
     known = {id(one): number for number, one in enumerate(all_faults())}
-    tasks = ((known[id(one)], _of_suites(one, cases)) for one in faults)
+    tasks = ((known[id(one)], _of_suites(one, cases), executor) for one in faults)
     return ordered_map(_verdict_of_number, tasks, jobs=jobs)
 
 
@@ -89,14 +92,14 @@ def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:
     return tuple(case for case in cases if not fault.suites or case.suite in fault.suites)
 
 
-def _verdict_of_number(number: int, cases: tuple[Case, ...]) -> Verdict:
+def _verdict_of_number(number: int, cases: tuple[Case, ...], executor: str) -> Verdict:
     """Functions are not sent from process to process: a fault is known by its number there."""
-    return _verdict_of(all_faults()[number], cases)
+    return _verdict_of(all_faults()[number], cases, executor)
 
 
-def _verdict_of(fault: Fault, cases: Sequence[Case]) -> Verdict:
+def _verdict_of(fault: Fault, cases: Sequence[Case], executor: str) -> Verdict:
     runs = 0
-    setup = Setup("tree", fault.robot)
+    setup = Setup(executor, fault.robot)
     for case in _of_suites(fault, cases):
         if not _passes(case, setup):
             continue

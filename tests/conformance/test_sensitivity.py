@@ -1,5 +1,7 @@
 """Planted faults: they change what they say, are removed again, and cases notice them."""
 
+from pathlib import Path
+
 import pytest
 
 from conformance.sensitivity import bench
@@ -7,6 +9,7 @@ from conformance.sensitivity.planted_fault import Fault, constant, on, several
 from conformance.sensitivity.trial import all_faults, try_faults
 from conformance.suite.case import CASES, Case, read_case
 from interp.controller.clock import Clock
+from interp.executors import is_available
 from interp.robot.planning import blending
 
 
@@ -67,6 +70,21 @@ def test_a_case_finds_a_fault(words: str, case: str) -> None:
     (found,) = try_faults([_fault(words)], _cases(case))
     assert case == found.case
     assert found.verdict in ("fail", "unconfirmed")
+
+
+@pytest.mark.skipif(not is_available("compiled"), reason="there is no C compiler")
+def test_a_case_finds_a_fault_under_native_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The executor that is asked for runs the case with the fault."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (found,) = try_faults(
+        [_fault("an event is a level, not an edge")],
+        _cases("interrupt/called_once"),
+        executor="compiled",
+    )
+    assert ("interrupt/called_once", "fail") == (found.case, found.verdict)
+    assert [] != list(tmp_path.rglob("*.so"))
 
 
 def test_each_fault_is_told_when_it_was_judged() -> None:

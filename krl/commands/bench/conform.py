@@ -12,6 +12,7 @@ from krl.extras import ARM, expected_extras
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
+from krl.run_options import Executor
 from krl.text_table import figures
 
 if TYPE_CHECKING:
@@ -50,6 +51,9 @@ def conform(
             metavar="NAME", help="Only planted faults of this group; may be repeated. 'none': none."
         ),
     ] = None,
+    executor: Annotated[
+        Executor, typer.Option(help="Who runs the cases that planted faults are tried on.")
+    ] = Executor.TREE,
     jobs: JobsOption = None,
 ) -> int:
     """Change what decides semantics, one place at a time, and see whether a case fails.
@@ -64,10 +68,13 @@ def conform(
         from conformance.sensitivity.bench import measure, speed_of
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
+        from interp.executors import is_available
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in (*groups, "none"):
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
+    if not is_available(executor.value):
+        raise InputError(f"--executor {executor.value}: it takes a C compiler, and there is none")
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
@@ -75,7 +82,7 @@ def conform(
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
-        found = measure(faults, cases, all_cores(jobs), bar)
+        found = measure(faults, cases, all_cores(jobs), bar, executor.value)
     record = {"bench": "conform", **found, **speed, **({"drawn": drawn} if drawn else {})}
     write_json(record, json_file)
     if survivors is not None:
