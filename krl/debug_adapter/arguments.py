@@ -1,11 +1,11 @@
 """The arguments of requests, which clients may leave out or get wrong."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["Arguments", "Refused"]
+__all__ = ["Arguments", "Handler", "Refused"]
 
 _E = TypeVar("_E", bound=Enum)
 
@@ -68,3 +68,8 @@ class Arguments:
     def all(self, name: str) -> "list[Arguments]":
         """A list of objects."""
         return [Arguments(one) for one in self.get(name, list, []) if isinstance(one, dict)]
+
+
+#: What serves a request: from its arguments to the body of the answer. A function that the body has
+#: as ``then`` is called once the client has its answer.
+Handler = Callable[[Arguments], dict[str, Any]]

@@ -290,6 +290,19 @@ def test_breakpoints_that_report_count_or_are_wrong(client: Client, project: Pat
     client.do("disconnect")
 
 
+def test_lines_that_begin_at_zero(client: Client, project: Path) -> None:
+    """A client that calls the first line 0 has its own numbers throughout."""
+    client.do("initialize", linesStartAt1=False)
+    client.do("launch", program=str(project))
+    given = {"source": {"path": str(project)}, "breakpoints": [{"line": 11}]}
+    (found,) = client.do("setBreakpoints", **given)["breakpoints"]
+    client.do("configurationDone")
+    client.wait("stopped")
+    frame = client.do("stackTrace", threadId=1)["stackFrames"][0]
+    assert (12, 12, 0) == (found["line"], frame["line"], frame["column"])
+    client.do("disconnect")
+
+
 @pytest.mark.parametrize(
     ("command", "arguments", "text"),
     [
@@ -297,6 +310,9 @@ def test_breakpoints_that_report_count_or_are_wrong(client: Client, project: Pat
         ("launch", {"program": "nowhere.src"}, "nowhere.src: no such file"),
         ("launch", {"program": "x.src", "robot": "tin"}, "robot: tin is none of"),
         ("continue", {}, "the program runs"),
+        ("next", {"threadId": 1}, "the program runs"),
+        ("pause", {}, "no program has been launched"),
+        ("restart", {}, "no program runs"),
         ("fly", {}, "fly is not supported"),
         ("setBreakpoints", {"source": 7}, "no program has been launched"),
     ],

@@ -1,0 +1,256 @@
+"""The program being debugged: its thread, where it has stopped, and how it goes on.
+
+Requests are read on one thread. The program runs on another one, which waits where it has stopped
+until a request lets it go on; only meanwhile is it looked into.
+"""
+
+import contextlib
+import io
+from collections.abc import Callable
+from pathlib import Path
+from queue import SimpleQueue
+from threading import Event, Thread
+from typing import Final
+
+from interp.controller.trace import TaskName
+from interp.debugging.client import Command, Go, Quit, Stop
+from interp.debugging.debugger import Debugger
+from interp.debugging.value_text import value_text
+from interp.program.load import CheckedProgram
+from interp.session import RunResult, RunSetup
+from krl.debug_adapter.arguments import Arguments, Refused
+from krl.debug_adapter.connection import Connection, Json
+from krl.debug_adapter.files import ProgramFiles
+from krl.debug_adapter.variables import Variables
+from krl.debugged_run import debugged_run
+from krl.errors import InputError
+from krl.run_notes import run_notes
+from krl.run_options import RunOptions, expected_errors, prepared_run
+
+__all__ = ["ARM", "FRAMES", "TASKS", "Debuggee"]
+
+_REASONS: Final = {
+    "watch": "data breakpoint",
+    "fault": "exception",
+    "selected": "goto",
+    "back": "step",
+    "refused": "step",
+    "ended": "pause",
+}
+TASKS: Final[tuple[TaskName, ...]] = ("robot", "submit")
+#: The thread that shows where the arm is, which is the main run.
+ARM: Final = 3
+#: Frames are numbered by thread and place.
+FRAMES: Final = 10_000
+
+
+class Debuggee:
+    """The program of one session.
+
+    ``debugger``, ``stop`` and ``variables`` are those of the run that is under way; the latter two
+    hold while it has stopped. ``first_line`` is what the client calls the first line of a file.
+    """
+
+    debugger: Debugger
+    stop: Stop
+    variables: Variables
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self.first_line = 1
+        self.stops_on_entry = self.stops_at_end = False
+        self._commands: SimpleQueue[Command] = SimpleQueue()
+        self._stopped = Event()
+        self._is_leaving = self._is_restarting = False
+        self._thread: Thread | None = None
+        self._file: Path
+        self._options: RunOptions
+        self._files: ProgramFiles | None = None
+        self._program: CheckedProgram
+        self._setup: RunSetup
+
+    # ------------------------------------------------------------------------------- its life
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether there is a program."""
+        return self._files is not None
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether it runs, or has run."""
+        return self._thread is not None
+
+    @property
+    def files(self) -> ProgramFiles:
+        """Its files; raises `Refused` before it is loaded."""
+        if self._files is None:
+            raise Refused("no program has been launched")
+        return self._files
+
+    @property
+    def tasks(self) -> tuple[TaskName, ...]:
+        """The tasks that run; none before it is loaded."""
+        return () if self._files is None else self.debugger.tasks
+
+    def load(self, file: Path, options: RunOptions) -> None:
+        """Read the program; what has to be said of it is an output. Raises `InputError`."""
+        said = io.StringIO()
+        try:
+            with contextlib.redirect_stderr(said), expected_errors():
+                self._program, self._setup = prepared_run(file, options, is_terminal=False)
+                self._program.start(self._setup.routine)
+        finally:
+            self.output(said.getvalue(), "console")
+        self._files = ProgramFiles(file, self._program)
+        self._file, self._options = file, options
+        self.debugger = Debugger(self._program, self._client, self._log)
+
+    def begin(self, prepare: Callable[[Debugger], None]) -> None:
+        """Run it; ``prepare`` is given the debugger of each run before its first statement."""
+        self._thread = Thread(target=self._run, args=(prepare,), daemon=True)
+        self._thread.start()
+
+    def restart(self) -> None:
+        """Begin anew once the run has ended; raises `Refused` where nothing runs."""
+        if self._thread is None or not self._thread.is_alive():
+            raise Refused("no program runs")
+        self._is_restarting = True
+
+    def pause(self) -> None:
+        """Stop it at the next statement; raises `Refused` before it is loaded."""
+        if not self.is_loaded:
+            raise Refused("no program has been launched")
+        self.debugger.pause()
+
+    def terminate(self) -> None:
+        """Leave the run, and begin no other."""
+        self._is_leaving = True
+        self.end()
+
+    def end(self) -> None:
+        """Leave the run, wherever it is."""
+        if self._stopped.is_set():
+            self._stopped.clear()
+            self._commands.put(Quit())
+        elif self._thread is not None:
+            self.debugger.pause()
+
+    def leave(self) -> None:
+        """End all, as the client has gone."""
+        self.terminate()
+        if self._thread is not None:
+            self._thread.join(1.0)
+
+    def go(self, command: Command) -> Json:
+        """Let the program go on, once the client has its answer; `Refused` where it runs."""
+        self.wait_for_stop()
+
+        def then() -> None:
+            self._stopped.clear()
+            self._commands.put(command)
+
+        return {"allThreadsContinued": True, "then": then}
+
+    def wait_for_stop(self) -> None:
+        """Raise `Refused` where the program runs, so that nobody looks into it."""
+        if not self._stopped.is_set():
+            raise Refused("the program runs")
+
+    def output(self, text: str, category: str) -> None:
+        """Show the client a text, if there is any."""
+        if text:
+            self._connection.event("output", category=category, output=text)
+
+    # ------------------------------------------------------------------------------- its thread
+
+    def _run(self, prepare: Callable[[Debugger], None]) -> None:
+        """Run the program, as often as it is restarted, and report its end."""
+        status = 2
+        try:
+            done = self._ran(prepare)
+            while self._is_restarting:
+                self._is_restarting = False
+                self.load(self._file, self._options)
+                done = self._ran(prepare)
+            if done is not None:
+                status = int(done.outcome.ending not in ("end", "halt"))
+                for line in run_notes(done, self._program, self._setup):
+                    self.output(line + "\n", "console")
+                self.output(f"{self._program.main.module.path}: {done.outcome}\n", "console")
+            else:
+                status = 0
+        except InputError as error:
+            self.output(f"{error}\n", "stderr")
+        except Exception as error:  # a defect of ours, which the client is told
+            self.output(f"a defect in krl itself, {type(error).__name__}: {error}\n", "stderr")
+        finally:
+            with contextlib.suppress(OSError, ValueError):  # the client may have gone
+                self._connection.event("exited", exitCode=status)
+                self._connection.event("terminated")
+
+    def _ran(self, prepare: Callable[[Debugger], None]) -> RunResult | None:
+        self.debugger = Debugger(self._program, self._client, self._log)
+        prepare(self.debugger)
+        with expected_errors():
+            return debugged_run(
+                self._program,
+                self._setup,
+                self.debugger,
+                lambda text: self.output(f"{text}\n", "console"),
+            )
+
+    def _client(self, debugger: Debugger, stop: Stop) -> Command:
+        """Wait for what the client wants, on the thread of the program."""
+        if self._is_leaving or self._is_restarting:
+            return Quit()
+        if (stop.reason == "entry" and not self.stops_on_entry) or (
+            stop.reason == "ended" and not self.stops_at_end
+        ):
+            return Go()
+        self.stop, self.variables = stop, Variables(debugger)
+        self._stopped.set()
+        body: Json = {"reason": _REASONS.get(stop.reason, stop.reason), "allThreadsStopped": True}
+        body["threadId"] = TASKS.index(stop.task) + 1
+        if stop.watch is not None:
+            change = f"{value_text(stop.before)} -> {value_text(stop.now)}"
+            body["description"] = body["text"] = f"{stop.watch.text}: {change}"
+        elif stop.text:
+            body["description"] = body["text"] = stop.text
+        if stop.reason == "refused":
+            self.output(f"{stop.text}\n", "important")
+        self._connection.event("stopped", **body)
+        return self._commands.get()
+
+    def _log(self, text: str) -> None:
+        self.output(f"{text}\n", "stdout")
+
+    # ------------------------------------------------------------------------------- its places
+
+    def task(self, arguments: Arguments) -> TaskName:
+        """The task of the thread that is meant, by default that of the robot."""
+        number = arguments.get("threadId", int, 1)
+        return (
+            TASKS[number - 1] if number in (1, 2) and TASKS[number - 1] in self.tasks else "robot"
+        )
+
+    def frame(self, arguments: Arguments) -> tuple[TaskName, int]:
+        """The frame that is meant, by default the one on top of what has stopped."""
+        number = arguments.get("frameId", int, 0)
+        if not number:
+            return self.stop.task, 0
+        thread, frame = divmod(number, FRAMES)
+        if thread == ARM:
+            return "robot", 0
+        task = TASKS[thread - 1] if thread in (1, 2) else "robot"
+        if task not in self.debugger.tasks or frame >= len(self.debugger.frames(task)):
+            raise Refused("there is no such frame")
+        return task, frame
+
+    def line_of(self, line: int) -> int:
+        """A line by what the client calls it; the first is 1."""
+        return line + 1 - self.first_line
+
+    def line_for(self, line: int) -> int:
+        """What the client calls a line."""
+        return line - 1 + self.first_line
