@@ -11,9 +11,12 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 import statistics
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +25,8 @@ from grammar.check.project_check import Reading, read_source
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.parser.lexer import Lexer
 from grammar.semantics.link import File, Project, link
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
 from grammar.syntax.build import builder
@@ -48,6 +53,7 @@ _CLOSERS = frozenset("ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH ENDSPLINE EN
 # A line is drawn again so often until a kind of mistake can be made in it.
 _TRIES = 200
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
+_WORD = re.compile(r"[A-Z_$][A-Z0-9_$]*", re.IGNORECASE)
 _LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
 
 
@@ -194,6 +200,7 @@ class _Checked:
     def __init__(self, programs: Mapping[str, _Program]) -> None:
         self.programs = dict(programs)
         self.findings: dict[str, Findings] = {}
+        self.names: dict[str, dict[int, str]] = {}
         self._check(programs)
         self.found = frozenset(check_project(self.findings.values()))
 
@@ -209,7 +216,32 @@ class _Checked:
         program = self.programs[module.path]
         if module.syntax is None:
             return Findings(program.reading.diagnostics, ())
-        return program.reading.completed(check_module(project, module, program.source).findings)
+        checked = check_module(project, module, program.source)
+        if module.path not in self.names:
+            self.names[module.path] = _names(checked.resolution)
+        return program.reading.completed(checked.findings)
+
+    def name_at(self, path: str, start: int) -> str:
+        """What the name is called for that begins there."""
+        program = self.programs[path]
+        text = program.source.text
+        key = _WORD.match(text, start)
+        assert key is not None, "a name begins there"
+        system = System.load()
+        known = system.variables, system.functions, system.types
+        if self._written[key[0].upper()] < 2 and not any(key[0].upper() in one for one in known):
+            return "nowhere else"
+        if text[start] == "$":
+            return "system variable"
+        if text[:start].rstrip().endswith("#"):
+            return "constant"
+        return self.names[path].get(start, "other")
+
+    @cached_property
+    def _written(self) -> Counter[str]:
+        """How often each word is written in the project, in upper case."""
+        texts = (program.source.text for program in self.programs.values())
+        return Counter(word.upper() for text in texts for word in _WORD.findall(text))
 
     def with_text(self, path: str, text: str) -> list[Diagnostic]:
         """The errors and warnings that are new once a file has another text."""
@@ -224,6 +256,16 @@ class _Checked:
         return [one for one in found if one not in self.found and one.severity != "note"]
 
 
+def _names(resolution: Resolution) -> dict[int, str]:
+    """What the names of a file are, by where they begin; constants are left out."""
+    components = dict.fromkeys((name.span[0] for name in resolution.unknown_members), "member")
+    open_ = {
+        use.name.span[0]: use.space.value if use.space else "member" for use in resolution.open_uses
+    }
+    known = {name: found for name in resolution.answers if (found := resolution.found(name))}
+    return components | open_ | {n.span[0]: found.symbol.kind.value for n, found in known.items()}
+
+
 # ------------------------------------------------------------------------------ the measure
 
 
@@ -232,13 +274,16 @@ def measure_planted(
     count: int,
     seed: int,
     *,
-    missing: float = 0.0,
+    missing: str = "0",
+    kinds: Sequence[str] = KINDS,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
     """Plant ``count`` mistakes in programs below ``roots``, each by itself.
 
-    ``missing`` is the share of files that are left out before, drawn by ``seed``; ``on_step`` is
-    called once a mistake. The record has for all of them and by kind: ``planted``, the shares
+    ``missing`` says which files are left out before: a share of them, drawn by ``seed``, ``"dat"``
+    for all data lists, ``"others"`` for each file alone. ``on_step`` is called once a mistake. The
+    record has for all of them, by kind, and for misspelt names by what they are called for, or
+    ``"nowhere else"`` for those that are written in no other place: ``planted``, the shares
     ``found`` and ``in_place``, and of the number of findings of a mistake that is found the
     ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors`` are
     the first that were not found, ``elsewhere`` those that were found in another place.
@@ -246,10 +291,9 @@ def measure_planted(
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
     chance = random.Random(seed)
-    projects = []
+    projects: list[_Checked] = []
     for whole in _projects(roots):
-        kept = [path for path in whole if not missing or chance.random() >= missing]
-        projects.append(_Checked({path: whole[path] for path in kept}))
+        projects += map(_Checked, _left(whole, missing, chance))
     places = [
         (project, path, lines)
         for project in projects
@@ -260,7 +304,7 @@ def measure_planted(
         raise IngestError("no line of these files can be damaged")
     trials = []
     for number in range(count):
-        trials.append(_trial(KINDS[number % len(KINDS)], places, chance))
+        trials.append(_trial(kinds[number % len(kinds)], places, chance))
         on_step()
     done = [trial for trial in trials if trial is not None]
     return {
@@ -270,11 +314,41 @@ def measure_planted(
         **_figures(done),
         "kinds": [
             {"kind": kind, **_figures([one for one in done if one["kind"] == kind])}
-            for kind in KINDS
+            for kind in kinds
         ],
+        "names": [
+            {"kind": kind, **_figures([one for one in done if one["name"] == kind])}
+            for kind in sorted({one["name"] for one in done} - {None})
+        ],
+        "unplanted": _unplanted(projects),
         "survivors": [one for one in done if not one["findings"]][:100],
         "elsewhere": [one for one in done if one["findings"] and not one["in_place"]][:100],
     }
+
+
+def _left(
+    whole: Mapping[str, _Program], missing: str, chance: random.Random
+) -> Iterator[dict[str, _Program]]:
+    """What is left of a project when files are missing."""
+    match missing:
+        case "others":
+            yield from ({path: program} for path, program in whole.items())
+        case "dat":
+            yield {path: one for path, one in whole.items() if not path.lower().endswith(".dat")}
+        case _:
+            share = float(missing)
+            kept = [path for path in whole if not share or chance.random() >= share]
+            yield {path: whole[path] for path in kept}
+
+
+def _unplanted(projects: Iterable[_Checked]) -> dict[str, Any]:
+    """The errors and warnings before anything is planted, by code, and the lines they are in."""
+    codes: Counter[str] = Counter()
+    lines = 0
+    for project in projects:
+        codes.update(f"{o.severity} {o.code}" for o in project.found if o.severity != "note")
+        lines += sum(len(program.source.lines) for program in project.programs.values())
+    return {"lines": lines, "codes": dict(sorted(codes.items()))}
 
 
 def _trial(
@@ -293,6 +367,7 @@ def _trial(
         likely = {line} if new else {line, _next_code(source, line)}
         return {
             "kind": kind,
+            "name": project.name_at(path, start) if kind == KINDS[0] else None,
             "path": path,
             "line": line,
             "was": source.text[start:end],

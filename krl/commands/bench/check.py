@@ -18,6 +18,17 @@ __all__ = ["check"]
 _PLANTED_FIGURES = ("planted", "found", "in_place", "median", "p95")
 
 
+def _missing(value: str) -> str:
+    """The value of ``--missing``, if it is one."""
+    try:
+        is_share = 0 <= float(value) < 1
+    except ValueError:
+        is_share = value in ("dat", "others")
+    if not is_share:
+        raise typer.BadParameter("a share below 1, 'dat' or 'others'")
+    return value
+
+
 def check(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
@@ -27,16 +38,21 @@ def check(
     ] = 120,
     seed: Annotated[int, typer.Option(metavar="N", help="Draws the mistakes.")] = 1,
     missing: Annotated[
-        float,
-        typer.Option(min=0, max=0.99, metavar="SHARE", help="Leave so many files out, by chance."),
-    ] = 0.0,
+        str,
+        typer.Option(
+            metavar="SHARE|dat|others",
+            help="Leave files out: so many by chance, all data lists, or all but each one.",
+            callback=_missing,
+        ),
+    ] = "0",
+    names: Annotated[bool, typer.Option(help="Plant nothing but misspelt names.")] = False,
 ) -> int:
     """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more.
 
     Then plant mistakes in the programs, drawn by chance, and see how many are found.
     """
     from grammar.bench.check_speed import measure_check, steps
-    from grammar.bench.planted_mistakes import measure_planted
+    from grammar.bench.planted_mistakes import KINDS, measure_planted
     from support.files.discovery import IngestError
 
     check_files(json_file)
@@ -47,8 +63,9 @@ def check(
             record = measure_check(roots, sizes=wanted, on_step=advance)
         if planted:
             with progress_bar("planting mistakes", planted) as advance:
+                kinds = KINDS[:1] if names else KINDS
                 record["planted"] = measure_planted(
-                    roots, planted, seed, missing=missing, on_step=advance
+                    roots, planted, seed, missing=missing, kinds=kinds, on_step=advance
                 )
     record = {"bench": "check", **record}
     write_json(record, json_file, indent=1)
@@ -79,11 +96,25 @@ def _print(record: Mapping[str, Any]) -> None:
     )
     console.print(phases_table(record))
     if "planted" in record:
-        kinds = [*record["planted"]["kinds"], {"kind": "all", **record["planted"]}]
+        planted = record["planted"]
+        for title, rows in (
+            ("planted mistakes", [*planted["kinds"], {"kind": "all", **planted}]),
+            ("misspelt names", planted["names"]),
+        ):
+            console.print(
+                figures(
+                    (title, "planted", "found", "in place", "findings, median", "p95"),
+                    [(row["kind"], *(_plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
+                )
+            )
+        before = planted["unplanted"]
         console.print(
             figures(
-                ("planted mistakes", "planted", "found", "in place", "findings, median", "p95"),
-                [(row["kind"], *(_plain(row[name]) for name in _PLANTED_FIGURES)) for row in kinds],
+                ("before planting", "findings", "per 1,000 lines"),
+                [
+                    (code, f"{count:,}", f"{1000 * count / before['lines']:.2f}")
+                    for code, count in before["codes"].items()
+                ],
             )
         )
     if record["scaling"]:

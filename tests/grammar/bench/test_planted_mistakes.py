@@ -74,7 +74,7 @@ def test_files_can_be_missing(tmp_path: Path) -> None:
     for number in range(20):
         text = CELL.replace("CELL", f"CELL{number}")
         (tmp_path / f"cell{number}.src").write_text(text, encoding="utf-8")
-    part = measure_planted([tmp_path], 9, 1, missing=0.5)
+    part = measure_planted([tmp_path], 9, 1, missing="0.5")
     assert 20 == measure_planted([tmp_path], 9, 1)["files"]
     assert 0 < part["files"] < 20
     assert 9 == part["planted"]
