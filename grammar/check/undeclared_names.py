@@ -33,7 +33,8 @@ class UnresolvedName:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
     ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
-    first place of ``count``. ``near`` are names seen there that it may be a slip of.
+    first place of ``count``. ``near`` are names seen there that it may be a slip of; it
+    ``is_swapped`` with one that the data list declares and the program does not use.
     ``is_all_read``: no file is missing that could declare it; ``is_certain``: the data list of the
     program is among those that are there.
     """
@@ -45,6 +46,7 @@ class UnresolvedName:
     count: int
     is_system: bool
     near: tuple[str, ...] = ()
+    is_swapped: bool = False
     is_all_read: bool = False
     is_certain: bool = False
 
@@ -100,18 +102,7 @@ def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]
     several = {key: some for key, some in uses.items() if len(some) > 1 and key[0] != "$"}
     if not several:
         return {}
-    used = {
-        answer.symbol
-        for name, answer in context.resolution.answers.items()
-        if isinstance(answer, Found) and answer.symbol.span != name.span
-    }
-    tables = (context.table.table, *(routine.table.table for routine in context.routines))
-    unused = {
-        symbol.key: symbol
-        for table in tables
-        for symbol in table.spaces[Space.VALUE].values()
-        if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT) and symbol not in used
-    }
+    unused = _unused(context, _own_tables(context))
     typos = Typos(symbol.name for symbol in unused.values())
     found = {}
     for key, some in several.items():
@@ -121,6 +112,25 @@ def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]
             if symbol is not None:
                 found[key] = symbol, some[0].name.text, len(some)
     return found
+
+
+def _own_tables(context: Context) -> tuple[Table, ...]:
+    return context.table.table, *(routine.table.table for routine in context.routines)
+
+
+def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
+    """The variables of some tables that the file does not use, by their names in upper case."""
+    used = {
+        answer.symbol
+        for name, answer in context.resolution.answers.items()
+        if isinstance(answer, Found) and answer.symbol.span != name.span
+    }
+    return {
+        symbol.key: symbol
+        for table in tables
+        for symbol in table.spaces[Space.VALUE].values()
+        if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT) and symbol not in used
+    }
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
@@ -227,6 +237,10 @@ def _names(table: Table, space: Space, access: Access | None = None) -> Iterator
 _MOST_SLIPS = 2
 # So many names that are near one and the same are a series.
 _SERIES = 3
+# Two names of so many letters that are one slip apart and used once each are one.
+_LONG = 6
+# So many names that nothing declares are mistakes; of more, what declares them is missing.
+_MOST_LOST = 3
 # Data that more modules use were declared in a file that has gone, rather than nowhere.
 _MOST_MODULES = 2
 
@@ -243,7 +257,9 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
         if _may_be_elsewhere(use):
             uses.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
-    return (*_members(context), *_others(context, uses, own))
+    data = context.project.data_of(context.module)
+    unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
+    return (*_members(context), *_others(context, uses, own, unused))
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
@@ -269,21 +285,23 @@ def _others(
     context: Context,
     uses: Mapping[tuple[Space, str], Sequence[Use]],
     own: Callable[[Space], Typos],
+    unused: Mapping[str, Symbol],
 ) -> Iterator[UnresolvedName]:
-    yield from (
-        UnresolvedName(
+    is_certain = context.data is not None or context.project.data_of(context.module) is not None
+    for (space, key), some in uses.items():
+        near = _near(context, own, some[0])
+        yield UnresolvedName(
             space,
             some[0].name.text,
             context.source.path,
             Region.of(context.source, some[0].name.span),
             len(some),
             space is Space.VALUE and key.startswith("$"),
-            _near(context, own, some[0]),
+            near,
+            space is Space.VALUE and len(near) == 1 and near[0].upper() in unused,
             _is_all_read(context, some[0]),
-            context.data is not None or context.project.data_of(context.module) is not None,
+            is_certain,
         )
-        for (space, key), some in uses.items()
-    )
 
 
 #: What is written in every program, so that one slip away from it there is nothing else.
@@ -349,35 +367,51 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
 
     An error in each file for what nothing declares though all that could is read; a warning for
     what is a slip of a name that is seen there, or that is used again and again and comes from
-    elsewhere itself; one note for each name that remains.
+    elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
+    is a slip, what declares them is missing, so that these are notes, too.
     """
     uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
-    usual = {
-        space: Typos(name for (at, name), n in counts.items() if at is space and n > 1)
+    used = {
+        space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
         for space in _SLUGS
     }
+    ranks = {key: (counts[key], -number) for number, key in enumerate(uses)}
     meant = {
         (space, name): some[0].near
         or tuple(
             near
-            for near in usual[space].meant(name)
-            if counts[space, near.upper()] > counts[space, name]
+            for near in used[space].meant(some[0].name)
+            if _is_usual(ranks[space, near.upper()], ranks[space, name], near)
         )
         for (space, name), some in uses.items()
     }
     series = Counter(name for names in meant.values() for name in names)
+    lost: dict[bool, list[tuple[Space | None, str]]] = {True: [], False: []}
+    slips = {}
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)
-        count = counts[key]
-        is_slip = bool(near) and count <= (_MOST_SLIPS if key[0] else 1)
-        if is_slip or (all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES):
+        is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
+        if near and (is_rare or any(one.is_swapped for one in some)):
+            slips[key] = near
+        elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
+            lost[all(one.is_certain for one in some)].append(key)
+    told = slips | {key: () for keys in lost.values() if len(keys) <= _MOST_LOST for key in keys}
+    for key, some in uses.items():
+        if key in told:
             for reference in some:
-                yield _undeclared(reference, near)
+                yield _undeclared(reference, told[key])
         elif key[0]:
-            yield _from_elsewhere(some, count)
+            yield _from_elsewhere(some, counts[key])
+
+
+def _is_usual(near: tuple[int, int], wrong: tuple[int, int], name: str) -> bool:
+    """Whether a name is the right one of two: it is used more often, or both once and it first."""
+    if near[0] == wrong[0]:
+        return near[0] == 1 and len(name) >= _LONG and near > wrong
+    return near > wrong
 
 
 def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.did_you_mean import nearest
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
 from grammar.diagnostics.line_edits import (
@@ -136,11 +137,38 @@ def _unexpected(site: ErrorSite) -> _Mistake:
         return _Mistake(f"an operator is missing between {before} and {_shown(site)}")
     if words == "the end of the line" and site.place > 0:
         return _Mistake(f"{_shown(site)} is too much on this line")
-    return _Mistake(
-        f"{_shown(site)} cannot stand here", reason=f"expected: {words}" if words else ""
-    )
+    return _misplaced(site, words)
 
 
+def _misplaced(site: ErrorSite, words: str) -> _Mistake:
+    """What is wrong with a token in its place, ``words`` being what could have stood there."""
+    shown, text, reason = _shown(site), site.text, f"expected: {words}" if words else ""
+    before = site.tokens[site.place - 1][0] if site.place else ""
+    if not before:
+        if site.expects("HALT") and not _BEGINNING.match(text):
+            return _Mistake(f"no statement begins with {shown}", reason=reason)
+    elif text in _OPENED and site.words[: site.place].count(_OPENED[text]) <= site.words[
+        : site.place
+    ].count(text):
+        return _Mistake(f"{shown} closes nothing", site.swap("", site.place), reason)
+    elif text in statements() and site.expects("="):
+        return _Mistake(f"{shown} stands at the beginning of its line", reason=reason)
+    elif text in (",", "}") and site.expects("INTEGER", "ENUM_CONSTANT"):
+        return _Mistake(f"{before} has no value", reason=reason)
+    elif "THEN" in site.words and site.expects("="):
+        return _Mistake(f"THEN belongs to IF, and this line begins with {site.tokens[0][0]}")
+    elif site.expects("="):
+        return _Mistake(f"= is missing before {shown}", reason=reason)
+    if near := nearest(site.failure.text, filter(str.isalpha, site.failure.expected[:_FEW]), 1):
+        return _Mistake(f"{shown} is no word of KRL", Fix(f"did you mean {near[0]}?"), reason)
+    if words and not site.expects("NEWLINE") and len(site.failure.expected) <= _FEW:
+        return _Mistake(f"{words} is missing before {shown}")
+    return _Mistake(f"{shown} cannot stand here", reason=reason)
+
+
+_OPENED = {")": "(", "]": "[", "}": "{"}
+# Of so many tokens each is told.
+_FEW = 12
 _ENDS_VALUE = re.compile(r"[\w\])]$")
 
 

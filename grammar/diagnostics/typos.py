@@ -19,11 +19,13 @@ __all__ = ["Series", "Typos"]
 _SHORTEST = 4
 _LONGEST = 64
 # A word of a name: letters, or what is no letter.
-_WORD = re.compile(r"[A-Z]+|[^A-Z]+")
+_WORD = re.compile(r"[A-Z]+|[^A-Z]+", re.IGNORECASE)
 # Both are there in every library.
 _PAIR = {"GET", "SET"}
 # A letter behind a shorter word may number it: POSX, POSY.
 _SHORTEST_TO_END = 6
+# What inline forms put before the name of a point to name its data: XP1, FP1, PPDAT1, LCPDAT1.
+_PREFIXES = frozenset("XFPL")
 
 
 class Series(Enum):
@@ -68,13 +70,13 @@ class Typos:
     def meant(self, name: str) -> tuple[str, ...]:
         """The names that ``name`` may be a slip of, in the order of the alphabet."""
         wrong = name.upper()
-        if not self._shortest <= len(wrong) <= _LONGEST:
+        if not self._shortest <= len(wrong) + 1 <= _LONGEST:
             return ()
         near = {
             right
             for shorter in _shortened(wrong)
             for right in self._keys.get(shorter, ())
-            if right != wrong and _is_slip(wrong, right, self._names[right][1])
+            if right != wrong and _is_slip(name, *self._names[right])
         }
         return tuple(self._names[right][0] for right in sorted(near))
 
@@ -85,8 +87,9 @@ def _shortened(key: str) -> Iterator[str]:
         yield key[:index] + key[index + 1 :]
 
 
-def _is_slip(wrong: str, right: str, series: Series) -> bool:
-    """Whether two names in upper case that share a key are one slip apart, and in no series."""
+def _is_slip(misspelt: str, name: str, series: Series) -> bool:
+    """Whether two names that share a key are one slip apart, and in no series."""
+    wrong, right = misspelt.upper(), name.upper()
     pairs = enumerate(zip(wrong, right, strict=False))
     start = next((i for i, (a, b) in pairs if a != b), min(len(wrong), len(right)))
     if len(wrong) != len(right):
@@ -96,26 +99,65 @@ def _is_slip(wrong: str, right: str, series: Series) -> bool:
         if series is Series.NONE:
             return True
         letter = longer[start]
+        if letter == "S" and start == len(shorter):
+            return False  # one of several, and all of them
         if longer is wrong and letter.isalpha() and letter == shorter[start - 1 : start]:
             return True  # a letter doubled
-        return start > 0 and not _numbers(longer, start, series, _SHORTEST_TO_END)
+        if start == 0:
+            return longer is right and _loses_its_first(name, series)
+        spelt = misspelt if longer is wrong else name
+        return not _numbers(spelt, start, series, _SHORTEST_TO_END)
     if wrong[start + 1 :] == right[start + 1 :]:
         if series is Series.NONE:
             return True
+        if _is_prefix(misspelt, name, start):
+            return False
+        if series is Series.DIGITS:
+            return not (wrong[start].isdigit() and right[start].isdigit())
         if {wrong[start : start + 3], right[start : start + 3]} == _PAIR:
             return False
-        return not (_numbers(wrong, start, series) or _numbers(right, start, series))
+        return not (_numbers(misspelt, start, series) or _numbers(name, start, series))
     swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
-    return wrong[start:] == swapped and swapped[:2].replace("_", "").isalpha()
+    return wrong[start:] == swapped and not any(map(str.isdigit, swapped[:2]))
+
+
+def _is_capitalised(name: str) -> bool:
+    return name[:1].isupper() and name[1:2].islower()
+
+
+def _is_prefix(misspelt: str, name: str, index: int) -> bool:
+    """Whether a letter of a name says what it is: xHome and fHome, I_START and O_START."""
+    if name[0] == "$" and index == 0:
+        return misspelt[0].islower() and misspelt[1:2].isupper()
+    if index == 0:
+        return not _is_capitalised(name) or {misspelt[0].upper(), name[0]} <= _PREFIXES
+    return name[index - 1] == "_" and name[index + 1 : index + 2] in ("", "_")
+
+
+def _loses_its_first(name: str, series: Series) -> bool:
+    """Whether a name without its first letter is no name of its own: that is no prefix."""
+    if series is not Series.DIGITS or name[0].islower() or len(name) <= _SHORTEST_TO_END:
+        return _is_capitalised(name)
+    return name[0] not in _PREFIXES
 
 
 def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) -> bool:
     """Whether the character at an index numbers the name: a digit, or the last of a word.
 
-    The last letter of a word with so many letters numbers nothing.
+    The last letter of a word with so many letters numbers nothing, nor does a small one behind
+    another in a name that has capitals too.
     """
     if series is Series.DIGITS or name[index] == "_":
         return name[index].isdigit()
     word = next(word for word in _WORD.finditer(name) if word.start() <= index < word.end())
-    is_last = index == word.end() - 1
-    return not word.group().isalpha() or (is_last and len(word.group()) < shortest)
+    if not word.group().isalpha():
+        return True
+    if (
+        len(word.group()) >= _SHORTEST
+        and name[index - 1 : index + 1].islower()
+        and not name.islower()
+    ):
+        return False
+    if index != word.end() - 1:
+        return False
+    return len(word.group()) < shortest or (name[index].isupper() and name[index - 1].islower())

@@ -143,6 +143,10 @@ _OPENER = re.compile(
     _FLAGS,
 )
 
+# DEF with a slip of the finger, of which that alone would make a whole program other text.
+_MISSPELT_OPENER = re.compile(
+    r"(?:GLOBAL\s+)?(?:\w?DE\w?|\w?EF\w?|\w?D\w?F\w?|EDF)\s+[\w$]+\s*\([^;()]*\)\s*(?:;|\Z)", _FLAGS
+)
 _HEADER = re.compile(r"&(?:ACCESS|REL|COMMENT|PARAM|USER)\b", _FLAGS)
 _FOLD = re.compile(r";\s{0,9}(?:END)?FOLD\b", _FLAGS)
 _SYSTEM = (  # `$` starts a variable in Perl, PHP and PowerShell too: these are set in programs
@@ -209,6 +213,8 @@ def _why_not_krl(text: str) -> str | None:
         if len(lines) == EVIDENCE_LINES:
             return f"no statements in {_extent(lines)}, only header and comment lines"
         return "no statements, only header, comment or blank lines"
+    if _MISSPELT_OPENER.match(code[0]) and _SHARED.match(code[-1]):
+        return None
     krl = sum(bool(_STATEMENT.match(line)) for line in code)
     signs = krl + sum(bool(_HEADER.match(line) or _FOLD.match(line)) for line in lines)
     # One line may look like KRL by chance; a data table of a thousand lines holds two of them.

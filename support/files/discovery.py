@@ -201,6 +201,7 @@ def _walk(root: _Root, others: frozenset[Path]) -> Iterator[_Place]:
         yield _Place(root.shown, root.real, _origin(root.real.parent), problem=problem)
         return
     pending = [_Place(root.shown, root.real, _origin(root.real), folder=True)]
+    is_collection = False
     while pending:  # not recursive: folders may be nested deeper than Python's stack
         place = pending.pop()
         if not place.folder or place.problem:
@@ -212,8 +213,11 @@ def _walk(root: _Root, others: frozenset[Path]) -> Iterator[_Place]:
         except OSError as error:
             yield replace(place, problem=f"folder cannot be read: {archives.why(error)}")
             continue
-        if place.real == root.real and not _is_backup(listed):
-            place = replace(place, names_origins=True)
+        if place.real == root.real:
+            is_collection = not _is_backup(listed)
+            place = replace(place, names_origins=is_collection and not _has_programs(listed))
+        elif is_collection and place.real.parent == root.real and _is_backup(listed):
+            place = replace(place, origin=_origin(place.real))
         below = [found for entry in listed for found in _at(entry, place)]
         if _is_corpus(listed):
             below = [
@@ -266,6 +270,11 @@ def _is_backup(listed: list[os.DirEntry[str]]) -> bool:
         or is_drive(names)
         or any((c / "KRC").is_dir() for c in drives)
     )
+
+
+def _has_programs(listed: list[os.DirEntry[str]]) -> bool:
+    """Tell whether programs lie in a folder itself, so that those in its folders belong to them."""
+    return any(entry.name.lower().endswith(SUFFIXES) for entry in listed)
 
 
 def _is_corpus(listed: list[os.DirEntry[str]]) -> bool:

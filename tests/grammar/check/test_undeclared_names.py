@@ -172,3 +172,36 @@ def test_a_program_without_its_list_is_not_certain(
         [one.severity for one in found if one.code == "KRL101"] for found in (without, whole)
     ]
     assert [["warning"], ["error"]] == severities
+
+
+def test_many_names_that_nothing_declares_are_missed_not_misspelt(agrees: Agrees) -> None:
+    """More than a few unknown names mean that what declares them is missing; a slip is told yet."""
+    cell = """DEF CELL()
+  GRIPED = 1 ;> KRL101
+  WHITE = 1 ;> KRL701-
+  YELLOW = 1 ;> KRL701-
+  ORANGE = 1 ;> KRL701-
+  PURPLE = 1 ;> KRL701-
+  PACKAGE_CALL(1) ;> KRL701-
+END"""
+    data = "DEFDAT CELL\nDECL INT GRIPPED=0\nENDDAT\n"
+    files = {"R1/System/$config.dat": CONFIG, "R1/cell.dat": data, "R1/cell.src": cell}
+    agrees(files, is_complete=None)
+
+
+def test_two_names_that_are_used_once_each_and_one_slip_apart(agrees: Agrees) -> None:
+    """Where nothing declares either the second is told, but not of names that people pair."""
+    cell = """DEF CELL() ;> KRL702-
+  CONVEYOR = 1 ;> KRL701-
+  CONVEOYR = 1 ;> KRL101?
+  LEFT_A = 1 ;> KRL701-
+  LEFT_B = 1 ;> KRL701-
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
+    """What the program uses often and its list does not have is one slip away from what it has."""
+    data = "DEFDAT CELL\nDECL INT RECIEVED=0\nENDDAT\n"
+    lines = ["DEF CELL()", "RECEIVED = 1 ;> KRL101?", *["RECEIVED = 2"] * 4, "END"]
+    agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)

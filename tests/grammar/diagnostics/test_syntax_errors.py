@@ -214,9 +214,25 @@ def test_the_end_of_the_file() -> None:
 
 def test_expected_is_told_in_words() -> None:
     """Without a name for the mistake, what could have stood there is told."""
-    found = only("WAIT 5")
-    assert ("5 cannot stand here", "expected: FOR or SEC") == (found.message, found.reason)
+    assert "FOR or SEC is missing before 5" == only("WAIT 5").message
     assert "a value is missing behind +" == only("N = 1 +").message
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("= 5", 'no statement begins with "="'),
+        ("XHOME PTP", "PTP stands at the beginning of its line"),
+        ("N 5 =", "= is missing before 5"),
+        ("I N THEN", "THEN belongs to IF, and this line begins with I"),
+        ("N = {X 1,Y ,Z 3}", "Y has no value"),
+        ("N = {X 1,Y 2Z 3}", '"," or "}" is missing before Z'),
+        ("WAIT FOR N == 1 )", '")" closes nothing'),
+    ],
+)
+def test_what_is_out_of_place(line: str, message: str) -> None:
+    """What is in the wrong place, or lacks something before it, is told as such."""
+    assert message == only(line).message
 
 
 @pytest.mark.parametrize(

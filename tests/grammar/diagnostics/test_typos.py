@@ -18,6 +18,9 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("COUNTT", "COUNT"),
         ("vrogabe", "Vorgabe"),
         ("PARTSS_1", "PARTS_1"),
+        ("hangeStation", "ChangeStation"),
+        ("XApp2Plac", "XApp2Place"),
+        ("T$IMER_STOP", "$TIMER_STOP"),
     ],
 )
 def test_slips(wrong: str, right: str) -> None:
@@ -32,6 +35,12 @@ def test_slips(wrong: str, right: str) -> None:
         ("PickA_1", "PickB_1"),
         ("O_START", "I_START"),
         ("XHOME", "HOME"),
+        ("xHome", "fHome"),
+        ("Xhome", "Fhome"),
+        ("rLeafY75", "rLeaf75"),
+        ("ldatIdle", "pdatIdle"),
+        ("Offset_dz_1", "Offset_dy_1"),
+        ("EVENT_TYPES", "EVENT_TYPE"),
         ("count1", "count"),
         ("VEL", "VEX"),
         ("EKI_GetInt", "EKI_SetInt"),

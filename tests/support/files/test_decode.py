@@ -141,6 +141,8 @@ def test_digest_is_sha256() -> None:
         "DEFDAT A PUBLIC\nENDDAT",
         "DEFDAT $CONFIG\nENDDAT",
         "DEFTP A()\nEND",
+        "DEG A()\nEND",
+        "DFE A(X:IN)\nB()\nEND",
         "&ACCESS RVO\n&REL 3\n;a comment\n\nDEFDAT  A\nENDDAT",
         "DEF {{name}}()\n{{body}}\nEND",
         "\n" * 5000 + "DEF A()\nEND",

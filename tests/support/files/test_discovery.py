@@ -213,9 +213,15 @@ def test_every_candidate_is_found_exactly_once(names: set[tuple[str, str, str]])
 
 
 def test_folders_below_a_root_are_origins(tmp_path: Path) -> None:
-    """The first folder below a root is the origin; files in the root have the root's name."""
+    """The first folder below a root is the origin."""
+    lay(tmp_path / "cells", "one/KRC/a.src", "two/deep/er/b.src")
+    assert {"a.src": "one", "b.src": "two"} == origins(tmp_path / "cells")
+
+
+def test_folders_beside_programs_belong_to_them(tmp_path: Path) -> None:
+    """Where files lie in the root itself only a backup below it is an origin of its own."""
     lay(tmp_path / "cells", "one/KRC/a.src", "two/deep/er/b.src", "c.src")
-    expected = {"a.src": "one", "b.src": "two", "c.src": "cells"}
+    expected = {"a.src": "one", "b.src": "cells", "c.src": "cells"}
     assert expected == origins(tmp_path / "cells")
 
 
