@@ -80,6 +80,23 @@ def test_files_can_be_missing(tmp_path: Path) -> None:
     assert 9 == part["planted"]
 
 
+def test_data_lists_or_all_other_files_can_be_missing(tmp_path: Path) -> None:
+    """Alone, a program does not have the data list that its names are one slip away from."""
+    (tmp_path / "cell.src").write_text("DEF CELL()\n  GRIPPED = 1\nEND\n", encoding="utf-8")
+    data = "DEFDAT CELL\nDECL INT GRIPPED=0\nENDDAT\n"
+    (tmp_path / "cell.dat").write_text(data, encoding="utf-8")
+    kinds = KINDS[:1]
+    whole, alone = (
+        measure_planted([tmp_path], 12, 5, missing=missing, kinds=kinds)
+        for missing in ("0", "others")
+    )
+    assert 1 == measure_planted([tmp_path], 12, 5, missing="dat", kinds=kinds)["files"]
+    assert 2 == whole["files"] == alone["files"]
+    assert "variable" in {row["kind"] for row in whole["names"]}
+    assert {"nowhere else"} == {row["kind"] for row in alone["names"]}
+    assert whole["found"] > alone["found"]
+
+
 def test_a_mistake_that_nothing_finds_is_a_survivor(tmp_path: Path) -> None:
     """Nothing is found where every name may come from elsewhere, and the record says which."""
     text = "DEF CELL()\n  AXXX = BYYY + CZZZ\nEND\n"
