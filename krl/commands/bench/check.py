@@ -40,8 +40,9 @@ def check(
     missing: Annotated[
         str,
         typer.Option(
-            metavar="SHARE|dat|others",
-            help="Leave files out: so many by chance, all data lists, or all but each one.",
+            metavar="WHAT",
+            help="Leave files out: a share by chance, 'dat' for all data lists, 'others' for all "
+            "but each one.",
             callback=_missing,
         ),
     ] = "0",
