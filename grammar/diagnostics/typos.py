@@ -99,10 +99,10 @@ def _is_slip(misspelt: str, name: str, series: Series) -> bool:
         if series is Series.NONE:
             return True
         letter = longer[start]
-        if letter == "S" and start == len(shorter):
-            return False  # one of several, and all of them
         if longer is wrong and letter.isalpha() and letter == shorter[start - 1 : start]:
             return True  # a letter doubled
+        if longer is wrong and letter == "S" and start == len(shorter):
+            return False  # one of several, and all of them
         if start == 0:
             return longer is right and _loses_its_first(name, series)
         spelt = misspelt if longer is wrong else name
@@ -128,7 +128,7 @@ def _is_capitalised(name: str) -> bool:
 def _is_prefix(misspelt: str, name: str, index: int) -> bool:
     """Whether a letter of a name says what it is: xHome and fHome, I_START and O_START."""
     if name[0] == "$" and index == 0:
-        return misspelt[0].islower() and misspelt[1:2].isupper()
+        return misspelt[1:] != name[1:] and misspelt[0].islower() and misspelt[1:2].isupper()
     if index == 0:
         return not _is_capitalised(name) or {misspelt[0].upper(), name[0]} <= _PREFIXES
     return name[index - 1] == "_" and name[index + 1 : index + 2] in ("", "_")

@@ -53,7 +53,7 @@ def test_series_are_no_slips(one: str, other: str) -> None:
     assert () == Typos([one]).meant(other)
 
 
-@pytest.mark.parametrize("wrong", ["$POS_AC", "$POS_ACX", "$POSS_ACT", "?POS_ACT"])
+@pytest.mark.parametrize("wrong", ["$POS_AC", "$POS_ACX", "$POSS_ACT", "?POS_ACT", "gPOS_ACT"])
 def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
     """Where all of a series would be known, its letters may be slips and its digits not."""
     known = Typos(["$POS_ACT", "$LOAD_A2"], series=Series.DIGITS)
