@@ -49,17 +49,23 @@ class Prepared:
     """A program for executors of any kind: compiled and verified where one needs it, and once.
 
     ``routine`` is what it begins with, by default the first one of its first file. ``notes`` says
-    why the machine runs a program that native code was asked for.
+    why the machine runs a program that native code was asked for. Where it ``is_kept`` what was
+    verified is kept for the user: not where code may differ from its files, as with mutants.
     """
 
-    def __init__(self, program: CheckedProgram, routine: str | None = None) -> None:
+    def __init__(
+        self, program: CheckedProgram, routine: str | None = None, *, is_kept: bool = False
+    ) -> None:
         self.program = program
         self.routine = routine
+        self._is_kept = is_kept
         self.notes: list[str] = []
 
     @cached_property
     def verified(self) -> Verified:
         """As bytecode that was verified; raises `LinkError`."""
+        if not self._is_kept:
+            return self._verified()
         program = self.program
         units = program.units.values()
         texts = (text for unit in units for text in (unit.module.path, unit.source.text))

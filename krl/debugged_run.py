@@ -18,7 +18,7 @@ def debugged_run(
 
     ``on_message`` takes each message of the program once, though going back runs it again.
     """
-    prepared = Prepared(program, setup.routine)
+    prepared = Prepared(program, setup.routine, is_kept=True)
 
     def take(event: TraceEvent) -> None:
         if event.kind == "message" and not debugger.is_repeating:

@@ -36,15 +36,18 @@ from grammar.semantics.types import (
     FINE,
     INT,
     REAL,
+    SCALARS,
     UNKNOWN,
     Aggregate,
     Array,
     Constant,
     Enumeration,
     Member,
+    Scalar,
     Structure,
     Text,
     Type,
+    Unknown,
     Verdict,
     is_position,
 )
@@ -498,3 +501,9 @@ def test_a_verdict_without_rules_is_sure() -> None:
     assert not Verdict(False, ("ARI-11",), "").is_unconfirmed
     assert bool(FINE)
     assert CIRC != IPO
+
+
+@pytest.mark.parametrize("one", [*SCALARS.values(), UNKNOWN])
+def test_there_is_one_of_each_scalar_type(one: Scalar | Unknown) -> None:
+    """Also where it was read from a file: the check compares them by identity."""
+    assert pickle.loads(pickle.dumps(one)) is one
