@@ -9,9 +9,17 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import count
 from platform import node
+from types import MappingProxyType
 from typing import Any, Final
 
-from conformance.differential.construct_coverage import Counts, counted, language, missing
+from conformance.differential.construct_coverage import (
+    Counts,
+    Needs,
+    counted,
+    language,
+    missing,
+    reached,
+)
 from conformance.differential.divergence import Difference, Files, diverged, prepared
 from conformance.differential.reduction import reduce_program
 from conformance.differential.runs import EXECUTORS, Prepared, is_available, trace_of
@@ -45,7 +53,10 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What a campaign gave; ``ends`` is how programs ended, by the word for it."""
+    """What a campaign gave; ``ends`` is how programs ended, by the word for it.
+
+    ``counts`` has how many programs reached each of the ``rules``, under the kind "rule".
+    """
 
     programs: int
     seed: int
@@ -54,6 +65,7 @@ class Findings:
     counts: Counts
     ends: Counter[str]
     facts: int
+    rules: Needs
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +76,7 @@ class _Shard:
     first: int
     end: int
     executors: tuple[str, ...]
+    rules: Needs
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,18 +99,19 @@ def fuzz(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
+    rules: Needs = MappingProxyType({}),
 ) -> Findings:
     """Run so many programs on executors, of which the first is the reference.
 
     ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
     address; reducing what was found is left to the process that asks. ``on_done`` is called with
-    how many programs were done since the last call. The result depends on ``programs``, ``seed``
-    and ``executors`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker
+    how many programs were done since the last call. Of ``rules`` is counted how many programs reach
+    them. The result depends on ``programs``, ``seed``, ``executors`` and ``rules`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker
     has not these executors.
     """
     names = tuple(executors)
     shards = [
-        _Shard(seed, first, min(first + _SHARD, programs), names)
+        _Shard(seed, first, min(first + _SHARD, programs), names, dict(rules))
         for first in range(0, programs, _SHARD)
     ]
     findings: list[Finding] = []
@@ -117,7 +131,7 @@ def fuzz(
         _reduced(one, seed, names[0]) if place < _MOST_REDUCED else one
         for place, one in enumerate(findings)
     ]
-    return Findings(programs, seed, names, tuple(reduced), counts, ends, facts)
+    return Findings(programs, seed, names, tuple(reduced), counts, ends, facts, rules)
 
 
 #: Counts the shards that this process has run.
@@ -164,7 +178,9 @@ def _run_all(shard: _Shard) -> _Outcome:
             where = diverged(program, name, expected, world)
             if where is not None:
                 found.findings.append(Finding(number, where, files))
-        found.counts.update(counted(program, expected))
+        executed = counted(program, expected)
+        found.counts.update(executed)
+        found.counts.update(("rule", rule) for rule in reached(shard.rules, executed))
         found.ends[str(expected[-1][0])] += 1
         facts += len(expected)
     return _Outcome(found.findings, found.counts, found.ends, facts)
@@ -226,4 +242,5 @@ def record_of(found: Findings, seconds: float) -> dict[str, Any]:
             for kind, names in language().items()
         },
         "missing": missing(found.counts),
+        "rules": {rule: found.counts["rule", rule] for rule in found.rules},
     }

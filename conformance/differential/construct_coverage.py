@@ -1,29 +1,34 @@
 """What of the language programs exercise: what stands on lines that were executed.
 
-Counted are kinds of nodes and their variants, operators, predefined functions, and the instructions
-that lines were compiled to. `language` lists what there is of each, so that what
-never occurred can be reported.
+Counted are kinds of nodes and their variants, operators, predefined functions, system variables,
+and the instructions that lines were compiled to. `language` lists what there is of most, so that what
+never occurred can be reported. A program reaches a rule, or a clause of one, when it executes all
+that every conformance case of it uses (`needs`); that it does what the rule says is another matter.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, get_args
 
 from conformance.differential.runs import Prepared
 from conformance.differential.traces import Fact, place_of
+from conformance.suite.case import Case
 from grammar.semantics.operations import ARITHMETIC, BITWISE, EQUALITY, LOGICAL, ORDER
 from grammar.syntax import ast
+from grammar.syntax.build import read_module
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.values.builtins import BUILTINS
 from interp.values.faults import FAULTS, LinkError
 
-__all__ = ["Counts", "counted", "language", "missing"]
+__all__ = ["Counts", "Needs", "counted", "language", "missing", "needs", "reached"]
 
 #: How often each thing occurred, by its kind and its name.
 Counts = Counter[tuple[str, str]]
+#: What a program has to execute to reach a rule or clause, by its ID.
+Needs = Mapping[str, frozenset[tuple[str, str]]]
 
 _MOTIONS: Final = (
     "PTP LIN CIRC PTP_REL LIN_REL CIRC_REL ASYPTP SPTP SLIN SCIRC SPL SPTP_REL SLIN_REL SCIRC_REL"
@@ -64,6 +69,30 @@ def missing(counts: Counts) -> dict[str, list[str]]:
         for kind, names in language().items()
     }
     return {kind: names for kind, names in found.items() if names}
+
+
+def needs(cases: Iterable[Case]) -> Needs:
+    """What all cases that run use which rest on the same rule or clause, where this is anything."""
+    found: dict[str, frozenset[tuple[str, str]]] = {}
+    for case in cases:
+        if case.phase == "run":
+            used = frozenset(_used(case))
+            found[case.basis] = found.get(case.basis, used) & used
+    return {rule: used for rule, used in sorted(found.items()) if used}
+
+
+def _used(case: Case) -> Iterator[tuple[str, str]]:
+    for source in case.sources:
+        module = read_module(source.text, source.path)
+        if not isinstance(module, list) and isinstance(module.content, ast.Program):
+            for routine in module.content.routines:
+                for node in walk(routine):
+                    yield from _of(node)
+
+
+def reached(rules: Needs, counts: Counts) -> Iterator[str]:
+    """The rules and clauses that a program has reached which has executed all this."""
+    return (rule for rule, used in rules.items() if used <= counts.keys())
 
 
 def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
@@ -122,6 +151,8 @@ def _of(node: ast.Node) -> Iterator[tuple[str, str]]:
             yield "operator", f"sign {node.operator}" if is_sign else node.operator
         case ast.Call() if node.name.key in BUILTINS:
             yield "function", node.name.key
+        case ast.Variable() if node.name.text.startswith("$"):
+            yield "variable", node.name.key
     for name in _variants(node):
         yield "variant", name
 

@@ -40,26 +40,42 @@ __all__ = [
     "uses_of",
 ]
 
-#: What decides semantics, by the name under which it is reported: modules, and those left out. Left
-#: out is what no program of KRL can tell apart: how a run is fed, recorded and shown, what another
-#: caller than a controller uses, and what only one of the robots needs.
+#: What decides semantics, by the name under which it is reported: modules, and which of them or of
+#: their functions are left out. Left out is what no program of KRL can tell apart: how a run is fed,
+#: recorded and shown, what another caller than a controller uses, and what only one of the robots
+#: needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
-    # left out: how values are written in traces
-    "values": (("interp.values.*",), ("interp.values.json_form",)),
-    "tree": (("interp.tree.*",), ()),
-    # left out: the cell around the controller, and how a run is recorded
+    # left out: how values are written in traces, and equality, which tests alone ask for
+    "values": (("interp.values.*",), ("interp.values.json_form", "*.__eq__")),
+    # left out: what a debugger asks of a program that stands
+    "tree": (
+        ("interp.tree.*",),
+        (
+            "interp.tree.designators.Designators.look",
+            *(
+                f"interp.tree.executor.TreeExecutor.{name}"
+                for name in ("ask_at", "frames", "look", "put", "select")
+            ),
+        ),
+    ),
+    # left out: the cell around the controller, how a run is recorded, and what is looked up of one
+    # that has come to its end or stands
     "controller": (
         ("interp.controller.*",),
         (
             "interp.controller.automatic_inputs",
+            *(
+                f"interp.controller.controller.Controller.{name}"
+                for name in ("arm", "levels", "look", "unfulfilled")
+            ),
             "interp.controller.input_script",
             "interp.controller.profile",
             "interp.controller.script_player",
             "interp.controller.trace",
         ),
     ),
-    # left out: files of machine data and torques; motions written in Python, and planning in
-    # batches, which is there to be compared with
+    # left out: files of machine data and torques; motions written in Python and what only they ask
+    # of the core, and planning in batches, which is there to be compared with
     "robot": (
         (
             "interp.robot.path.*",
@@ -71,6 +87,10 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         (
             "interp.robot.api.batch",
             "interp.robot.api.motions",
+            *(
+                f"interp.robot.api.control_core.ControlCore.{name}"
+                for name in ("link", "run_out", "apply", "_act", "_end_path", "_stuck")
+            ),
             "interp.robot.kinematics.data_list",
             "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
@@ -122,8 +142,11 @@ class Mutant:
 
 def all_mutants() -> Iterator[str]:
     """The names of all mutants there are, package by package."""
+    left_out = [one for _, some in PACKAGES.values() for one in some]
     for module in modules():
-        yield from (f"{module}:{number}" for number in range(_count(module)))
+        for number, one in enumerate(changes(_tree(module))):
+            if not any(fnmatchcase(f"{module}.{one.function}", each) for each in left_out):
+                yield f"{module}:{number}"
 
 
 def drawn(seed: int, count: int) -> tuple[Mutant, ...]:

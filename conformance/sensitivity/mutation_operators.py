@@ -5,14 +5,15 @@ comparison   a boundary moved (``<`` to ``<=``), or the opposite (``<`` to ``>=`
 arithmetic   ``+`` and ``-``, ``*`` and ``/``, ``&`` and ``|`` … exchanged, a sign left out
 connective   ``and`` and ``or`` exchanged, ``not`` left out
 condition    that of an ``if``, a loop, a filter or a guard negated
-constant     a number more or less by one, a truth value inverted
+constant     a number more or less by one, or doubled, a truth value inverted
 statement    a call, an assignment to a part, ``raise``, ``break``, ``continue`` left out
 ============ ==================================================================
 
 A ``raise`` is left out where a program of KRL can come to it: a fault, or that it cannot be linked.
-What tells a caller in Python of its mistake is left as it is. Texts, annotations, assertions,
-defaults of parameters and class bodies are left as they are: they decide nothing, or what they have
-decided cannot be replaced in a module that is loaded.
+What tells a caller in Python, or who wrote machine data or a profile, of a mistake is left as it
+is. So are texts, annotations, assertions, defaults of parameters, class bodies, and what stands
+behind a ``return`` or ``raise``: they decide nothing, or what they have decided cannot be replaced
+in a module that is loaded.
 """
 
 from __future__ import annotations
@@ -59,12 +60,12 @@ _ARITHMETIC: Final[Mapping[type[ast.operator], type[ast.operator]]] = {
     ast.LShift: ast.RShift,
     ast.RShift: ast.LShift,
 }
-#: A float from here on is doubled instead: one more or less would be lost in rounding.
+#: A number from here on is doubled instead: one more or less would be lost in rounding.
 _LARGE: Final = 100.0
 _COMPOUND: Final = (ast.If, ast.While, ast.For, ast.With, ast.Try, ast.Match)
-#: Exceptions that tell a caller in Python of its mistake.
+#: Exceptions that tell a caller in Python of its mistake, or who wrote machine data or a profile.
 _OWN_MISTAKE: Final = re.compile(
-    r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented)Error\b"
+    r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented|MachineData|Profile)Error\b"
 )
 #: Fields that are not searched for changes.
 _LEFT_OUT: Final = frozenset({"decorator_list", "annotation", "returns", "ctx"})
@@ -153,8 +154,7 @@ def _of_definition(node: ast.FunctionDef | ast.ClassDef, scope: _Scope) -> Itera
     if node.name in ("__repr__", "__str__"):
         return
     inner = _Scope((*scope.names, node.name, "<locals>"))
-    for index, statement in enumerate(node.body):
-        yield from _of_statement(node, "body", index, statement, inner)
+    yield from _of_parts(node, inner)
 
 
 def _of_statement(
@@ -181,6 +181,8 @@ def _of_parts(node: ast.AST, scope: _Scope) -> Iterator[Change]:
             yield from _of_place(node, name, None, value, scope)
         elif isinstance(value, list):
             for index, one in enumerate(value):
+                if index and isinstance(value[index - 1], ast.Return | ast.Raise):
+                    break  # what makes a generator of a function that raises
                 if isinstance(one, ast.stmt):
                     yield from _of_statement(node, name, index, one, scope)
                 elif isinstance(one, ast.AST):
@@ -232,10 +234,8 @@ def _others(parent: ast.AST, name: str, node: ast.AST) -> Iterator[tuple[Operato
 def _other_constants(value: object) -> tuple[bool | int | float, ...]:
     if isinstance(value, bool):
         return (not value,)
-    if isinstance(value, int):
-        return value + 1, value - 1
-    if isinstance(value, float):
-        return (value * 2,) if abs(value) >= _LARGE else (value + 1.0, value - 1.0)
+    if isinstance(value, int | float):
+        return (value * 2,) if abs(value) >= _LARGE else (value + 1, value - 1)
     return ()
 
 

@@ -43,17 +43,22 @@ def fuzz(
 
     The world answers at random too, and interferes with interrupts, triggers and faults; all of it
     follows from the seed. A program on which two executors diverge is made as small as possible.
-    Exit status 1 where there is one.
+    Exit status 1 where there is one. A rule of KRL is reached by a program that executes all that
+    every conformance case of this rule, or clause of one, uses.
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of
+    from conformance.differential.construct_coverage import needs
+    from conformance.suite.case import CaseError, find_cases
     from support.parallel.workers import WorkersError
 
     check_files(json_file)
     names = _chosen(executor or [])
     begun = time.perf_counter()
+    with as_input_errors(CaseError):
+        rules = needs(find_cases())
     with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:
-        found = run(programs, seed, names, all_cores(jobs), bar, scheduler)
+        found = run(programs, seed, names, all_cores(jobs), bar, scheduler, rules)
     record = record_of(found, time.perf_counter() - begun)
     write_json(record, json_file, indent=1)
     _print_summary(found, record["seconds"])
@@ -88,6 +93,12 @@ def _print_summary(found: "Findings", seconds: float) -> None:
     )
     for kind, names in missing(found.counts).items():
         console.print(f"Never executed, {kind}: {', '.join(names)}", soft_wrap=True)
+    never = [rule for rule in found.rules if not found.counts["rule", rule]]
+    console.print(
+        f"Reached {len(found.rules) - len(never)} of {len(found.rules)} rules and clauses that have"
+        f" cases with something of their own; never: {', '.join(never) or 'none'}",
+        soft_wrap=True,
+    )
     count = len(found.findings)
     if not count:
         console.print("No difference.")

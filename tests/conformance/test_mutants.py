@@ -12,6 +12,7 @@ from conformance.sensitivity.line_reach import reach_of
 from conformance.sensitivity.mutant_trial import Fate, Trial, equivalent, is_possible, try_mutants
 from conformance.sensitivity.mutants import (
     Mutant,
+    all_mutants,
     drawn,
     modules,
     named,
@@ -61,11 +62,14 @@ def _case(name: str) -> Case:
         ("return True", {("constant", "False")}),
         ("return 7", {("constant", "8"), ("constant", "6")}),
         ("return 500.0", {("constant", "1000.0")}),
+        ("return 1444", {("constant", "2888")}),
+        ("raise a; a()", {("statement", "pass")}),
         ("return a if b else a", {("condition", "not b")}),
         ("return [c for c in a if c]", {("condition", "not c")}),
         ("a.b = b", {("statement", "pass")}),
         ("c = b", set()),
         ("raise a", {("statement", "pass")}),
+        ("raise ProfileError(a)", set()),
         ("assert a < 7", set()),
         ("return isinstance(a, int | str)", set()),
         ("return f'{a + 1}'", set()),
@@ -140,6 +144,11 @@ def test_modules_decide_semantics() -> None:
     """What only records or is only compared with is not changed."""
     assert "interp.values.operators" in modules()
     assert "interp.controller.trace" not in modules()
+    module = "interp.tree.executor"
+    names = set(all_mutants())
+    functions = [one for one, _, _ in _changes(module)]
+    left = {one for at, one in enumerate(functions) if f"{module}:{at}" not in names}
+    assert {f"TreeExecutor.{one}" for one in ("ask_at", "frames", "look", "put", "select")} == left
 
 
 def test_lines_that_a_case_runs() -> None:

@@ -54,6 +54,13 @@ def conform(
     executor: Annotated[
         Executor, typer.Option(help="Who runs the cases that planted faults are tried on.")
     ] = Executor.TREE,
+    removed: Annotated[
+        bool,
+        typer.Option(
+            "--removed",
+            help="Instead: take out of each case what its title names; list those that still pass.",
+        ),
+    ] = False,
     jobs: JobsOption = None,
 ) -> int:
     """Change what decides semantics, one place at a time, and see whether a case fails.
@@ -69,6 +76,8 @@ def conform(
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
         from interp.executors import is_available
+    if removed:
+        return _removals(json_file, all_cores(jobs))
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in (*groups, "none"):
@@ -113,6 +122,26 @@ def _mutants(
     return mutants_record(
         {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}
     )
+
+
+def _removals(json_file: Path | None, jobs: int) -> int:
+    from conformance.sensitivity.removed_features import removals_record, try_removals
+    from conformance.suite.case import CaseError, find_cases
+
+    with as_input_errors(CaseError):
+        cases = [case for case in find_cases() if case.phase == "run"]
+    with progress_bar("removing features", len(cases)) as bar:
+        record = removals_record(try_removals(cases, jobs, bar))
+    write_json({"bench": "conform", "removed": record}, json_file)
+    console = Console(highlight=False)
+    for one in record["unnoticed"]:
+        text = f"Passes without {one['feature']}: {one['case']}"
+        console.print(text, markup=False, soft_wrap=True)
+    console.print(
+        f"{record['removed']:,} times a feature that its title names was removed from a case; "
+        f"{len(record['unnoticed']):,} times it passed nevertheless"
+    )
+    return FINE
 
 
 def _rows(drawn: Mapping[str, Any]) -> str:

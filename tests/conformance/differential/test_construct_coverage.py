@@ -1,9 +1,16 @@
 """What programs exercise: what stands on lines that were executed, and no other."""
 
 from conformance.differential.campaign import fuzz
-from conformance.differential.construct_coverage import counted, language, missing
+from conformance.differential.construct_coverage import (
+    counted,
+    language,
+    missing,
+    needs,
+    reached,
+)
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, trace_of
+from conformance.suite.case import CASES, read_case
 
 
 def test_programs_execute_most_of_it() -> None:
@@ -21,3 +28,24 @@ def test_counts_are_of_what_was_executed() -> None:
     found = counted(program, trace_of(program, EXECUTORS["tree"], "x"))
     assert (1, 1, 0) == (found["node", "If"], found["operator", "=="], found["node", "WaitSeconds"])
     assert (0, 0) == (found["operator", "*"], found["instruction", "MUL_INT"])
+
+
+def test_a_rule_needs_what_all_its_cases_use() -> None:
+    """WAIT SEC and the timer are needed by all; other statements of a single case are not."""
+    cases = [read_case(CASES / f"{name}.src") for name in ("io/timer_flag", "io/timer_counts_down")]
+    assert 1 == len({case.basis for case in cases})
+    (needed,) = needs(cases).values()
+    assert {("node", "WaitSeconds"), ("variable", "$TIMER")} <= needed
+    assert {("variable", "$TIMER")} == {one for one in needed if one[1].startswith("$TIMER")}
+
+
+def test_a_rule_is_reached_by_all_that_it_needs() -> None:
+    """Neither by a part of it, nor by what stands on lines that were not executed."""
+    rules = {"A-01": frozenset({("node", "Halt"), ("operator", "+")}), "A-02": frozenset()}
+    text = "DEF PROG()\nINT I\nI=1+1\n{}IF I==1 THEN\nHALT\nENDIF\nEND\n"
+    found = []
+    for more in ("", "HALT\n"):
+        program = prepared((("PROG.SRC", text.format(more)),))
+        counts = counted(program, trace_of(program, EXECUTORS["tree"], "x"))
+        found.append(list(reached(rules, counts)))
+    assert [["A-02"], ["A-01", "A-02"]] == found
