@@ -106,8 +106,8 @@ def fuzz(
     ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
     address; reducing what was found is left to the process that asks. ``on_done`` is called with
     how many programs were done since the last call. Of ``rules`` is counted how many programs reach
-    them. The result depends on ``programs``, ``seed``, ``executors`` and ``rules`` alone. Raises `support.parallel.workers.WorkersError`, also where a worker
-    has not these executors.
+    them. The result depends on ``programs``, ``seed``, ``executors`` and ``rules`` alone. Raises
+    `support.parallel.workers.WorkersError`, also where a worker has not these executors.
     """
     names = tuple(executors)
     shards = [

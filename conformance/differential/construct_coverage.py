@@ -1,9 +1,10 @@
 """What of the language programs exercise: what stands on lines that were executed.
 
 Counted are kinds of nodes and their variants, operators, predefined functions, system variables,
-and the instructions that lines were compiled to. `language` lists what there is of most, so that what
-never occurred can be reported. A program reaches a rule, or a clause of one, when it executes all
-that every conformance case of it uses (`needs`); that it does what the rule says is another matter.
+and the instructions that lines were compiled to. `language` lists what there is of most, so that
+what never occurred can be reported. A program reaches a rule, or a clause of one, when it executes
+all that every conformance case of it uses (`needs`); that it does what the rule says is another
+matter.
 """
 
 from __future__ import annotations

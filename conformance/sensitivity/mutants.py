@@ -41,9 +41,9 @@ __all__ = [
 ]
 
 #: What decides semantics, by the name under which it is reported: modules, and which of them or of
-#: their functions are left out. Left out is what no program of KRL can tell apart: how a run is fed,
-#: recorded and shown, what another caller than a controller uses, and what only one of the robots
-#: needs.
+#: their functions are left out. Left out is what no program of KRL can tell apart: how a run is
+#: fed, recorded and shown, what another caller than a controller uses, and what only one of the
+#: robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     # left out: how values are written in traces, and equality, which tests alone ask for
     "values": (("interp.values.*",), ("interp.values.json_form", "*.__eq__")),

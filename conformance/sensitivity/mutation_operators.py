@@ -13,15 +13,16 @@ A ``raise`` is left out where a program of KRL can come to it: a fault, or that 
 What tells a caller in Python, or who wrote machine data or a profile, of a mistake is left as it
 is. So are texts, annotations, assertions, defaults of parameters, class bodies, and what stands
 behind a ``return`` or ``raise``: they decide nothing, or what they have decided cannot be replaced
-in a module that is loaded.
+in a module that is loaded. A boundary is not moved where a number that is not whole is compared:
+what is equal to it is so by chance.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 __all__ = ["Change", "Operator", "changes"]
@@ -111,11 +112,15 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class _Scope:
-    """Where a node lies: names of functions and classes around it, and its statement's lines."""
+    """Where a node lies: names of functions and classes around it, and its statement's lines.
+
+    ``reals`` are the names that the module gives to numbers that are no whole ones.
+    """
 
     names: tuple[str, ...] = ()
     lines: tuple[int, int] = (0, 0)
     assignment: ast.Assign | ast.AnnAssign | None = None
+    reals: frozenset[str] = frozenset()
 
     @property
     def is_function(self) -> bool:
@@ -128,14 +133,31 @@ class _Scope:
 
 def changes(tree: ast.Module) -> Iterator[Change]:
     """All changes of a module, in the order of its source."""
+    scope = _Scope(reals=frozenset(_reals(tree)))
     for statement in tree.body:
         match statement:
             case ast.FunctionDef() | ast.ClassDef():
-                yield from _of_definition(statement, _Scope())
+                yield from _of_definition(statement, scope)
             case ast.Assign(targets=[ast.Name(id=name)]) if not name.startswith("__"):
                 yield from _of_value(statement, name)
             case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr()):
                 yield from _of_value(statement, name)
+
+
+def _reals(tree: ast.Module) -> Iterator[str]:
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign | ast.AnnAssign) and _is_real(statement.value, ()):
+            targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+            yield from (one.id for one in targets if isinstance(one, ast.Name))
+
+
+def _is_real(node: ast.AST | None, reals: Collection[str]) -> bool:
+    """Whether it is a number that is not whole, its name, or computed with one."""
+    return node is not None and any(
+        (isinstance(one, ast.Constant) and isinstance(one.value, float) and one.value % 1.0 != 0.0)
+        or (isinstance(one, ast.Name) and one.id in reals)
+        for one in ast.walk(node)
+    )
 
 
 def _of_value(statement: ast.Assign | ast.AnnAssign, name: str) -> Iterator[Change]:
@@ -146,14 +168,14 @@ def _of_value(statement: ast.Assign | ast.AnnAssign, name: str) -> Iterator[Chan
 
 def _of_definition(node: ast.FunctionDef | ast.ClassDef, scope: _Scope) -> Iterator[Change]:
     if isinstance(node, ast.ClassDef):
-        inner = _Scope((*scope.names, node.name))
+        inner = replace(scope, names=(*scope.names, node.name))
         for statement in node.body:
             if isinstance(statement, ast.FunctionDef | ast.ClassDef):
                 yield from _of_definition(statement, inner)
         return
     if node.name in ("__repr__", "__str__"):
         return
-    inner = _Scope((*scope.names, node.name, "<locals>"))
+    inner = replace(scope, names=(*scope.names, node.name, "<locals>"))
     yield from _of_parts(node, inner)
 
 
@@ -167,7 +189,7 @@ def _of_statement(
         return
     if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
         return
-    inner = _Scope(scope.names, _span(node))
+    inner = replace(scope, lines=_span(node), assignment=None)
     if _is_droppable(node):
         yield _change("statement", parent, name, index, node, ast.Pass(), inner)
     yield from _of_parts(node, inner)
@@ -194,21 +216,24 @@ def _of_place(
 ) -> Iterator[Change]:
     if isinstance(node, ast.JoinedStr) or _is_type_test(parent, name, index):
         return
-    for operator, new in _others(parent, name, node):
+    for operator, new in _others(parent, name, node, scope.reals):
         yield _change(operator, parent, name, index, node, new, scope)
     if isinstance(node, ast.Lambda):  # a function, of which the code can be exchanged
-        scope = _Scope(scope.names, scope.lines)
+        scope = replace(scope, assignment=None)
     yield from _of_parts(node, scope)
 
 
-def _others(parent: ast.AST, name: str, node: ast.AST) -> Iterator[tuple[Operator, ast.expr]]:
+def _others(
+    parent: ast.AST, name: str, node: ast.AST, reals: Collection[str]
+) -> Iterator[tuple[Operator, ast.expr]]:
     """What may stand in place of an expression."""
     if _is_condition(parent, name) and isinstance(node, ast.expr) and not _has_opposite(node):
         yield "condition", ast.UnaryOp(ast.Not(), node)
     match node:
         case ast.Compare(left, operators, comparators):
+            by_chance = any(_is_real(side, reals) for side in (left, *comparators))
             for place, one in enumerate(operators):
-                for table in (_BOUNDARY, _OPPOSITE):
+                for table in (_OPPOSITE,) if by_chance else (_BOUNDARY, _OPPOSITE):
                     if type(one) in table:
                         new = [*operators]
                         new[place] = table[type(one)]()

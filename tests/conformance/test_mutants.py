@@ -80,6 +80,13 @@ def test_changes_of_a_function(body: str, expected: set[tuple[str, str]]) -> Non
     assert expected == _made(body)
 
 
+def test_boundaries_of_reals_stay() -> None:
+    """What a number that is not whole is compared with is equal to it by chance only."""
+    found = changes(ast.parse("_NEAR = 0.001\ndef f(a):\n    return a < 2 * _NEAR, a < 1.0\n"))
+    now = {one.now for one in found if one.operator == "comparison"}
+    assert {"a >= 2 * _NEAR", "a <= 1.0", "a >= 1.0"} == now
+
+
 def test_conditions_are_not_negated_twice() -> None:
     """Where the opposite of a comparison is a change already, its negation is none."""
     assert {("comparison", "a != b"), ("statement", "pass")} == _made("if a == b: a()")
