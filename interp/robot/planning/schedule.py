@@ -145,11 +145,24 @@ def schedule(
             continue
         known.append(lengths)
         start = _start(spans, state)
-        speeds = _speeds(spans, start, is_strict)
-        best = _sooner(best, spans, start, speeds)
-        if _ease(spans, speeds):
-            best = _sooner(best, spans, start, _speeds(spans, start, is_strict))
+        found = _speeds(spans, start, is_strict)
+        while found is not None and found.over and _slow(spans, found.ends):
+            found = _speeds(spans, start, is_strict)
+        best = _better(best, spans, start, found)
+        if _ease(spans, found):
+            best = _better(best, spans, start, _speeds(spans, start, is_strict))
     return None if best is None else _own_units(steps, best.spans, best.profiles)
+
+
+@dataclass(frozen=True, slots=True)
+class _Speeds:
+    """The speed at the end of each span, and the way on which they are above what is allowed.
+
+    That happens where the override has dropped: braking takes its way.
+    """
+
+    ends: list[float]
+    over: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,45 +171,45 @@ class _Plan:
 
     spans: Sequence[_Span]
     profiles: list[SpeedProfile]
+    over: float
     duration: float
 
 
-def _sooner(
-    best: _Plan | None,
-    spans: Sequence[_Span],
-    start: tuple[float, float],
-    speeds: Sequence[float] | None,
+def _better(
+    best: _Plan | None, spans: Sequence[_Span], start: tuple[float, float], found: _Speeds | None
 ) -> _Plan | None:
-    """The quicker of a plan and one that ends its spans with some speeds."""
-    if speeds is None:
+    """Of a plan and one of other speeds that with less way above them, else the quicker."""
+    if found is None or (best is not None and best.over < found.over):
         return best
     speed, acceleration = start
     profiles: list[SpeedProfile] = []
     duration = 0.0
-    for place, (span, final) in enumerate(zip(spans, speeds, strict=True)):
+    for place, (span, final) in enumerate(zip(spans, found.ends, strict=True)):
         for profile in _parts(span, _travelled(spans, place, speed, acceleration, final)):
             profiles.append(profile)
             duration += profile.duration
-        if best is not None and best.duration <= duration:
+        if best is not None and best.over <= found.over and best.duration <= duration:
             return best
         speed, acceleration = final, _behind(spans, place, final)
-    return _Plan(spans, profiles, duration)
+    return _Plan(spans, profiles, found.over, duration)
 
 
-def _speeds(
-    spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
-) -> list[float] | None:
-    """The speed at the end of each span."""
+def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool) -> _Speeds | None:
     allowed = _allowed(spans)
     speed, acceleration = start
-    speeds: list[float] = []
-    for place in range(len(spans)):
+    ends: list[float] = []
+    over = 0.0
+    for place, span in enumerate(spans):
         found = _reached(spans, place, speed, acceleration, allowed[place])
-        if found is None or (is_strict and found > allowed[place] * (1.0 + 1e-6) + 1e-9):
+        if found is None:
             return None
-        speeds.append(found)
+        if found > allowed[place] * (1.0 + 1e-6) + 1e-9:
+            if is_strict:
+                return None
+            over += span.length
+        ends.append(found)
         speed, acceleration = found, _behind(spans, place, found)
-    return speeds
+    return _Speeds(ends, over)
 
 
 def braking(
@@ -273,15 +286,27 @@ def _spans(
     return spans
 
 
-def _ease(spans: Sequence[_Span], speeds: Sequence[float] | None) -> bool:
+def _ease(spans: Sequence[_Span], found: _Speeds | None) -> bool:
     """Let speeds change in blends that what is beside them holds up; whether there are any."""
     is_eased = False
     for place, span in enumerate(spans):
         if span.is_even:
-            held = speeds is None or speeds[place] < _HELD * span.even
+            held = found is None or found.ends[place] < _HELD * span.even
             span.is_even = not held
             is_eased = is_eased or held
     return is_eased
+
+
+def _slow(spans: Sequence[_Span], speeds: Sequence[float]) -> bool:
+    """Let speeds change in blends that are entered too fast; whether there are any."""
+    fast = [
+        span
+        for span, speed in zip(spans, speeds, strict=True)
+        if span.is_even and not _fits(speed, span.even)
+    ]
+    for span in fast:
+        span.is_even = False
+    return bool(fast)
 
 
 def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
