@@ -24,7 +24,7 @@ AIM: Final = 0.95
 MUTANT_AIM: Final = 0.85
 _EXECUTOR: Final = "tree"
 _OF_MUTANT: Final = ("package", "file", "line", "function", "operator", "source", "was", "now")
-_OF_TRIAL: Final = ("fate", "case", "why", "reached", "runs", "changed")
+_OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
 
 
 def speed_of(
@@ -141,6 +141,9 @@ def _fates(trials: Sequence[Trial]) -> dict[str, Any]:
         "mutants": len(trials),
         **{fate: counts[fate] for fate in get_args(Fate)},
         "unreached": sum(not one.reached for one in survived),
+        "unsure": sum(
+            bool(one.reached) and not one.sure for one in trials if one.fate in ("soft", "survived")
+        ),
         "unchanged": sum(bool(one.reached) and not one.changed for one in survived),
         "share": round(counts["red"] / counted, 4) if counted else 0.0,
     }

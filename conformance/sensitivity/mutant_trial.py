@@ -60,7 +60,8 @@ class Trial:
     """What became of a mutant.
 
     ``case`` is the one that noticed it, ``why`` what it said, or why none can. ``reached`` is how
-    many cases run its lines, ``runs`` how many were run. ``changed`` is the first that did
+    many cases run its lines, ``sure`` how many of them may fail, ``runs`` how many were run.
+    ``changed`` is the first that did
     something else with it, whether it noticed that or not.
     """
 
@@ -69,6 +70,7 @@ class Trial:
     case: str = ""
     why: str = ""
     reached: int = 0
+    sure: int = 0
     runs: int = 0
     changed: str = ""
 
@@ -202,6 +204,7 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
 
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
     reached, runs, changed = len(cases), 0, ""
+    sure = sum(one.case.may_fail for one in cases)
     setups = [_SETUP]
     if mutant.package in _APART and not missing(_IN_C):
         setups.append(_IN_C)
@@ -210,15 +213,15 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
             for runs, one in enumerate(_some(cases, most), 1):
                 case = one.case
                 fate: Fate = "red" if case.may_fail else "soft"
-                yield Trial(mutant, fate, case.name, "the process ended", reached, runs)
+                yield Trial(mutant, fate, case.name, "the process ended", reached, sure, runs)
                 noticed, why, seen = _noticed(case, setups)
                 changed = changed or (case.name if seen != one.seen else "")
                 if noticed:
-                    yield Trial(mutant, noticed, case.name, why, reached, runs, changed)
+                    yield Trial(mutant, noticed, case.name, why, reached, sure, runs, changed)
                     return
-            yield Trial(mutant, "survived", "", "", reached, runs, changed)
+            yield Trial(mutant, "survived", "", "", reached, sure, runs, changed)
     except InvalidMutant as error:
-        yield Trial(mutant, "invalid", "", str(error), reached)
+        yield Trial(mutant, "invalid", "", str(error), reached, sure)
 
 
 def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:

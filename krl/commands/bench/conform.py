@@ -166,6 +166,10 @@ def _print_mutants(drawn: Mapping[str, Any]) -> None:
         f"of {drawn['survived']:,} that survived, {drawn['unreached']:,} are on lines that no case "
         f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried"
     )
+    console.print(
+        f"{drawn['unsure']:,} that no case fails with are on lines that only cases of unconfirmed "
+        "rules run"
+    )
     console.print(f"aim: {drawn['aim']:.0%} of those that a case could notice red")
 
 
