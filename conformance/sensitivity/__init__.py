@@ -8,6 +8,7 @@
 `planted_fault`      a fault that no such change makes, thought up and planted
 `…_faults`           these faults: of the clock and outputs, the advance run, interrupts, paths
 `trial`              planted faults against cases
+`removed_features`   what the titles of cases name, taken out of them: which still pass
 `bench`              how many are noticed, and cases a second
 ==================== ===============================================================================
 
