@@ -58,8 +58,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             ),
         ),
     ),
-    # left out: the cell around the controller, how a run is recorded, and what is looked up of one
-    # that has come to its end or stands
+    # left out: the cell around the controller, how a run is recorded, what is looked up of one that
+    # has come to its end or stands, and loads, which only torques depend on
     "controller": (
         ("interp.controller.*",),
         (
@@ -69,6 +69,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 for name in ("arm", "levels", "look", "unfulfilled")
             ),
             "interp.controller.input_script",
+            "interp.controller.motions._load",
             "interp.controller.profile",
             "interp.controller.script_player",
             "interp.controller.trace",
