@@ -12,9 +12,9 @@
 `bench`              how many are noticed, and cases a second
 ==================== ===============================================================================
 
-``survivors.tsv`` is what `krl bench conform` left over with ``--mutants 100 --seed 52101`` and
-``--mutants 60 --seed 52202``, the last time that it was written (``--survivors``), without 14 that
-cases written since make red: what cases are still missing for.
+``survivors.tsv`` is what `krl bench conform --survivors` left over of 270 mutants that were drawn
+with the seeds 52101, 52202, 61101 and 61201, without those that cases written since make red or
+that are no longer drawn: what cases are still missing for.
 
 A case notices a fault if it passes without it and does not pass with it.
 """
