@@ -352,6 +352,7 @@ def _functions() -> Mapping[tuple[Any, ...], Sequence[FunctionType]]:
     for name in modules():
         import_module(name)
     found: dict[tuple[Any, ...], list[FunctionType]] = {}
+    gc.unfreeze()  # what is set aside is not listed
     for one in gc.get_objects():
         if inspect.isfunction(one) and str(one.__module__).partition(".")[0] == _ROOT:
             found.setdefault(_key(one.__code__), []).append(one)
@@ -367,6 +368,7 @@ def _forget() -> None:
 @cache
 def _caches() -> Sequence[Any]:
     wrapper = type(_text)
+    gc.unfreeze()
     return [
         one
         for one in gc.get_objects()
