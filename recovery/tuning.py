@@ -249,6 +249,8 @@ FORM_SYMBOLS = 4
 MOST_MERGED_EDITS = 3
 #: Tokens that could have come which a title names: more say nothing to a reader. Not measured.
 MOST_EXPECTED = 2
+#: Words and signs of a line that a title tells, where another cluster has the same. Not measured.
+MOST_TOLD = 8
 
 # ---------------------------------------------------------------------------------- reproducers
 # `recovery.reproducer`.

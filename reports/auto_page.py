@@ -120,6 +120,7 @@ def _target(target: Record) -> list[Figure]:
     labels = {
         "shown": f"of the files shown that {name} parses",
         "held": f"of the files held out that {name} parses",
+        "held_within_reach": "of those of them within reach: no neighbours that no file shown has",
         "sentences_rejected": f"of its random sentences {name} rejects",
         "negatives_accepted": "of the negatives accepted",
     }

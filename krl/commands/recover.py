@@ -66,6 +66,14 @@ def recover(
         bool,
         typer.Option("--auto", help="Let the grammar grow by itself, from preliminary.g4 or FILE."),
     ] = False,
+    without: Annotated[
+        int,
+        typer.Option(
+            metavar="N",
+            min=0,
+            help="With --auto: start from the grammar in force less N constructs, drawn by --seed.",
+        ),
+    ] = 0,
     hold_out: Annotated[
         float,
         typer.Option(
@@ -73,7 +81,7 @@ def recover(
         ),
     ] = 0.0,
     seed: Annotated[
-        int, typer.Option(metavar="N", help="With --auto: draws the origins held out.")
+        int, typer.Option(metavar="N", help="With --auto: draws what is held out or taken out.")
     ] = 1,
     target: Annotated[
         Path | None,
@@ -93,16 +101,25 @@ def recover(
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
+    from recovery.induction.growth_record import without_some
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load
 
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     if auto:
+        if without and (grammar or resume or strike):
+            raise InputError("--without starts from the grammar in force: give it alone")
         first = grammar or GRAMMAR.with_name("preliminary.g4")
         with expected_errors():
             chosen = read_file(first)
             rejected = load(negatives) if negatives else ()
+            accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted if without else ()
+        if without > len(accepted):
+            raise InputError(f"--without {without}: there are {len(accepted)} constructs")
+        chosen, gone = without_some(chosen, accepted, without, seed) if without else (chosen, [])
+        for construct in gone:
+            typer.echo(f"taken out: {construct.id} {construct.title}")
         return recover_auto(
             roots,
             chosen,
@@ -111,13 +128,14 @@ def recover(
             json_file,
             rejected,
             target,
+            taken_out=gone,
             fraction=hold_out,
             seed=seed,
             strike=strike or (),
             resume=resume,
         )
-    if hold_out or resume or strike or target:
-        raise InputError("--hold-out, --target, --resume and --strike belong to --auto")
+    if hold_out or without or resume or strike or target:
+        raise InputError("--hold-out, --without, --target, --resume and --strike belong to --auto")
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():
         chosen = read_file(grammar) if grammar else krl_grammar()

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from grammar.notation.model import Grammar
     from recovery.induction.comparison import Share
     from recovery.induction.growth_record import Growth
+    from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
 
 __all__ = ["recover_auto"]
@@ -38,6 +39,7 @@ def recover_auto(
     negatives: "Sequence[Negative]",
     target: Path | None,
     *,
+    taken_out: "Sequence[Construct]" = (),
     fraction: float,
     seed: int,
     strike: Sequence[str],
@@ -45,6 +47,7 @@ def recover_auto(
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
+    ``taken_out`` are the constructs that the start lacks, for the record.
     Everything is written after each round, so that what was done stays when it is interrupted. At
     the end what has grown is compared with ``target``.
     """
@@ -73,6 +76,7 @@ def recover_auto(
     record: dict[str, Any] = {
         "start": name,
         "start_sha256": growth.start.sha256,
+        "without": [construct.id for construct in taken_out],
         "held_out": list(origins),
         "seed": seed,
         "rounds": growth.rounds,
@@ -147,9 +151,12 @@ def _say(number: int, growth: "Growth") -> None:
 def _say_target(record: dict[str, Any]) -> None:
     name, target = record["target"]["name"], record["target"]
     held = f", {_part(target['held'])} of those held out" if target["held"]["of"] else ""
+    reach = f" ({_part(target['held_within_reach'])} of those within reach)" if held else ""
+    unseen = target["words_not_shown"]
     typer.echo(
-        f"of the files that {name} parses: {_part(target['shown'])} of those shown{held}\n"
-        f"random sentences that {name} rejects: {_part(target['sentences_rejected'])}; "
+        f"of the files that {name} parses: {_part(target['shown'])} of those shown{held}{reach}\n"
+        + (f"words that no file shown has: {', '.join(unseen)}\n" if unseen else "")
+        + f"random sentences that {name} rejects: {_part(target['sentences_rejected'])}; "
         f"negatives accepted: {_part(target['negatives_accepted'])}; {record['rules']} rules"
     )
 

@@ -205,8 +205,10 @@ def _assembled(
     rules = [groups.signatures[n].rule for n in heaviest]
     signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
     writer = TitleWriter(groups.recognizer)
-    titles = _distinct(
-        [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)], rules
+    titles = writer.told_apart(
+        [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)],
+        [groups.lines[n] for n in heaviest],
+        rules,
     )
     clusters = [
         _cluster(

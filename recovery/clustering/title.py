@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Sequence
 
 from grammar.notation.addresses import element_at
@@ -11,7 +13,7 @@ from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import MOST_EXPECTED
+from recovery.tuning import MOST_EXPECTED, MOST_TOLD
 
 __all__ = ["TitleWriter"]
 
@@ -47,20 +49,63 @@ class TitleWriter:
         at_end = kinds[index] >= 0 and self._lexer.names[kinds[index]] in ("NEWLINE", "EOF")
         if missing:
             subject = context.rule if index or at_end else came
-            said = f"{lead or subject} without {missing}"
+            said = f"{lead or _spoken(subject)} without {missing}"
         elif 0 in meant and index <= 1:
             followers = {self._keyword(other, 1) for other in others or (line,)}
             follower = followers.pop() if len(followers) == 1 else ""
             said = f"unknown keyword {lead}" + (f" before {follower}" if follower else "")
         elif at_end:
             what = f"{lead} line" if lead else came.removeprefix("the end of ")
-            said = f"{what} ends{self._instead(context) or f' within {context.rule}'}"
+            said = f"{what} ends{self._instead(context) or f' within {_spoken(context.rule)}'}"
         elif index == 0:
             said = f"{came} begins a line{self._instead(context)}"
         else:
             said = self._behind(line, context, bracket, lead, came)
             said += "" if context.expected == ("NEWLINE",) else self._instead(context)
         return said[:1].upper() + said[1:]
+
+    def told_apart(
+        self, titles: Sequence[str], lines: Sequence[LinePattern], rules: Sequence[str]
+    ) -> list[str]:
+        """The titles; those that are the same with how their line goes on, or where it stands.
+
+        What stands in the same place and goes on alike, as far as a title says, gets a number.
+        """
+        out = list(titles)
+        for number, place in enumerate(rules):
+            alike = [n for n, title in enumerate(titles) if title == titles[number]]
+            shapes = {n: self._shape(lines[n]) for n in alike}
+            shape = shapes[number]
+            longest = max(map(len, shapes.values()))
+            for length in range(2, min(MOST_TOLD, longest) + 1 if len(alike) > 1 else 0):
+                if sum(other[:length] == shape[:length] for other in shapes.values()) == 1:
+                    dots = " …" if len(shape) > length else ""
+                    out[number] += f": {' '.join(shape[:length])}{dots}"
+                    break
+            else:
+                if len(alike) > 1:
+                    out[number] += f" in {_spoken(place)}"
+        again: Counter[str] = Counter()
+        for number, title in enumerate(out):
+            again[title] += 1
+            out[number] += f" ({again[title]})" if again[title] > 1 else ""
+        return out
+
+    def _shape(self, line: LinePattern) -> tuple[str, ...]:
+        """The words and signs of a line; names and values by what they are."""
+        display, names = self._lexer.display, self._lexer.names
+        return tuple(
+            meant
+            or (
+                "?"
+                if kind < 0
+                else _spoken(names[kind])
+                if display[kind] == names[kind] and not self._lexer.is_keyword(kind)
+                else display[kind]
+            )
+            for kind, meant in line.words()
+            if kind < 0 or names[kind] not in ("NEWLINE", "EOF")
+        )
 
     def _behind(
         self, line: LinePattern, context: FailureContext, bracket: str, lead: str, came: str
@@ -77,7 +122,7 @@ class TitleWriter:
             return f"{lead} with {came}"
         if "NEWLINE" in context.expected:
             return f"line goes on with {came}"
-        return f"{came} in {context.rule}"
+        return f"{came} in {_spoken(context.rule)}"
 
     def _instead(self, context: FailureContext) -> str:
         """What was wanted, where that is short enough to say."""
@@ -127,5 +172,10 @@ class TitleWriter:
             return text
         if text != name:
             return f"'{text}'"
-        words = name.lower().replace("_", " ")
+        words = _spoken(name)
         return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+
+
+def _spoken(name: str) -> str:
+    """The words of a rule's or a token's name: ``simple statement``, ``enum constant``."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", name).lower()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from random import Random
 from typing import TypedDict
 
@@ -13,7 +14,7 @@ from recovery.induction.corpus_lines import CorpusFile
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import NegativeSet
 
-__all__ = ["Comparison", "Share", "compared"]
+__all__ = ["Comparison", "Share", "compared", "within_reach"]
 
 _SENTENCES = 1_000
 _NEGATIVES = 10_000
@@ -32,12 +33,17 @@ class Comparison(TypedDict):
     """How much the grown grammar reads that it should, and that it should not.
 
     ``shown`` and ``held``: of the files that the target parses, how many it parses too.
+    ``held_within_reach``: the same of those held out in which no two neighbours are, as kinds of
+    token of the target, that no file shown has. What lies beyond takes a guess.
+    ``words_not_shown``: reserved words of the target in files held out that no file shown has.
     ``sentences_rejected``: of its random sentences, how many the target rejects.
     ``negatives_accepted``: of generated negatives, how many it accepts.
     """
 
     shown: Share
     held: Share
+    held_within_reach: Share
+    words_not_shown: list[str]
     sentences_rejected: Share
     negatives_accepted: Share
 
@@ -50,9 +56,13 @@ def compared(
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]
     negatives = NegativeSet(generate(count=_NEGATIVES, seed=_SEED))
+    wanted = [file for file in held if judge.accepts(file.text)]
+    near, unknown = within_reach(judge, shown, wanted)
     return {
-        "shown": _parsed(reader, judge, shown),
-        "held": _parsed(reader, judge, held),
+        "shown": _parsed(reader, [file for file in shown if judge.accepts(file.text)]),
+        "held": _parsed(reader, wanted),
+        "held_within_reach": _parsed(reader, near),
+        "words_not_shown": unknown,
         "sentences_rejected": {
             "count": sum(not judge.accepts(text) for text in drawn),
             "of": len(drawn),
@@ -61,6 +71,27 @@ def compared(
     }
 
 
-def _parsed(reader: Recognizer, judge: Recognizer, files: Sequence[CorpusFile]) -> Share:
-    wanted = [file.text for file in files if judge.accepts(file.text)]
-    return {"count": sum(map(reader.accepts, wanted)), "of": len(wanted)}
+def within_reach(
+    judge: Recognizer, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
+) -> tuple[list[CorpusFile], list[str]]:
+    """The files held out whose neighbours are such in a file shown too, and words not shown.
+
+    The words are those that the judge reserves, of files held out, in no file shown.
+    """
+    known = frozenset[tuple[int, int]]().union(*(_neighbours(judge, file) for file in shown))
+    pairs = {file.path: _neighbours(judge, file) for file in held}
+    new = {k for p in pairs.values() for pair in p for k in pair} - {k for p in known for k in p}
+    lexer = judge.lexer
+    return (
+        [file for file in held if pairs[file.path] <= known],
+        sorted(lexer.names[kind] for kind in new if lexer.is_keyword(kind)),
+    )
+
+
+def _parsed(reader: Recognizer, files: Sequence[CorpusFile]) -> Share:
+    return {"count": sum(reader.accepts(file.text) for file in files), "of": len(files)}
+
+
+def _neighbours(judge: Recognizer, file: CorpusFile) -> frozenset[tuple[int, int]]:
+    """Pairs of kinds of token that stand side by side in a file."""
+    return frozenset(pairwise(judge.kinds(file.text)))

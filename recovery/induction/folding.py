@@ -7,14 +7,16 @@ with. Of a kind are words between which and names some rule gives a choice.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import zip_longest
+from itertools import pairwise, zip_longest
 
 from grammar.notation.edits import (
     AddAlternative,
     AddRule,
     Edit,
+    Insert,
+    MakeOptional,
     RemoveAlternative,
     RemoveRule,
     Replace,
@@ -53,8 +55,17 @@ def size(grammar: Grammar) -> int:
 class Folding:
     """What could be folded in one grammar."""
 
-    def __init__(self, recognizer: Recognizer, operands: Iterable[tuple[int, ...]]) -> None:
-        """``operands`` of the corpus tell what is narrow."""
+    def __init__(
+        self,
+        recognizer: Recognizer,
+        operands: Iterable[tuple[int, ...]],
+        prefixes: frozenset[str] = frozenset(),
+    ) -> None:
+        """``operands`` of the corpus tell what is narrow.
+
+        ``prefixes`` are words that may be missing at the head of a line.
+        """
+        self.prefixes = prefixes
         self.grammar = recognizer.grammar
         self.rules = OperandRules(recognizer)
         self.profile = GrammarProfile(recognizer)
@@ -82,6 +93,97 @@ class Folding:
                     yield Inferred(title, self._folded(word, places), ())
         yield from self._lists(families)
         yield from self._trailing()
+        yield from self._tails()
+        yield from self._leading()
+        yield from self._signs()
+
+    def _tails(self) -> Iterator[Inferred]:
+        """One form for what follows a declared name, where alternatives of a rule differ in it."""
+        for rule in self.grammar.rules:
+            if rule.is_lexer or rule.name in self.rules.recursive:
+                continue
+            found: list[tuple[int, int, Sequence[Element]]] = []
+            for number in range(1, len(rule.alternatives) + 1):
+                elements = self._line(rule.name, number)
+                for place, (left, right) in enumerate(pairwise(elements), 1):
+                    if self._is_kind(left) and self._is_name(right):
+                        found.append((number, place + 1, elements[place + 1 :]))
+                        break
+            sources = {self._source(rule.name, tail) for _, _, tail in found}
+            if len(sources) < 2:
+                continue
+            shapes = dict.fromkeys(s for _, _, tail in found for s in samples_of(self.rules, tail))
+            form = self.writer.form(list(shapes))
+            edits = [
+                Replace(rule.name, (number, place + 1), form, len(tail))
+                if tail
+                else Insert(rule.name, (number, place + 1), form)
+                for number, place, tail in found
+                if form and self._source(rule.name, tail) != form
+            ]
+            title = f"one form for what follows a name in {rule.name}"
+            yield Inferred(title, tuple(edits), (), breadth=_LONGER * len(edits))
+
+    def _source(self, rule: str, elements: Sequence[Element]) -> str:
+        return " ".join(map(self.grammar.by_name[rule].source_of, elements))
+
+    def _is_kind(self, element: Element) -> bool:
+        """Whether an element is the type ahead of what is declared."""
+        words = self._words(element)
+        is_choice = isinstance(element, Reference) and element.name in self.rules.word_choices
+        return is_choice or bool(words and words <= self.types)
+
+    def _leading(self) -> Iterator[Inferred]:
+        """Words that may begin a line or be missing there, in other lines of the same rule."""
+        for rule in self.grammar.rules:
+            if rule.is_lexer or rule.name in self.rules.recursive:
+                continue
+            lines = {n: self._line(rule.name, n) for n in range(1, len(rule.alternatives) + 1)}
+            often = Counter(
+                word
+                for elements in lines.values()
+                for element in elements[:1]
+                if isinstance(element, Repeat) and element.operator == "?"
+                for word in self._words(element.item)
+            )
+            for number, elements in lines.items():
+                first = self._words(elements[0]) if len(elements) > 1 else frozenset()
+                if first & self.prefixes and self._is_led(elements[1]):
+                    ahead = rule.source_of(elements[1])
+                    title = f"{min(first)} may be missing ahead of {ahead} in {rule.name}"
+                    yield Inferred(title, (MakeOptional(rule.name, (number, 1)),), (), breadth=2)
+                for word, count in often.items() if first else ():
+                    passed = {word, *self.prefixes, *self.types, *self.rules.named_words}
+                    if count > 1 and not first & passed:
+                        title = f"{word} ahead of {min(first)} in {rule.name}"
+                        edit = Insert(rule.name, (number, 1), f"{word}?")
+                        yield Inferred(title, (edit,), (), breadth=_LONGER)
+
+    def _is_led(self, element: Element) -> bool:
+        """Whether an element says with a word what a line is."""
+        words = self._words(element.item if isinstance(element, Repeat) else element)
+        return bool(words) and not words & self.rules.named_words
+
+    def _signs(self) -> Iterator[Inferred]:
+        """Signs ahead of an operand, where another sign of the same level between operands is."""
+        alike: dict[str, frozenset[str]] = {}
+        levels = [a for r in self.rules.ladder for a in self.grammar.by_name[r].alternatives]
+        for element in (e for alternative in levels for e in walk(alternative)):
+            if isinstance(element, Group):
+                signs = [_sign(a.elements[0]) for a in element.alternatives if len(a.elements) == 1]
+                if all(signs) and len(signs) == len(element.alternatives):
+                    alike.update(dict.fromkeys(signs, frozenset(signs)))
+        for name in sorted(self.rules.within_lines):
+            for number, alternative in enumerate(self.grammar.by_name[name].alternatives, 1):
+                first, *others = alternative.elements or (None,)
+                often = first.operator if isinstance(first, Repeat) else ""
+                sign = _sign(first.item if isinstance(first, Repeat) else first)
+                more = alike.get(sign, frozenset()) - {sign}
+                if others and more:
+                    text = f"({' | '.join(sorted({sign, *more}))}){often}"
+                    title = f"{', '.join(sorted(more))} ahead of operands in {name}"
+                    edits = (Replace(name, (number, 1), text),)
+                    yield Inferred(title, edits, (), breadth=_LONGER)
 
     def _lists(self, families: Sequence[tuple[str, str, list[int]]]) -> Iterator[Inferred]:
         """Lists where the same word begins one in another rule."""
@@ -221,6 +323,11 @@ class Folding:
             return Symbol(self._kind)
         is_kind = symbol.operand is not None and symbol.operand.rule == self._kind
         return Symbol(self._kind) if is_kind else symbol
+
+
+def _sign(element: Element | None) -> str:
+    """What a rule writes for an element that is one sign; empty for what is none."""
+    return f"'{element.text}'" if isinstance(element, Literal) else ""
 
 
 def _item(shape: Sequence[Symbol]) -> int:

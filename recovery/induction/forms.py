@@ -138,7 +138,9 @@ class FormWriter:
         if item is None:
             return out, None
         single = item
+        leading = self._first_item(ahead, behind)
         if any(not piece for piece in (*behind, *ahead)):
+            leading = None
             single = item if " " not in item else f"({item})"
             if single[-1] in "?*":
                 return out, None
@@ -148,7 +150,17 @@ class FormWriter:
             for _ in range(max(map(len, cut)) - 1):
                 text = f" (',' {single}{text})?"
             return out, f"{single}{text}"
-        return out, f"{single} (',' {single})*"
+        return out, f"{leading or single} (',' {single})*"
+
+    def _first_item(
+        self, ahead: Sequence[tuple[Symbol, ...]], behind: Sequence[tuple[Symbol, ...]]
+    ) -> str | None:
+        """The form of a first item, where many lists begin with what only some go on with."""
+        shapes = {tuple(s.text for s in piece) for piece in ahead}
+        others = {tuple(s.text for s in piece) for piece in behind}
+        if len(ahead) < _MANY_LISTS or () in shapes or not shapes < others:
+            return None
+        return self.form([p for p in (*ahead, *behind) if tuple(s.text for s in p) in shapes])
 
     # ---------------------------------------------------------------------------------- factors
 
@@ -193,6 +205,14 @@ class FormWriter:
         indexed = self._indexed(kinds, needed)
         if indexed:
             return [indexed]
+        # a single reserved word beside names says nothing of other values
+        reserved = {k for k in single if self.rules.recognizer.lexer.is_keyword(k)}
+        if len(reserved) == 1 and len(kinds) > 1:
+            beside = {k for k in kinds if k[0] not in reserved}
+            is_name = not needed and beside == {(self.rules.name_kind,)}
+            others = self._name() if is_name else self._indexed(beside, needed)
+            if others:
+                return [others, *(names[k] for k in reserved)]
         usual = self.rules.usual
         reads = {
             rule: {k for k in kinds if rule in self.rules.matcher.rules_for(k)}

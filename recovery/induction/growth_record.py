@@ -8,15 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from random import Random
 from typing import Any
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
 from grammar.notation.model import Grammar, GrammarError
+from grammar.notation.wellformed import problem
 from recovery.induction.rounds import Reading, Refused, Round, Taken
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import name_from
+from recovery.ledger.ledger import in_force
 
-__all__ = ["Growth", "without"]
+__all__ = ["Growth", "without", "without_some"]
 
 _MOST_REFUSED = 40
 _LONGEST_EDIT = 1_000
@@ -97,12 +100,24 @@ def without(
             after = grammar if construct.id in wanted else apply(grammar, construct.edits)
         except GrammarError:
             after = grammar
-        if after is grammar:
+        if after is grammar or problem(after):
             gone.append(construct)
         else:
             grammar = after
             left.append(replace(construct, number=len(left) + 1))
     return left, gone
+
+
+def without_some(
+    start: Grammar, constructs: Sequence[Construct], count: int, seed: int
+) -> tuple[Grammar, list[Construct]]:
+    """The grammar without ``count`` constructs drawn by a seed, and all that went.
+
+    What needs one of them goes with it. Raises `ValueError` where there are not so many.
+    """
+    ids = sorted(construct.id for construct in constructs)
+    left, gone = without(start, constructs, Random(seed).sample(ids, count))
+    return in_force(start, left), gone
 
 
 def _is_there(grammar: Grammar, edit: AddToken | AddAlternative) -> bool:

@@ -100,9 +100,35 @@ class Inference:
             () if line.is_enormous else self.reader.symbols(tokens)
             for line, tokens in zip(lines, self.tokens, strict=True)
         ]
+        #: Reserved words that lines have as names, by the number of the line.
+        self._named: dict[int, tuple[str, ...]] = {}
+        for number, symbols in enumerate(self.symbols):
+            self.symbols[number] = self._with_names(number, symbols)
         self._operator_lines: set[int] = set()
         self._operators: set[str] = {f"'{sign}'" for sign in _PREFIXES}
         self.writer = FormWriter(self.reader, operands_of(self.symbols))
+
+    def _with_names(self, number: int, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+        """The symbols with words as names where they are items of a list whose others are names."""
+        name = Symbol("", Operand((self.rules.name_kind,)))
+        ends = [i for i, symbol in enumerate(symbols) if symbol.text == "','"] + [len(symbols)]
+        items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
+        if len(items) < len(ends) - 1 or not any(symbols[i] == name for i in items):
+            return symbols
+        # the first item stands behind the name of what the list belongs to
+        first = ends[0] - 1
+        items |= {first} if first > 0 and symbols[first - 1] == name else set()
+        words = {i: symbols[i].text for i in items if _WORD.fullmatch(symbols[i].text)}
+        self._named[number] = tuple(sorted(set(words.values()) & self.grammar.by_name.keys()))
+        return tuple(name if i in words else symbol for i, symbol in enumerate(symbols))
+
+    def _naming(self, members: Sequence[int]) -> tuple[Edit, ...]:
+        """The edits that let reserved words be names which lines have as such."""
+        words = {word for number in members for word in self._named.get(number, ())}
+        return tuple(
+            AddAlternative(self.rules.names or "name", word)
+            for word in sorted(words - self.rules.named_words)
+        )
 
     def inner(self) -> Iterator[Inferred]:
         """What is missing within operands: operators, what stands in brackets."""
@@ -568,7 +594,8 @@ class Inference:
         for text in self._forms(shapes):
             for host in hosts:
                 ending = f" {self.profile.line_end}" if self.profile.closing(host) else ""
-                edits = (*self.reserving(text), AddAlternative(host, f"{text}{ending}"))
+                added = AddAlternative(host, f"{text}{ending}")
+                edits = (*self.reserving(text), *self._naming(members), added)
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
 
     def _grown(
@@ -586,7 +613,7 @@ class Inference:
             old = samples_of(self.rules, first)
             for text in self._forms(shapes, old):
                 edit = Replace(rule, (number, 1), text, len(first))
-                edits = (*self.reserving(text), edit)
+                edits = (*self.reserving(text), *self._naming(members), edit)
                 yield Inferred(f"{head} … in {rule}", edits, tuple(members))
 
     def _forms(

@@ -65,6 +65,8 @@ _PREFIX_TOKENS = 5
 _NAMED_LINES = 3
 # Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 _OPERAND_FILES = 5
+# Distinct lines of a single file that an edit needs.
+_LINES_OF_ONE_FILE = 3
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -133,7 +135,7 @@ class _Line:
     files: set[int] = field(default_factory=set)
     origins: set[str] = field(default_factory=set)
     seen: list[str] = field(default_factory=list)
-    lexemes: tuple[str, ...] = ()
+    texts: set[tuple[str, ...]] = field(default_factory=set)
     state: State | None = None
 
 
@@ -162,32 +164,34 @@ class Induction:
         self._corpus: CorpusLines | None = None
         self._keywords: WouldBeKeywords | None = None
         self._names: str | None = None
+        self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
         """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
-        # what recurs in one origin only comes last
-        stages = [(step, n) for n in dict.fromkeys((self.least_origins, 1)) for step in _STEPS]
+        # what recurs in one origin only comes later, and last what recurs in one file only
+        trusts = dict.fromkeys([(self.least_origins, LEAST_FILES_ALONE), (1, LEAST_FILES_ALONE)])
+        stages = [(step, least) for least in (*trusts, (1, 1)) for step in _STEPS]
         place = 0
         for _ in range(most):
-            step, origins = stages[place]
-            done = self._round(step, origins)
+            step, least = stages[place]
+            done = self._round(step, *least)
             yield done
-            place = stages.index((_STEPS[0], origins)) if done.taken else place + 1
+            place = stages.index((_STEPS[0], least)) if done.taken else place + 1
             if place == len(stages):
                 self.is_finished = True
                 return
 
     # ------------------------------------------------------------------------------------ a round
 
-    def _round(self, step: _Step, origins: int) -> Round:
+    def _round(self, step: _Step, origins: int, files: int) -> Round:
         finder, failures = self._failures_under(self.grammar)
         shown = _reading(failures)
         held = _reading([finder.find(file.text) for file in self.held])
         if step == "fold":
             taken, refused = self._folded(finder.recognizer, failures)
         else:
-            taken, refused = self._inferred(finder, failures, origins, inner=step == "inner")
+            taken, refused = self._inferred(finder, failures, origins, files, inner=step == "inner")
         self.grammar = apply(self.grammar, _joined(taken))
         return Round(shown, held, tuple(taken), tuple(refused))
 
@@ -196,6 +200,7 @@ class Induction:
         finder: FailureFinder,
         failures: Sequence[Sequence[Failure]],
         origins: int,
+        files: int,
         *,
         inner: bool,
     ) -> tuple[list[Taken], list[Refused]]:
@@ -219,7 +224,7 @@ class Induction:
         known = list(table.values())
         contexts = [finder.context(line.state) for line in known if line.state is not None]
         self._names = OperandRules(recognizer).names
-        prefixes = _prefixes(corpus, keywords, recognizer)
+        self._prefixes = prefixes = _prefixes(corpus, keywords, recognizer)
         blocks = [] if inner else self._blocks(corpus, keywords, recognizer, prefixes)
         having = [line.origins for line in known]
         inference = Inference(recognizer, lines, contexts, having, blocks, prefixes, origins)
@@ -246,7 +251,7 @@ class Induction:
                 breadth += sum(map(inference.profile.width, rules))
                 scored.append((gain * _BREADTH_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
-        taken, refused = self._chosen(scored, known, rejected, recognizer, origins)
+        taken, refused = self._chosen(scored, known, rejected, recognizer, (origins, files))
         taken, lost = self._kept(taken, failures)
         _, after = self._failures_under(apply(self.grammar, _joined(taken)))
         if taken and _standing(after) <= _standing(failures):  # two forms may undo each other
@@ -296,7 +301,7 @@ class Induction:
                 )
                 pattern = LinePattern(failure.form, keywords.in_line(lexemes) if lexemes else ())
                 line = found.setdefault(pattern, _Line())
-                line.lexemes = line.lexemes or lexemes
+                line.texts.add(lexemes)
                 line.state = line.state or failure.state
                 line.files.add(place)
                 line.origins |= self.shown[place].origins
@@ -368,7 +373,7 @@ class Induction:
         known: Sequence[_Line],
         rejected: NegativeSet,
         recognizer: Recognizer,
-        least: int,
+        least: tuple[int, int],
     ) -> tuple[list[Taken], list[Refused]]:
         """The edits that fit together and each deserve it."""
         grammar = self.grammar
@@ -387,10 +392,13 @@ class Induction:
             edits = tuple(e for e in found.edits if e not in reserved)
             files = {p for n in lines for p in known[n].files}
             is_wide = len(origins) == 1 and not fixed.isdisjoint(operands)
-            enough = _OPERAND_FILES if is_wide else LEAST_FILES_ALONE
+            enough = _OPERAND_FILES if is_wide else least[1]
+            texts = set[tuple[str, ...]]().union(*(known[n].texts for n in lines))
             reason = ""
-            if len(origins) < least or len(files) < enough:
+            if len(origins) < least[0] or len(files) < enough:
                 reason = "only one origin shows it"
+            elif len(files) < LEAST_FILES_ALONE and len(texts) < _LINES_OF_ONE_FILE:
+                reason = "only a line or two of one file show it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
             else:
@@ -505,10 +513,8 @@ class Induction:
         some = sorted(good, key=lambda p: len(self.shown[p].text))[:_FOLD_FILES]
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
-        place = 0
-        while place < len(found := list(Folding(recognizer, operands).candidates())):
-            fold = found[place]
-            place += 1
+        found = Folding(recognizer, operands, self._prefixes).candidates()
+        while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck:
                 continue
             reason = self._objection(
@@ -525,7 +531,8 @@ class Induction:
                 refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)
                 continue
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
-            grammar, recognizer, place = shorter, narrower, 0
+            grammar, recognizer = shorter, narrower
+            found = Folding(recognizer, operands, self._prefixes).candidates()
         taken, lost = self._kept(taken, failures)
         return taken, [*lost, *refused.values()]
 

@@ -166,16 +166,13 @@ class OperandRules:
 
     def includes(self, wide: str, narrow: str) -> bool:
         """Whether a rule may consist of another one."""
-        todo, seen = [wide], {wide}
-        while todo:
-            name = todo.pop()
-            if name == narrow:
-                return True
-            if name in self.grammar.by_name:
-                fresh = set(self.alone(name)) - seen
-                seen |= fresh
-                todo += fresh
-        return False
+        return narrow == wide or narrow in self._consisting.get(wide, ())
+
+    @cached_property
+    def _consisting(self) -> Mapping[str, frozenset[str]]:
+        """The rules that each rule may consist of."""
+        alone = {name: set(self.alone(name)) for name in self._called}
+        return {name: frozenset(reached(alone, name)) for name in alone}
 
     def including(self, rule: str) -> frozenset[str]:
         """Rules that may consist of a rule, itself too."""

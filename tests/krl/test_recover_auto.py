@@ -8,10 +8,12 @@ import pytest
 
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from krl.cli import main
-from recovery.induction.comparison import compared
+from recovery.induction.comparison import compared, within_reach
 from recovery.induction.corpus_lines import read_files
+from recovery.induction.growth_record import without_some
 from recovery.ledger.ledger import Ledger, in_force
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
@@ -83,6 +85,26 @@ def test_the_grown_grammar_is_compared_with_the_target(out: Path) -> None:
     assert record(out)["rules"] == sum(not rule.is_lexer for rule in grown.rules)
     page = (out / "index.html").read_text("utf-8")
     assert "of its random sentences KRL.g4 rejects" in page
+
+
+def test_files_beyond_reach_are_told(corpus: Path) -> None:
+    """A file with a reserved word that no file shown has is not within reach; the word is told."""
+    files = read_files([corpus])
+    shown = [file for file in files if "SWITCH" not in file.text]
+    held = [file for file in files if "SWITCH" in file.text]
+    words = ["CASE", "DEFAULT", "ENDSWITCH", "HALT", "SWITCH"]
+    assert ([], words) == within_reach(Recognizer(read_file(GRAMMAR)), shown, held)
+    assert (shown, []) == within_reach(Recognizer(read_file(GRAMMAR)), files, shown)
+
+
+def test_constructs_are_drawn_and_taken_out() -> None:
+    """What is left of the ledger is the grammar; what needs a construct taken out goes too."""
+    ledger = Ledger.read(GRAMMAR.with_name("constructs")).accepted
+    start = read_file(PRELIMINARY)
+    grammar, gone = without_some(start, ledger, 15, 4)
+    left = [construct for construct in ledger if construct not in gone]
+    assert 15 <= len(gone)
+    assert (None, in_force(start, left).text) == (problem(grammar), grammar.text)
 
 
 def test_what_the_target_rejects_is_counted(corpus: Path) -> None:
@@ -160,6 +182,9 @@ def test_an_interrupted_run_keeps_what_was_done(
         (["--auto", "--resume", "--out", "nowhere"], "nothing to go on from"),
         (["--resume"], "belong to --auto"),
         (["--target", "KRL.g4"], "belong to --auto"),
+        (["--without", "3"], "belong to --auto"),
+        (["--auto", "--without", "3000"], "--without 3000"),
+        (["--auto", "--without", "3", "--resume"], "--without"),
         (["--auto", "--target", "nowhere.g4"], "nowhere.g4"),
     ],
 )

@@ -4,7 +4,11 @@ import pytest
 
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.parser.failures import FailureFinder
+from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, cluster
+from recovery.clustering.title import TitleWriter
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -66,6 +70,24 @@ def test_a_word_that_no_rule_knows_is_taken_for_a_keyword(
 ) -> None:
     """Words that stand as keywords do are named in the title."""
     assert title == cluster_of(*lines).title
+
+
+def test_titles_that_are_the_same_are_told_apart() -> None:
+    """By how the line goes on, then by the rule it stands in, in words; last by a number."""
+    recognizer = Recognizer(PRELIMINARY)
+    finder = FailureFinder(recognizer)
+    patterns = [
+        LinePattern(finder.find(f"DEF A()\n{line}\nEND\n")[0].form, ())
+        for line in ("A B", "A 1", "A B C", "A B C", "A B C")
+    ]
+    rules = ["simpleStatement", "module", "dataList", "module", "module"]
+    assert [
+        "No: name name",
+        "No: name integer",
+        "No in data list",
+        "No in module",
+        "No in module (2)",
+    ] == TitleWriter(recognizer).told_apart(["No"] * 5, patterns, rules)
 
 
 def test_the_identity_hangs_on_the_signature_and_not_on_the_title() -> None:

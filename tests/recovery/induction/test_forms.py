@@ -26,7 +26,7 @@ assignment : variable '=' expression ;
 
 expression : primary ('+' primary)* ;
 
-primary : NUMBER | variable | '(' expression ')' ;
+primary : NUMBER | ON | OFF | variable | '(' expression ')' ;
 
 variable : NAME index? ('.' NAME index?)* ;
 
@@ -37,6 +37,8 @@ MARKS : 'MARKS' ;
 LEFT : 'LEFT' ;
 RIGHT : 'RIGHT' ;
 PAIR : 'PAIR' ;
+ON : 'ON' ;
+OFF : 'OFF' ;
 INSIDE : 'INSIDE' ;
 COMMA : ',' ;
 ASSIGN : '=' ;
@@ -91,6 +93,26 @@ def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) ->
 def test_a_name_with_an_index(writer: FormWriter, lines: list[str], form: str) -> None:
     """What is a name, with an index or without, is not written as a whole variable."""
     assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+@pytest.mark.parametrize(
+    ("count", "form"),
+    [
+        (7, "LIST expression? NAME (',' expression? NAME)*"),
+        (8, "LIST expression NAME (',' expression? NAME)*"),
+    ],
+)
+def test_a_first_item_of_its_own(writer: FormWriter, count: int, form: str) -> None:
+    """What many lists begin with their first item has, and the others may."""
+    lines = [f"LIST 1 A, B{', 1 C, D' * n}" for n in range(count)]
+    assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+def test_a_single_word_beside_names(writer: FormWriter) -> None:
+    """A reserved word that alone stands beside names is written as it is."""
+    assert "PAIR (NAME | ON)" == writer.form(
+        [_symbols(writer, line) for line in ("PAIR A", "PAIR ON")]
+    )
 
 
 def test_a_list_may_hold_itself() -> None:
